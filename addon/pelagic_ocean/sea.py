@@ -66,9 +66,9 @@ class BuiltSea:
     @staticmethod
     def job(key, scene, surface, view):
         """A Job that builds one. surface: None for the projected grid, whose points are those of a pelagic.View."""
-        products = ["position", "velocity", "slope_variance"] + ["coverage"] * scene.effects.whitecaps
-        if scene.effects.whitecaps and scene.effects.foam_decay_s > 0.0:
-            products += ["foam_active", "foam_age"]
+        effects = pelagic.effects(scene)
+        products = (["position", "velocity", "slope_variance"] + ["coverage"] * ("whitecaps" in effects) +
+                    ["foam_active", "foam_age"] * ("living foam" in effects))
 
         def begin():
             if surface is None:

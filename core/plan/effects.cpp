@@ -1,73 +1,157 @@
 #include "core/plan/effects.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/plan/choppiness.h"
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "core/plan/spray.h"
+#include "core/scene/text.h"
 
 namespace pelagic {
 namespace {
 
-constexpr auto kNothing = [](const Scene&) { return EffectNeeds{}; };
+bool asks_for(const Plan& plan, const ProductSet& any) {
+    return std::any_of(plan.queries.begin(), plan.queries.end(),
+                       [&](const PlannedQuery& planned) { return (planned.query.products & any).any(); });
+}
+
+std::string about_whitecaps(const Plan& plan) {
+    if (!asks_for(plan, foam_products())) return "no output asks for them";
+    return "coverage from " + std::string(plan.knobs.third_moment ? "3" : "2") +
+           " moments of the Jacobian, of waves above " + number_text(plan.breaking.from_m) + " m" +
+           (plan.choppiness.moves()
+                ? ""
+                : ", as a choppiness of " + number_text(plan.breaking.choppiness.largest()) +
+                      " would press them");
+}
+
+std::string about_living_foam(const Plan& plan) {
+    if (!plan.foam) return "no output asks for it";
+    const FoamPlan& foam = *plan.foam;
+    return "what broke in " + std::to_string(foam.intervals()) + " steps of " + rough_text(foam.step_s) +
+           " s, over cells from " + rough_text(foam.cell_m) + " m; drifts by " +
+           rough_text(std::hypot(foam.drift_mps.x, foam.drift_mps.y)) + " m/s";
+}
 
 const std::array kEffectTable = std::to_array<EffectRow>({
-    {"horizontal displacement", [](const Scene& scene) { return Choppiness::asked(scene).built().moves(); },
-     "waves.choppiness is 0, or too little to be seen",
-     [](Scene& scene) {
-         scene.waves.choppiness = 0.0;
-         for (CascadeSize& cascade : scene.waves.cascades) cascade.choppiness.reset();
-     },
-     horizontal_fields, [] { return ProductSet(); }, kNothing},
-    {"whitecaps", [](const Scene& scene) { return scene.effects.whitecaps; }, "effects.whitecaps is false",
-     [](Scene& scene) {
-         scene.effects.whitecaps = false;
-         std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
-         std::erase(scene.output.volumes, VolumeKind::Spray);
-     },
-     [] { return FieldSet(); }, [] { return foam_products() | products(Product::JacobianMoments); },
-     kNothing},
-    {"living foam", has_persistent_foam, "effects.foam_decay_s is 0, or there are no whitecaps",
-     [](Scene& scene) { scene.effects.foam_decay_s = 0.0; }, [] { return FieldSet(); },
-     [] { return ProductSet(); }, kNothing},
-    {"foam structure",
-     [](const Scene& scene) { return scene.effects.whitecaps && scene.effects.foam_structure > 0.0; },
-     "effects.foam_structure is 0, or there are no whitecaps",
-     [](Scene& scene) { scene.effects.foam_structure = 0.0; }, [] { return FieldSet(); },
-     [] { return ProductSet(); }, kNothing},
-    {"spray", [](const Scene& scene) { return scene.effects.spray && scene.effects.whitecaps; },
-     "effects.spray is false, or there are no whitecaps",
-     [](Scene& scene) {
-         scene.effects.spray = false;
-         std::erase(scene.output.volumes, VolumeKind::Spray);
-     },
-     [] { return FieldSet(); }, [] { return ProductSet(); }, kNothing},
-    {"gusts",
-     [](const Scene& scene) { return scene.sea.gust_strength > 0.0 && scene.sea.wind_speed_mps > 0.0; },
-     "sea.gust_strength is 0, or there is no wind", [](Scene& scene) { scene.sea.gust_strength = 0.0; },
-     [] { return FieldSet(); }, [] { return ProductSet(); }, kNothing},
+    {.effect = Effect::HorizontalDisplacement,
+     .name = "horizontal displacement",
+     .is_asked_for = [](const Scene& scene) { return Choppiness::asked(scene).built().moves(); },
+     .why_not = "waves.choppiness is 0, or too little to be seen",
+     .turn_off =
+         [](Scene& scene) {
+             scene.waves.choppiness = 0.0;
+             for (CascadeSize& cascade : scene.waves.cascades) cascade.choppiness.reset();
+         },
+     .fields = horizontal_fields(),
+     .plan = [](Plan& plan) { plan.choppiness = Choppiness::asked(plan.from->scene).built(); }},
+    {.effect = Effect::Whitecaps,
+     .name = "whitecaps",
+     .is_asked_for = [](const Scene& scene) { return scene.effects.whitecaps; },
+     .why_not = "effects.whitecaps is false",
+     .turn_off =
+         [](Scene& scene) {
+             scene.effects.whitecaps = false;
+             std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
+             std::erase(scene.output.volumes, VolumeKind::Spray);
+         },
+     .products = foam_products() | products(Product::JacobianMoments),
+     .feeds = feeds(Feed::Foam),
+     .shapes = [](const Query& query) { return (query.products & breaking_products()).any(); },
+     .about = about_whitecaps},
+    {.effect = Effect::LivingFoam,
+     .name = "living foam",
+     .is_asked_for = [](const Scene& scene) { return scene.effects.foam_decay_s > 0.0; },
+     .why_not = "effects.foam_decay_s is 0",
+     .depends_on = {Effect::Whitecaps},
+     .turn_off = [](Scene& scene) { scene.effects.foam_decay_s = 0.0; },
+     .adds_to = [](const Query& query) { return query.asks_for_past() ? foam_products() : ProductSet(); },
+     .plan =
+         [](Plan& plan) {
+             if (asks_for(plan, foam_products()))
+                 plan.foam =
+                     plan_foam(plan.from->scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
+         },
+     .state = {"the foam's history", [](const Plan& plan) { return plan.foam_history_bytes(); },
+               "lower effects.foam_decay_s"},
+     .about = about_living_foam},
+    {.effect = Effect::FoamStructure,
+     .name = "foam structure",
+     .is_asked_for = [](const Scene& scene) { return scene.effects.foam_structure > 0.0; },
+     .why_not = "effects.foam_structure is 0",
+     .depends_on = {Effect::Whitecaps},
+     .turn_off = [](Scene& scene) { scene.effects.foam_structure = 0.0; },
+     .about = [](const Plan&) { return std::string("of pictures' light alone"); }},
+    {.effect = Effect::Spray,
+     .name = "spray",
+     .is_asked_for = [](const Scene& scene) { return scene.effects.spray; },
+     .why_not = "effects.spray is false",
+     .depends_on = {Effect::Whitecaps},
+     .turn_off =
+         [](Scene& scene) {
+             scene.effects.spray = false;
+             std::erase(scene.output.volumes, VolumeKind::Spray);
+         },
+     // Its map lies over places of the world.
+     .adds_to =
+         [](const Query& query) { return query.is_picture ? products(Product::Displacement) : ProductSet(); },
+     .about =
+         [](const Plan& plan) {
+             return "of volumes and pictures; takes " +
+                    rough_text(-100.0 * std::expm1(-spray_law(plan.from->scene).optical_thickness())) +
+                    " % of the light straight up, on average";
+         }},
+    {.effect = Effect::Gusts,
+     .name = "gusts",
+     .is_asked_for =
+         [](const Scene& scene) { return scene.sea.gust_strength > 0.0 && scene.sea.wind_speed_mps > 0.0; },
+     .why_not = "sea.gust_strength is 0, or there is no wind",
+     .turn_off = [](Scene& scene) { scene.sea.gust_strength = 0.0; },
+     .plan = [](Plan& plan) { plan.gusts = plan_gusts(plan.from->scene); },
+     .feeds = feeds(Feed::Gusts),
+     .shapes =
+         [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); },
+     .about =
+         [](const Plan& plan) {
+             return "patches of " + number_text(plan.from->scene.sea.gust_size_m) + " m";
+         }},
 });
 
 }  // namespace
+
+bool EffectRow::is_on(const Scene& scene) const {
+    return is_asked_for(scene) && std::all_of(depends_on.begin(), depends_on.end(),
+                                              [&](Effect other) { return pelagic::is_on(other, scene); });
+}
+
+std::string EffectRow::why_off(const Scene& scene) const {
+    if (!is_asked_for(scene)) return why_not;
+    for (const Effect other : depends_on)
+        if (!pelagic::is_on(other, scene)) return std::string("there is none without ") + row_of(other).name;
+    return {};
+}
 
 std::span<const EffectRow> effect_table() {
     return kEffectTable;
 }
 
-ProductSet products_gone(const Scene& scene, std::span<const EffectRow> table) {
-    ProductSet gone;
-    for (const EffectRow& row : table)
-        if (!row.is_on(scene)) gone |= row.products_gone();
-    return gone;
+const EffectRow& row_of(Effect effect) {
+    return kEffectTable[static_cast<std::size_t>(effect)];
 }
 
-std::vector<double> times_before(const TimeLattice& lattice, double t_s) {
-    // The division may round up to the next whole number: a time after t isn't one before it.
-    double last = std::floor(t_s / lattice.step_s);
-    if (last * lattice.step_s > t_s) last -= 1.0;
-    std::vector<double> times_s;
-    for (int i = 0; i < lattice.count; ++i) times_s.push_back((last - i) * lattice.step_s);
-    return times_s;
+bool is_on(Effect effect, const Scene& scene) {
+    return row_of(effect).is_on(scene);
+}
+
+Query with_effects(const Scene& scene, Query query) {
+    for (const EffectRow& row : kEffectTable)
+        if (!row.is_on(scene))
+            query.products &= ~row.products;
+        else if (row.adds_to)
+            query.products |= row.adds_to(query);
+    return query;
 }
 
 }  // namespace pelagic

@@ -1,48 +1,56 @@
-// The effects of a scene: what it can do without, and what each asks for. A row of kEffectTable is all that
-// the plan knows of an effect; whether one is on is asked here and nowhere else.
+// The effects of a scene: what it can do without. A row of the table is all that the plan, its page and its prices know of
+// an effect, and whether one is on is asked here alone (tests/style/effects.sh).
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/plan/products.h"
+#include "core/plan/query.h"
+#include "core/scene/keys.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
 
-struct Query;
+struct Plan;
 
-// The absolute times n·step_s with n·step_s ≤ t, the latest `count` of them: what an effect that remembers
-// adds up over. They don't depend on the shot's range, so that a frame alone equals that frame of a run.
-struct TimeLattice {
-    double step_s = 1.0;
-    int count = 0;
-};
-// Latest first.
-std::vector<double> times_before(const TimeLattice& lattice, double t_s);
+enum class Effect { HorizontalDisplacement, Whitecaps, LivingFoam, FoamStructure, Spray, Gusts };
 
-// What an effect wants beside what the outputs ask for.
-struct EffectNeeds {
-    std::vector<Query> queries;          // its own points: fields and products follow as for an output's
-    std::size_t bytes = 0;               // of state, in each frame
-    std::optional<TimeLattice> earlier;  // times other than the frame's at which its queries are asked
-};
-
+// Members that aren't given: the effect has nothing of the kind.
 struct EffectRow {
+    Effect effect;
     const char* name;
-    bool (*is_on)(const Scene&);
-    const char* why_off;            // where it isn't
-    void (*turn_off)(Scene&);       // leaves a valid scene
-    FieldSet (*fields_gone)();      // zero without it, whoever asks: never computed
-    ProductSet (*products_gone)();  // without it no output holds them
-    EffectNeeds (*asks)(const Scene&);
+    bool (*is_asked_for)(const Scene&);  // by its own keys
+    const char* why_not;                 // where it isn't
+    std::vector<Effect> depends_on{};    // off where one of these is
+    void (*turn_off)(Scene&);            // leaves a valid scene
+
+    FieldSet fields{};                              // zero without it, whoever asks: never computed
+    ProductSet products{};                          // without it no output holds them
+    ProductSet (*adds_to)(const Query&) = nullptr;  // what outputs and pictures hold besides where it is on
+    void (*plan)(Plan&) = nullptr;                  // where it is on: its part of a plan that has its queries
+    struct State {                                  // what it keeps from frame to frame
+        const char* name;
+        std::size_t (*bytes)(const Plan&) = nullptr;
+        const char* remedy;  // what to change so that they become fewer
+    } state{};
+
+    FeedSet feeds{};                              // the parts of the keys on which those outputs depend
+    bool (*shapes)(const Query&) = nullptr;       // that it changes
+    std::string (*about)(const Plan&) = nullptr;  // where it is on, for explain()
+
+    bool is_on(const Scene&) const;
+    std::string why_off(const Scene&) const;  // where it is off
 };
 
+// In the order of the enumerators, each after those on which it depends.
 std::span<const EffectRow> effect_table();
+const EffectRow& row_of(Effect effect);
+bool is_on(Effect effect, const Scene& scene);
 
-// What the effects that are off take away from outputs.
-ProductSet products_gone(const Scene& scene, std::span<const EffectRow> table = effect_table());
+// An output's or a picture's query, without the products of effects that are off, and with what those that are on add.
+Query with_effects(const Scene& scene, Query query);
 
 }  // namespace pelagic

@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/plan/copies.h"
+#include "core/plan/effects.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/hidden_slopes.h"
@@ -85,6 +88,27 @@ std::string trains_text(const Plan& plan) {
     return page;
 }
 
+// What a frame would do and hold less without the effect.
+std::string cost_text(const Plan& plan, const EffectRow& row) {
+    const auto from = std::make_shared<PreparedScene>(*plan.from);
+    row.turn_off(from->scene);
+    from->extent = expected_extent(from->spectrum, Choppiness::asked(from->scene));
+    std::vector<Query> queries;
+    for (const PlannedQuery& planned : plan.queries)
+        queries.push_back(with_effects(from->scene, planned.query));
+    const Plan without = plan.surface
+                             ? plan_bake(from, representative_frames(from->scene, 64))
+                             : make_plan(from, queries, {.knobs = plan.knobs, .filter = plan.filter});
+    const auto held = [](const Plan& of) {
+        return static_cast<double>(of.sea_bytes() + of.frame_bytes() + of.output_bytes() + of.effect_bytes());
+    };
+    const int transforms = plan.transforms_per_frame() - without.transforms_per_frame();
+    const double bytes = held(plan) - held(without);
+    if (transforms == 0 && bytes == 0.0) return "nothing";
+    return std::to_string(transforms) + " transforms, " + (bytes < 0.0 ? "-" : "") +
+           bytes_text(static_cast<std::size_t>(std::abs(bytes)));
+}
+
 }  // namespace
 
 std::string explain(const Plan& plan) {
@@ -108,11 +132,11 @@ std::string explain(const Plan& plan) {
             // Breaking has a displacement gradient of its own, also where nothing is displaced.
             const FieldSet needed = row.is_of_breaking ? row.needs : row.needs & ~plan.dropped;
             page += format("    %-18s ← %s (%s)\n", row.name, field_list(needed).c_str(), row.why);
+            if (row.product == Product::SlopeVariance)
+                page += format(
+                    "    %-18s   %.3g times that at rest, by area of sea\n", "",
+                    hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
         }
-        if (planned.query.products[index(Product::SlopeVariance)])
-            page += format(
-                "    %-18s   %.3g times that at rest, by area of sea\n", "",
-                hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
     }
     if (plan.queries.empty()) page += "  none: no mesh, no maps and no volumes are asked for\n";
     for (const PlannedOutput& output : plan.outputs)
@@ -127,33 +151,12 @@ std::string explain(const Plan& plan) {
         }
     }
 
-    page += "\nEffects\n";
-    for (const Reason& reason : plan.closure) page += "  " + reason.what + ": " + reason.why + "\n";
-    bool has_coverage = false;
-    for (const PlannedQuery& planned : plan.queries)
-        has_coverage |= (planned.query.products & foam_products()).any();
-    if (has_coverage)
-        page += format("  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m%s\n",
-                       plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m,
-                       plan.choppiness.moves() ? ""
-                                               : format(", as a choppiness of %g would press them",
-                                                        plan.breaking.choppiness.largest())
-                                                     .c_str());
-    else if (!products_gone(scene)[index(Product::Coverage)])
-        page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
-    if (plan.foam)
-        page += format(
-            "  living foam: what broke in %d steps of %.4g s, over cells from %.4g m; drifts by %.3g m/s; some %s\n",
-            plan.foam->intervals(), plan.foam->step_s, plan.foam->cell_m,
-            std::hypot(plan.foam->drift_mps.x, plan.foam->drift_mps.y),
-            bytes_text(plan.foam_history_bytes()).c_str());
-    for (const PlannedEffect& effect : plan.effects) {
-        page += std::string("  ") + effect.row->name + ": " + std::to_string(effect.queries.size()) +
-                " queries of its own, " + bytes_text(effect.needs.bytes) + " a frame";
-        if (effect.needs.earlier)
-            page += format(", at %d earlier times %g s apart", effect.needs.earlier->count,
-                           effect.needs.earlier->step_s);
-        page += "\n";
+    page += "\nEffects, and what a frame would do and hold less without each\n";
+    for (const EffectRow& row : effect_table()) {
+        const bool is_on = row.is_on(scene);
+        page += format("  %s%s: %s\n", is_on ? "" : "no ", row.name,
+                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str());
+        if (is_on && row.about) page += "    " + row.about(plan) + '\n';
     }
 
     if (plan.trains) page += "\nWave trains\n" + trains_text(plan);

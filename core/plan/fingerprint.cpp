@@ -31,6 +31,9 @@ std::string plan_text(const Plan& plan, int query_index) {
                        " filter " + number_text(plan.filter.n_min) + ' ' + number_text(plan.filter.n_max) +
                        "\nproducts " + shown.to_string().substr(kLater) + " dropped " +
                        plan.dropped.to_string() + '\n';
+    for (const ProductRow& row : kProductTable)  // those that came later
+        if (row.product > Product::FoamAge && query.products[index(row.product)])
+            text += row.identifier + std::string("\n");
     if (has_foam) text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
     // The history has grids of its own, which aren't in this plan.
     if (plan.foam && query.asks_for_past())

@@ -39,12 +39,7 @@ FoamPlan::Weight FoamPlan::weight(double from_s, double to_s) const {
     return {decay_s * (at_a - at_b), decay_s * ((a + decay_s) * at_a - (b + decay_s) * at_b)};
 }
 
-bool has_persistent_foam(const Scene& scene) {
-    return scene.effects.whitecaps && scene.effects.foam_decay_s > 0.0;
-}
-
-std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
-    if (!has_persistent_foam(scene)) return {};
+FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
     const Effects& effects = scene.effects;
     constexpr double kFinestCell_m = 0.25;
     constexpr double kCell =

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
-#include <optional>
 #include <vector>
 
 #include "core/plan/query.h"
@@ -50,12 +49,9 @@ struct FoamPlan {
     Weight weight(double from_s, double to_s) const;
 };
 
-// Whether earlier breaking leaves foam.
-bool has_persistent_foam(const Scene& scene);
-
-// steps_a_period: Knobs::foam_steps_a_period. Nothing without persistent foam. `finest_m`: no breaking is resolved
+// Of a scene that has persistent foam. steps_a_period: Knobs::foam_steps_a_period. `finest_m`: no breaking is resolved
 // below it.
-std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period);
+FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period);
 
 // Which level's cells serve a footprint, two cells a footprint: (1 − t) of `level` and t of the next.
 struct FoamRung {

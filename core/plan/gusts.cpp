@@ -21,9 +21,8 @@ std::array<double, GustsPlan::kWaves> GustsPlan::cycles_at(glm::dvec2 origin_m,
     return cycles;
 }
 
-std::optional<GustsPlan> plan_gusts(const Scene& scene) {
+GustsPlan plan_gusts(const Scene& scene) {
     const SeaState& sea = scene.sea;
-    if (!(sea.gust_strength > 0.0 && sea.wind_speed_mps > 0.0)) return {};
     constexpr double kLongest = 2.0, kShortest = 0.25;  // of the gusts' size
     constexpr double kLonger = 3.0;                     // along the wind than across it
     // Of the wind 10 m up: that at 2 m, by the logarithmic profile over a roughness of 0.2 mm (Taylor 1938: gusts drift

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <glm/vec2.hpp>
-#include <optional>
 
 #include "core/scene/scene.h"
 
@@ -29,7 +28,7 @@ struct GustsPlan {
     std::array<double, kWaves> cycles_at(glm::dvec2 origin_m, double time_within_loop_s) const;
 };
 
-// Nothing without gusts or without wind.
-std::optional<GustsPlan> plan_gusts(const Scene& scene);
+// Of a scene that has gusts.
+GustsPlan plan_gusts(const Scene& scene);
 
 }  // namespace pelagic

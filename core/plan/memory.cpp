@@ -49,7 +49,8 @@ void add_sea(MemoryNeed& need, const Plan& plan, int threads) {
                                    : "lower the resolutions in waves.cascades, or quality.level";
     need.add("the sea's amplitudes", plan.sea_bytes(), remedy);
     need.add("the frame's grids", plan.frame_bytes(), remedy);
-    need.add("the foam's history", plan.foam_history_bytes(), "lower effects.foam_decay_s");
+    for (const EffectRow& row : effect_table())
+        if (row.state.bytes) need.add(row.state.name, row.state.bytes(plan), row.state.remedy);
     // Sixteen columns of the largest grid, its lines and its modes (core/waves/frame.h), by thread.
     constexpr std::size_t kNumbers = 17 * 2 + 16 * 6;
     int largest = 0;

@@ -35,7 +35,6 @@ void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<Ou
             if (at.attribute == attribute) query.products.set(index(at.product));
     if (context.surface.fitted())
         query.products.reset(index(Product::Normal));  // a limit surface has its own
-    query.products = with_past(context.prepared.scene, query.products & ~context.gone);
     const SurfaceNeeds needs = context.surface.needs(context.frames);
     if (needs.own_footprints) {
         query = view_query(context.prepared, {.products = query.products,
@@ -75,8 +74,7 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
             Query query;
             query.name = (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) +
                          std::string(word_of(map));
-            query.products = at.needs() & ~context.gone;
-            if (!cascade) query.products = with_past(context.prepared.scene, query.products);
+            query.products = at.needs();
             // A tile's unresolved slopes are carried by the whole sea, not by the tile alone: so they are taken at
             // rest.
             if (cascade && query.products[index(Product::SlopeVariance)])

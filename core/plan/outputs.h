@@ -36,7 +36,6 @@ struct OutputContext {
     const PreparedScene& prepared;
     const RestSurface& surface;
     std::span<const int> frames;  // that will be baked
-    ProductSet gone;              // what no output holds, since its effect is off
 };
 
 // A row here and a part in plugin/bake are all that a kind of output is.

@@ -246,20 +246,17 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double 
     return cascades;
 }
 
-ProductSet with_past(const Scene& scene, ProductSet wanted) {
-    return wanted[index(Product::Coverage)] && has_persistent_foam(scene) ? wanted | foam_products() : wanted;
-}
-
 Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options) {
     Query query;
     query.name = "view";
     query.is_view = true;
     query.is_picture = options.products.none();
     query.products = options.products;
-    if (query.products.none())
-        query.products = with_past(prepared.scene, products(Product::Position, Product::Normal,
-                                                            Product::SlopeVariance, Product::Coverage)) &
-                         ~products_gone(prepared.scene);
+    if (query.is_picture) {
+        query.products =
+            products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage);
+        query = with_effects(prepared.scene, std::move(query));
+    }
     query.points = options.points;
     const FootprintFilter& filter = options.filter;
     const double finest_m = options.finest_pixel_m > 0.0 ? first_rung_m(options.finest_pixel_m) : 0.0;
@@ -330,21 +327,6 @@ int add_query(Plan& plan, const Query& query) {
     return static_cast<int>(plan.queries.size()) - 1;
 }
 
-// What the effects add to the plan, and take from it.
-void add_effects(Plan& plan, std::span<const EffectRow> table) {
-    const Scene& scene = plan.from->scene;
-    for (const EffectRow& row : table) {
-        if (!row.is_on(scene)) {
-            plan.dropped |= row.fields_gone();
-            plan.closure.push_back({std::string("no ") + row.name, row.why_off});
-            continue;
-        }
-        PlannedEffect effect{.row = &row, .needs = row.asks(scene), .queries = {}};
-        for (const Query& query : effect.needs.queries) effect.queries.push_back(add_query(plan, query));
-        if (!effect.queries.empty() || effect.needs.bytes > 0) plan.effects.push_back(std::move(effect));
-    }
-}
-
 }  // namespace
 
 Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Query>& queries,
@@ -356,14 +338,13 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.knobs = options.knobs.value_or(knobs_of(scene.quality.level));
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
-    plan.choppiness = Choppiness::asked(scene).built();
     plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
-    add_effects(plan, options.effects);
-    plan.gusts = plan_gusts(scene);
-    if (std::any_of(queries.begin(), queries.end(),
-                    [](const Query& query) { return (query.products & foam_products()).any(); }))
-        plan.foam = plan_foam(scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
+    for (const EffectRow& row : effect_table())
+        if (!row.is_on(scene))
+            plan.dropped |= row.fields;
+        else if (row.plan)
+            row.plan(plan);
 
     double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
     for (const PlannedQuery& planned : plan.queries) {
@@ -421,13 +402,13 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
 
 Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames) {
     const std::shared_ptr<const RestSurface> surface = make_surface(prepared->scene, prepared->extent);
-    const OutputContext context{
-        .prepared = *prepared, .surface = *surface, .frames = frames, .gone = products_gone(prepared->scene)};
+    const OutputContext context{.prepared = *prepared, .surface = *surface, .frames = frames};
     std::vector<OutputRequest> requests;
     for (const OutputRow& row : output_table()) row.add(row, context, requests);
     std::vector<Query> queries;
     std::vector<PlannedOutput> outputs;
-    for (const OutputRequest& request : requests) {
+    for (OutputRequest& request : requests) {
+        const Query query = with_effects(prepared->scene, std::move(request.query));
         PlannedOutput output{.row = request.row,
                              .map = request.map,
                              .cascade = request.cascade,
@@ -438,11 +419,10 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         if (output.has_surface) output.feeds |= surface->feeds();
         for (const VolumeRow& row : volume_table())
             if (output.volume == row.volume) output.feeds |= row.feeds;
-        if ((request.query.products & breaking_products()).any()) output.feeds |= feeds(Feed::Foam);
-        if (!request.cascade && (request.query.products & gusty_products()).any())
-            output.feeds |= feeds(Feed::Gusts);
+        for (const EffectRow& row : effect_table())
+            if (row.shapes && row.shapes(query)) output.feeds |= row.feeds;
         outputs.push_back(std::move(output));
-        queries.push_back(request.query);
+        queries.push_back(query);
     }
     Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);
@@ -515,7 +495,6 @@ std::size_t Plan::frame_bytes() const {
     for (const CascadePlan& cascade : cascades)
         for (const Grid& grid : cascade.grids)
             bytes += grid.fields.count() * grid_bytes(grid.resolution, knobs.double_precision);
-    for (const PlannedEffect& effect : effects) bytes += effect.needs.bytes;
     return bytes;
 }
 
@@ -537,6 +516,13 @@ std::size_t Plan::foam_history_bytes() const {
         bytes += static_cast<std::size_t>(std::ceil(count)) * foam->tile_bytes() + own.sea_bytes() +
                  own.frame_bytes();
     }
+    return bytes;
+}
+
+std::size_t Plan::effect_bytes() const {
+    std::size_t bytes = 0;
+    for (const EffectRow& row : effect_table())
+        if (row.state.bytes) bytes += row.state.bytes(*this);
     return bytes;
 }
 

@@ -101,34 +101,20 @@ struct PlannedQuery {
     std::vector<int> breaking_levels;
 };
 
-// An effect that asks for something, and where its queries stand.
-struct PlannedEffect {
-    const EffectRow* row = nullptr;
-    EffectNeeds needs;
-    std::vector<int> queries;  // into Plan::queries, parallel to needs.queries
-};
-
-// A line of the closure, for people: what runs, and because of what.
-struct Reason {
-    std::string what, why;
-};
-
 struct Plan {
     std::shared_ptr<const PreparedScene> from;  // what was planned
     Knobs knobs;
     FootprintFilter filter;
-    Choppiness choppiness;
+    Choppiness choppiness = 0.0;
     Breaking breaking;
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
-    std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
-    std::optional<FoamPlan> foam;      // with persistent foam, where a query asks for any of it
-    std::optional<GustsPlan> gusts;    // where the wind varies over the surface
-    FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
-    std::vector<Reason> closure;
-    std::vector<PlannedEffect> effects;          // those that are on and ask for something
-    std::vector<PlannedOutput> outputs;          // of a bake; each has a query
+    std::optional<TrainsPlan> trains;    // the second wave model; cascades then begin where its waves end
+    std::optional<FoamPlan> foam;        // with persistent foam, where a query asks for any of it
+    std::optional<GustsPlan> gusts;      // where the wind varies over the surface
+    FieldSet dropped;                    // fields that are zero in this scene, whoever asks: never computed
+    std::vector<PlannedOutput> outputs;  // of a bake; each has a query
     std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are
 
     // Whether modes have horizontal displacements, or a displacement gradient that decides about breaking.
@@ -144,14 +130,12 @@ struct Plan {
     // The bytes of the history of persistent foam (core/effects/foam_history.h), in expectation where a picture's
     // frame or a mesh for a camera decides which tiles are read.
     std::size_t foam_history_bytes() const;
+    std::size_t effect_bytes() const;  // of all effects that hold anything from frame to frame: the history's
 };
 
-// What has coverage, as files and pictures do: with persistent foam also what of it breaks now, and its age.
-ProductSet with_past(const Scene& scene, ProductSet wanted);
-
 struct ViewQueryOptions {
-    // None: what a picture's light needs, that is positions, normals, what pixels hide of the slopes, and
-    // coverage where the scene has whitecaps.
+    // None: what a picture's light needs, that is positions, normals, what pixels hide of the slopes, and what the
+    // scene's effects add, coverage for one.
     ProductSet products{};
     // No point's footprints will be finer [m] (ProjectedGridNeeds); 0: nothing may be filtered.
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
@@ -170,13 +154,12 @@ Query view_query(const PreparedScene&, const ViewQueryOptions& options = {});
 // The projected grid of the shot's camera, for pictures.
 ProjectedGridOptions projected_grid_options(const PreparedScene&);
 
-// The plan of these queries, and of what the scene's effects ask for. Without `knobs` or `double_precision` as the
+// The plan of these queries, with the parts that the scene's effects plan themselves. Without `knobs` or `double_precision` as the
 // quality level has them. Throws std::invalid_argument when a query is malformed.
 struct PlanOptions {
     std::optional<Knobs> knobs{};
     FootprintFilter filter{};  // to measure what another one would cost
     std::optional<bool> double_precision{};
-    std::span<const EffectRow> effects = effect_table();
 };
 Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});
 Plan make_plan(const Scene&, const std::vector<Query>&, const PlanOptions& = {});

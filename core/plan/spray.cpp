@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/plan/effects.h"
 #include "core/scene/limits.h"
 #include "core/scene/text.h"
 
@@ -36,7 +37,7 @@ SprayLaw spray_law(double wind_speed_mps) {
 }
 
 SprayLaw spray_law(const Scene& scene) {
-    if (!scene.effects.spray || !scene.effects.whitecaps) return {};
+    if (!is_on(Effect::Spray, scene)) return {};
     SprayLaw law = spray_law(scene.sea.wind_speed_mps);
     for (double* part : {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s, &law.extinction_per_m})
         *part *= scene.effects.spray_gain;
@@ -44,7 +45,7 @@ SprayLaw spray_law(const Scene& scene) {
 }
 
 std::string spray_warning(const Scene& scene) {
-    if (!scene.effects.spray || !scene.effects.whitecaps || !(scene.sea.wind_speed_mps > 0.0)) return {};
+    if (!is_on(Effect::Spray, scene) || !(scene.sea.wind_speed_mps > 0.0)) return {};
     if (!(scene.effects.spray_gain > 0.0)) return "effects.spray_gain = 0 leaves no spray";
     constexpr double kSeen = 0.01;  // of the light straight up, on average: over crests it is ten times that
     const double seen_thickness = -std::log1p(-kSeen), thickness = spray_law(scene).optical_thickness();

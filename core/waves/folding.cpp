@@ -145,7 +145,7 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
 std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     const Breaking breaking = breaking_of(scene, FootprintFilter());
-    if (!scene.effects.whitecaps || !(law_coverage(scene) > 0.0) || breaking.choppiness.is_of_all())
+    if (!is_on(Effect::Whitecaps, scene) || !(law_coverage(scene) > 0.0) || breaking.choppiness.is_of_all())
         return {};
     const auto presses = [&](const Choppiness& choppiness) {
         const SpectralMoments all = moments_pressed(prepared.spectrum, 0.0, breaking.k_end(), choppiness);

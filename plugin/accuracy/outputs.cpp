@@ -194,7 +194,7 @@ Trials mesh_variance(const Scene& shot) {
     const ProductSet wanted = products(Product::Normal, Product::SlopeVariance);
     const auto patch = std::make_shared<const SeenPatch>(shot);
     Scene square = shot;
-    square.effects.foam_decay_s = 0.0;  // an effect of its own
+    row_of(Effect::LivingFoam).turn_off(square);  // it has a price of its own
     square.surface.resolution = kCells * kParts;
     const SweepPoints fine = sweep_points(square, kCells * kParts);
     SeaAnswers parts(square, wanted, fine.spacing_m, fine);
@@ -314,8 +314,7 @@ Trials file_numbers(const Scene& shot) {
 }
 
 Trials whitecap_moments(const Scene& shot) {
-    if (products_gone(shot)[index(Product::Coverage)])
-        return {{}, "has nothing to sweep: the shot has no whitecaps"};
+    if (!is_on(Effect::Whitecaps, shot)) return {{}, "has nothing to sweep: the shot has no whitecaps"};
     constexpr int kCells = 32, kParts = 16;
     Scene square = shot;
     square.surface.resolution = kCells * kParts;

@@ -69,7 +69,7 @@ Trials against(const Scene& scene, const RenderOptions& options, std::vector<Pic
                                  .is_shots = setting.is_shots,
                                  .run = [picture] { picture->run(); },
                                  .errors = errors,
-                                 .bytes = plan.sea_bytes() + plan.frame_bytes() + plan.foam_history_bytes(),
+                                 .bytes = plan.sea_bytes() + plan.frame_bytes() + plan.effect_bytes(),
                                  .transforms = plan.transforms_per_frame(),
                                  .picture = [picture] { return picture->encoded(); }});
         before = picture;

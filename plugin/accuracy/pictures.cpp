@@ -143,7 +143,7 @@ Trials foam_structure(const Scene& shot) {
                                     std::to_string(n),
                                 structure == scene.effects.foam_structure && n == own.samples, at, options});
         }
-        if (scene.effects.foam_structure == 0.0) break;
+        if (!is_on(Effect::FoamStructure, scene)) break;
     }
     return against(scene, exact, std::move(settings));
 }
@@ -212,8 +212,7 @@ Trials ellipses(const Scene& shot) {
 Trials foam_times(const Scene& shot) {
     const Scene scene = with_small_pictures(shot);
     const RenderOptions own = render_options(scene);
-    if (!own.lighting.whitecaps || !(scene.effects.foam_decay_s > 0.0))
-        return {{}, "has nothing to sweep: the shot's foam doesn't live"};
+    if (!is_on(Effect::LivingFoam, scene)) return {{}, "has nothing to sweep: the shot's foam doesn't live"};
     const Knobs knobs = knobs_of_shot(scene);
     RenderOptions exact = own;
     exact.samples = 1;

@@ -71,7 +71,7 @@ bool same_work(const Plan& a, const Plan& b) {
 
 PlanCost cost_of(const Plan& plan) {
     return {plan.transforms_per_frame(), plan.lines_per_frame(), static_cast<std::int64_t>(plan.sea_bytes()),
-            static_cast<std::int64_t>(plan.frame_bytes() + plan.foam_history_bytes()),
+            static_cast<std::int64_t>(plan.frame_bytes() + plan.effect_bytes()),
             static_cast<std::int64_t>(plan.output_bytes())};
 }
 

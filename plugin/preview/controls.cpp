@@ -225,10 +225,10 @@ const PanelSection& keys_of(Section section) {
 
 void waves_section(Controls& controls, const Readout& readout) {
     if (!section(keys_of(kWavesSection).title)) return;
-    const bool had_whitecaps = controls.scene.effects.whitecaps;
+    const bool had_whitecaps = is_on(Effect::Whitecaps, controls.scene);
     key_controls(controls.scene, keys_of(kWavesSection));
     // Foam that is turned on is drawn, also in a shot that begins without.
-    if (controls.scene.effects.whitecaps && !had_whitecaps) controls.draw.lighting.whitecaps = true;
+    if (is_on(Effect::Whitecaps, controls.scene) && !had_whitecaps) controls.draw.lighting.whitecaps = true;
     ImGui::PushStyleColor(ImGuiCol_Text,
                           readout.building_sea ? kAccent : ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
     ImGui::TextWrapped("%s", sea_words(readout).c_str());

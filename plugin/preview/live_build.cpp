@@ -56,10 +56,8 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     const auto prepared = prepare(without_budget(scene));  // a budget is of meshes and of rendered pictures
     LiveBuild made;
     made.scene = scene;
-    const bool has_spray = render_options(scene).lighting.spray;
     const auto plan_from = [&](double finest_m) {
-        Query query = view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
-        if (has_spray) query.products |= products(Product::Displacement);
+        const Query query = view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
         return make_plan(prepared, {query}, {.double_precision = false});
     };
     for (const std::string& warning : sea_warnings(*prepared))

@@ -154,13 +154,11 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     const View view = view_at(planned.scene.camera, frame);
     const ProjectedGridOptions options = projected_grid_options(*prepared);
     const ProjectedGridNeeds needs = projected_grid_needs(view, options);
-    const bool has_spray = render_options(planned.scene).lighting.spray;
     const auto plan_for = [&](ProductSet wanted, double finest_pixel_m) {
-        Query query = view_query(*prepared, {.products = wanted,
-                                             .finest_cell_m = needs.finest_cell_m,
-                                             .finest_pixel_m = finest_pixel_m,
-                                             .points = points_of(needs.size)});
-        if (has_spray) query.products |= products(Product::Displacement);
+        const Query query = view_query(*prepared, {.products = wanted,
+                                                   .finest_cell_m = needs.finest_cell_m,
+                                                   .finest_pixel_m = finest_pixel_m,
+                                                   .points = points_of(needs.size)});
         return make_plan(prepared, {query}, {.double_precision = false});
     };
     // Positions alone, with waves no shorter than the cells: little beside what pixels resolve. They tell which

@@ -1,6 +1,7 @@
 // The Python module `pelagic`: thin, because the work is core's. Arrays are numpy's, exceptions Python's, and
 // long work lets other Python threads run.
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
@@ -95,4 +96,13 @@ PYBIND11_MODULE(pelagic, module) {
         "explain", &explain_bake, py::arg("scene"),
         "What baking this scene computes, and why: each output, product, field, transform with its size, "
         "bytes held.");
+    module.def(
+        "effects",
+        [](const pelagic::Scene& scene) {
+            std::vector<std::string> on;
+            for (const pelagic::EffectRow& row : pelagic::effect_table())
+                if (row.is_on(scene)) on.emplace_back(row.name);
+            return on;
+        },
+        py::arg("scene"), "The names of the effects that are on in this scene: \"whitecaps\", ...");
 }

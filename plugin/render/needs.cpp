@@ -23,7 +23,7 @@ namespace pelagic {
 RenderOptions render_options(const Scene& scene) {
     const QualityRow& quality = quality_of(scene.quality.level);
     RenderOptions options;
-    options.lighting.whitecaps = !products_gone(scene)[index(Product::Coverage)];
+    options.lighting.whitecaps = is_on(Effect::Whitecaps, scene);
     options.lighting.spray = spray_law(scene).extinction_per_m > 0.0;
     switch (quality.sky) {
         case SkyLookups::One:
@@ -55,7 +55,9 @@ std::vector<double> moments_of(int frame, const RenderOptions& options) {
 }
 
 Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderOptions& options) {
-    auto prepared = prepare(scene);
+    Scene shown = scene;
+    if (!options.lighting.spray) row_of(Effect::Spray).turn_off(shown);
+    auto prepared = prepare(std::move(shown));
     const ProjectedGridOptions grid = projected_grid_options(*prepared);
     std::optional<ProjectedGridNeeds> needs;
     std::optional<View> before;
@@ -75,7 +77,6 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
                                          .filter = options.filter});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
-    if (options.lighting.spray) query.products |= products(Product::Displacement);
     return make_plan(std::move(prepared), {query}, {.knobs = options.knobs, .filter = options.filter});
 }
 

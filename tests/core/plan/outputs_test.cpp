@@ -59,7 +59,7 @@ TEST(Outputs, OfOneFrameOfManyAskForThatFrameAlone) {
     const std::array frames{77};
     std::vector<OutputRequest> requests;
     for (const OutputRow& row : output_table())
-        row.add(row, {.prepared = *prepared, .surface = surface, .frames = frames, .gone = {}}, requests);
+        row.add(row, {.prepared = *prepared, .surface = surface, .frames = frames}, requests);
     EXPECT_GT(requests.size(), 2u);
     EXPECT_EQ(surface.asked, std::vector<int>{77});
 }

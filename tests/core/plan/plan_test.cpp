@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
-#include <array>
 
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
@@ -258,48 +257,6 @@ TEST(Plan, AnswersAtOnceForTheLargestSea) {
     EXPECT_GT(plan.frame_bytes(), std::size_t{1} << 30);  // nothing of which was allocated
     const std::string page = explain(plan);
     EXPECT_NE(page.find("8192"), std::string::npos);
-}
-
-// A made-up effect that remembers: its row is all that the plan needs to know of it.
-TEST(Effects, MayAskForFieldsProductsBytesAndEarlierTimes) {
-    const std::array table{EffectRow{
-        "memory", [](const Scene& scene) { return scene.effects.whitecaps; }, "whitecaps are off",
-        [](Scene& scene) { scene.effects.whitecaps = false; }, [] { return FieldSet(); },
-        [] { return ProductSet(); },
-        [](const Scene&) {
-            Query query;
-            query.name = "memory's points";
-            query.products = products(Product::Velocity);
-            query.points = 64;
-            return EffectNeeds{
-                .queries = {query}, .bytes = 4096, .earlier = TimeLattice{.step_s = 0.25, .count = 8}};
-        }}};
-    Scene scene;
-    Query asked;
-    asked.name = "points";
-    asked.products = products(Product::Position);
-    const Plan without = make_plan(scene, {asked}, {.effects = {}});
-    const Plan with = make_plan(scene, {asked}, {.effects = table});
-    ASSERT_EQ(with.effects.size(), 1u);
-    ASSERT_EQ(with.queries.size(), 2u);
-    EXPECT_EQ(with.effects[0].queries, std::vector<int>{1});
-    EXPECT_EQ(fields_of_plan(without) & velocity_fields(), FieldSet());
-    EXPECT_EQ(fields_of_plan(with) & velocity_fields(), velocity_fields());
-    EXPECT_GT(with.frame_bytes(), without.frame_bytes() + 4096);
-    EXPECT_NE(explain(with).find("memory: 1 queries"), std::string::npos);
-    scene.effects.whitecaps = false;
-    EXPECT_TRUE(make_plan(scene, {asked}, {.effects = table}).effects.empty());
-}
-
-// The times are multiples of the step, not later than the frame's own, and the same for neighbouring frames.
-TEST(Effects, RememberOnALatticeOfAbsoluteTimes) {
-    const TimeLattice lattice{.step_s = 0.25, .count = 3};
-    EXPECT_EQ(times_before(lattice, 1.1), (std::vector<double>{1.0, 0.75, 0.5}));
-    EXPECT_EQ(times_before(lattice, 1.2), times_before(lattice, 1.1));
-    EXPECT_EQ(times_before(lattice, 1.0), times_before(lattice, 1.1));
-    EXPECT_EQ(times_before(lattice, -0.1), (std::vector<double>{-0.25, -0.5, -0.75}));
-    const TimeLattice odd{.step_s = 0.1, .count = 1};
-    for (int i = 0; i < 1000; ++i) EXPECT_LE(times_before(odd, 0.1 * i).front(), 0.1 * i);
 }
 
 // What a camera sees never decides which rungs there are, only how many of them are needed.

@@ -171,6 +171,13 @@ class Scene(unittest.TestCase):
     def test_explain_says_what_the_sea_does(self):
         self.assertIn("transforms", pelagic.explain(small_scene()))
 
+    def test_effects_are_those_that_are_on(self):
+        scene = small_scene()
+        scene.effects.whitecaps, scene.effects.spray = False, True
+        self.assertEqual(pelagic.effects(scene), ["horizontal displacement"])
+        scene.effects.whitecaps = True
+        self.assertIn("spray", pelagic.effects(scene))
+
 
 class Patch(unittest.TestCase):
     def test_points_and_quads_are_in_the_files_order(self):

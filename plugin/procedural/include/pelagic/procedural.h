@@ -10,6 +10,7 @@
  *   pelagic_expand(frame, &camera, &options, &buffers, &error);
  *   pelagic_prepare(frame, &points, &error);
  *   pelagic_evaluate(frame, &points, &values, &error);
+ *   pelagic_water_at(frame, places, count, footprint_m, water, &error);
  *   pelagic_intersect(frame, &rays, &hits, &error);
  *   pelagic_frame_release(frame);
  *   pelagic_close(sea);
@@ -231,6 +232,23 @@ PELAGIC_API pelagic_status pelagic_prepare(const pelagic_frame* frame, const pel
 /* Each value depends on its point alone, and is finite where the point's place is. */
 PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
                                             const pelagic_values* values, pelagic_error* error);
+
+/* ---- The water above places */
+
+typedef struct pelagic_water {
+    size_t size;
+    float height_m;        /* z, in the world */
+    float normal[3];       /* unit */
+    float velocity_mps[3]; /* of the water at that height */
+} pelagic_water;
+
+/* The water above `count` places (x, y) of the world, in the middle of the shutter: what floats there asks it. The points at rest that are
+ * displaced to the places are found by iteration, to a millimetre; where the surface has folded over itself its highest sheet counts.
+ * footprint_m: about the width of what floats; waves shorter than twice that are left out; 0: the finest there is. `water`: an array as
+ * long as the places, each as large as the size of the first says. Each answer depends on its place alone, and is finite; what is no
+ * place is refused. Some 10 us a place and, where the surface has folded nearby, a millisecond. */
+PELAGIC_API pelagic_status pelagic_water_at(const pelagic_frame* frame, const double* places_m, size_t count,
+                                            double footprint_m, pelagic_water* water, pelagic_error* error);
 
 /* ---- Rays */
 

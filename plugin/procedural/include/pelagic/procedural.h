@@ -34,9 +34,8 @@
  * pelagic_frame_set() or pelagic_frame_release() runs on it. pelagic_open(), pelagic_frame_create(), pelagic_frame_set(),
  * pelagic_prepare(), pelagic_expand_size() and pelagic_expand() use several threads (pelagic_open_options.threads); all others work on the calling thread
  * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Where foam is
- * persistent, calls that want coverage or age_s look into its past one after another. Frames are made and released, and foam is
- * asked for, with FFTW's planner, of which a process has one that isn't safe between libraries: a host that plans with FFTW itself, or has
- * another copy of Pelagic, must not do so at the same moment.
+ * persistent, calls that want coverage or age_s look into its past one after another. FFTW's planner, of which a process has one, is
+ * made safe between threads (fftwf_make_planner_thread_safe) by the first frame: a host that plans with FFTW itself shares its lock.
  *
  * Errors. Each function returns a status. Where it isn't PELAGIC_OK, `error`, which may be null, has a sentence for people. What is refused
  * (PELAGIC_INVALID_ARGUMENT, PELAGIC_SHOT_REFUSED, PELAGIC_TOO_SMALL) leaves all results as they were; after other failures what buffers

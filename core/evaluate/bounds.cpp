@@ -1,6 +1,7 @@
 #include "core/evaluate/bounds.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "core/base/constants.h"
 #include "core/evaluate/prepared_query.h"
 #include "core/plan/grid_layout.h"
+#include "core/surface/rungs.h"
 
 namespace pelagic {
 namespace {
@@ -536,6 +538,30 @@ DisplacementBounds FrameBounds<T>::everywhere() const {
                      glm::dvec2(0.0));
 }
 
+template <class T>
+const FrameBounds<T>& BoundsByLevel<T>::from_level(double level_m) const {
+    const std::lock_guard lock(lock_);
+    std::unique_ptr<FrameBounds<T>>& bounds = bounds_[level_m];
+    // By this thread alone, which must not take up other work meanwhile: that might wait for the lock.
+    tbb::task_arena(1).execute([&] {
+        if (!bounds)
+            bounds = std::make_unique<FrameBounds<T>>(
+                *frame_, static_cast<int>(query_),
+                FootprintRange{.finest_m = level_m, .coarsest_m = 2.0 * level_m});
+        else if (!bounds->is_current())
+            bounds->refresh();
+    });
+    return *bounds;
+}
+
+template <class T>
+const FrameBounds<T>& BoundsByLevel<T>::of_cell(double cell_m) const {
+    const double from_m = std::max(cell_m, finest_cell_m());
+    return from_level(from_m > 0.0 ? rung_below_m(from_m) : 0.0);
+}
+
+template class BoundsByLevel<float>;
+template class BoundsByLevel<double>;
 template class FrameBounds<float>;
 template class FrameBounds<double>;
 

@@ -6,6 +6,9 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -103,6 +106,28 @@ class FrameBounds {
     std::vector<double> finest_weight_, coarsest_weight_;  // of each train, at the ends of the range
     double smallest_block_m_ = 0.0;  // of the finest grid: smaller ones are bounded no better
     long times_set_ = -1;
+};
+
+// The bounds of a query's levels of footprints, powers of two, made when asked for. As FrameBounds, but for any time of
+// the frame: it notices that the frame was set.
+template <class T>
+class BoundsByLevel {
+  public:
+    // Nothing is made yet, so the frame needs no time.
+    BoundsByLevel(const Frame<T>& frame, std::size_t query) : frame_(&frame), query_(query) {}
+
+    // For all cells from the level on, up to twice as large.
+    const FrameBounds<T>& from_level(double level_m) const;
+    // For cells of this footprint [m] and what is beside it.
+    const FrameBounds<T>& of_cell(double cell_m) const;
+    // The query's first: finer ones count as that [m].
+    double finest_cell_m() const { return frame_->sea().plan().queries.at(query_).query.cell_m.front(); }
+
+  private:
+    const Frame<T>* frame_;
+    std::size_t query_;
+    mutable std::mutex lock_;
+    mutable std::map<double, std::unique_ptr<FrameBounds<T>>> bounds_;
 };
 
 }  // namespace pelagic

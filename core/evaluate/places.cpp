@@ -104,9 +104,9 @@ void find_some(const PreparedQuery<T>& query, const Points<T>& places, const Pla
 
 template <class T>
 void find_rest(const PreparedQuery<T>& query, const Points<T>& places, const PlaceSearch& search,
-               Strided<glm::vec<2, T>> rest_m, Strided<T> residual_m) {
+               Strided<glm::vec<2, T>> rest_m, Strided<T> residual_m, bool alone) {
     using Blocks = tbb::blocked_range<std::size_t>;
-    tbb::parallel_for(Blocks(0, places.count, kAtOnce), [&](const Blocks& range) {
+    const auto find = [&](const Blocks& range) {
         for (std::size_t begin = range.begin(); begin < range.end(); begin += kAtOnce) {
             const std::size_t end = std::min(begin + kAtOnce, range.end());
             std::vector<Search> searches;
@@ -118,12 +118,14 @@ void find_rest(const PreparedQuery<T>& query, const Points<T>& places, const Pla
                 if (residual_m) residual_m[i] = static_cast<T>(searches[i - begin].residual_m());
             }
         }
-    });
+    };
+    const Blocks all(0, places.count, kAtOnce);
+    alone ? find(all) : tbb::parallel_for(all, find);
 }
 
 template void find_rest(const PreparedQuery<float>&, const Points<float>&, const PlaceSearch&,
-                        Strided<glm::vec2>, Strided<float>);
+                        Strided<glm::vec2>, Strided<float>, bool);
 template void find_rest(const PreparedQuery<double>&, const Points<double>&, const PlaceSearch&,
-                        Strided<glm::dvec2>, Strided<double>);
+                        Strided<glm::dvec2>, Strided<double>, bool);
 
 }  // namespace pelagic

@@ -1,10 +1,11 @@
-// Whether a point of the world lies in the water: the surface above it.
+// The surface above places of the world, the highest of its sheets where it has folded over itself.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include "core/waves/frame.h"
+#include "core/evaluate/bounds.h"
+#include "core/evaluate/places.h"
 
 namespace pelagic {
 
@@ -18,5 +19,14 @@ namespace pelagic {
 // std::invalid_argument for a query without Product::Position, or a frame without a time.
 template <class T>
 std::optional<double> surface_above(const Frame<T>& frame, int query, glm::dvec3 point_m, double cell_m);
+
+// As find_rest(), but where the surface has folded over itself, the point at rest of its highest sheet there. Round the
+// one that find_rest() finds 24 points say whether the surface has folded nearby, which takes as long as finding it;
+// where it has, all that may be displaced to the place is searched as above, which takes a millisecond, and for the
+// first such place of a time some 50 more. Cells are taken as round. `bounds`: those of the prepared query.
+template <class T>
+void find_highest_rest(const BoundsByLevel<T>& bounds, const PreparedQuery<T>& query, const Points<T>& places,
+                       const PlaceSearch& search, Strided<glm::vec<2, T>> rest_m, Strided<T> residual_m,
+                       bool alone = false);
 
 }  // namespace pelagic

@@ -14,7 +14,7 @@
 namespace pelagic {
 namespace {
 
-// FFTW's planner is not thread-safe (its execution is).
+// FFTW's planner is not thread-safe (its execution is): all who use it have FFTW's own lock, and we this one beside it.
 std::mutex& planner_of_process() {
     static std::mutex mutex;
     return mutex;
@@ -45,11 +45,28 @@ unsigned effort() {
     return FFTW_ESTIMATE;
 }
 
+// Adds to FFTW's wisdom. A different build of FFTW rejects it: no effect then. Double precision serves as reference only.
+void remember() {
+    fftwf_import_wisdom_from_string(kSingleLineWisdom);
+}
+
+// Once in a process, before the first plan: others may plan from then on as well, since FFTW's lock doesn't guard its wisdom.
+void begin_planning() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        fftwf_make_planner_thread_safe();
+        fftw_make_planner_thread_safe();
+        remember();
+    });
+}
+
 void plan_by(Planning wanted) {
     const std::lock_guard lock(planner());
+    begin_planning();
     fftwf_forget_wisdom();
     fftw_forget_wisdom();
     planning = wanted;
+    if (planning == Planning::Recorded) remember();
 }
 
 template <class T>
@@ -62,8 +79,6 @@ struct Fftw<float> {
     static constexpr auto execute = fftwf_execute_split_dft;
     static constexpr auto destroy_plan = fftwf_destroy_plan;
     using Dimension = fftwf_iodim;
-    // Adds to FFTW's wisdom. A different build of FFTW rejects it: no effect then.
-    static void remember() { fftwf_import_wisdom_from_string(kSingleLineWisdom); }
 };
 template <>
 struct Fftw<double> {
@@ -72,7 +87,6 @@ struct Fftw<double> {
     static constexpr auto execute = fftw_execute_split_dft;
     static constexpr auto destroy_plan = fftw_destroy_plan;
     using Dimension = fftw_iodim;
-    static void remember() {}  // double precision serves as reference only
 };
 
 }  // namespace
@@ -106,10 +120,10 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
     auto plan = std::make_shared<Plan>();
     {
         const std::lock_guard lock(planner());
-        // Each time: the host may have called fftw_forget_wisdom. Lengths without wisdom use FFTW's estimate,
-        // which is good for single 1-D transforms out of place: within a fifth of its longest search. (For
-        // 2-D, strided or in-place transforms estimates are up to ten times slower.)
-        if (planning == Planning::Recorded) Fftw<T>::remember();
+        begin_planning();
+        // Lengths without wisdom use FFTW's estimate, which is good for single 1-D transforms out of place: within
+        // a fifth of its longest search. (For 2-D, strided or in-place transforms estimates are up to ten times
+        // slower.)
         plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + stride, from.data(),
                                      to.data() + stride, to.data(), effort() | FFTW_PRESERVE_INPUT);
     }

@@ -14,7 +14,7 @@ namespace pelagic {
 // f(j) = Σ F(m) exp(+2πi m j/N), m and j from 0 to N − 1: unnormalised, single-threaded, out of place. Real
 // parts begin at the pointer, imaginary parts line_stride(N) later, both aligned to 64 bytes. The input is
 // preserved. Plans come from recorded wisdom or FFTW's estimate and never from timing, so that every run
-// computes the same bits (unless the host gives FFTW other wisdom). Several threads may call execute() at
+// computes the same bits (unless the host gives FFTW other wisdom, or makes it forget). Several threads may call execute() at
 // once.
 template <class T>
 class LineTransform {

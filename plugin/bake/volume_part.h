@@ -43,7 +43,7 @@ class VolumePart : public OutputPart {
     // neighbours, …) sees the values of the query's products there.
     template <class T>
     struct Row {
-        std::vector<glm::vec<2, T>> places_m, rest_m;
+        std::vector<glm::vec<2, T>> places_m;
         std::vector<glm::vec<3, T>> displacement_m;
         std::vector<T> breaking;
     };
@@ -65,17 +65,14 @@ class VolumePart : public OutputPart {
                 for (const double x_m : places_m)
                     at.places_m.emplace_back(static_cast<T>(x_m), static_cast<T>(places_m[row]));
             const std::size_t count = at.places_m.size();
-            at.rest_m.resize(count);
             at.displacement_m.resize(count);
-            find_rest<T>(ask, {.count = count, .rest_m = {at.places_m.data()}}, search, {at.rest_m.data()},
-                         {});
             Results<T> results;
             results.set(Product::Displacement, {at.displacement_m.data()});
             if (query().products[index(Product::Breaking)]) {
                 at.breaking.resize(count);
                 results.set(Product::Breaking, {at.breaking.data()});
             }
-            ask.evaluate({.count = count, .rest_m = {at.rest_m.data()}}, results);
+            evaluate_at<T>(ask, {.count = count, .rest_m = {at.places_m.data()}}, search, results);
             take(first * a_row, at);
         }
     }

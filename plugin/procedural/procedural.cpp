@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/scene/limits.h"
 #include "core/surface/earth.h"
@@ -311,6 +312,33 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
         const ShotFrame& of = required(frame, "frame").frame;
         const TimedPoints timed = checked(of, asked);
         if (timed.points.count > 0) of.evaluate(timed, wanted.results, wanted.coverage);
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_water_at(const pelagic_frame* frame, const double* places_m, size_t count,
+                                double footprint_m, pelagic_water* water, pelagic_error* error) {
+    return guarded(error, [&] {
+        const ShotFrame& of = required(frame, "frame").frame;
+        if (!(footprint_m >= 0.0 && footprint_m <= 1e6))
+            throw std::invalid_argument("footprint_m is outside the range; accepted: 0 to 1e6 m");
+        if (count == 0) return PELAGIC_OK;
+        check_count(count, "count");
+        required(places_m, "places_m");
+        const std::size_t size = checked_size(water, "water");
+        std::vector<glm::dvec2> places(count);
+        for (std::size_t i = 0; i < count; ++i) places[i] = {places_m[2 * i], places_m[2 * i + 1]};
+        std::vector<WaterState> found(count);
+        of.water_at(places, static_cast<float>(footprint_m), found);
+        for (std::size_t i = 0; i < count; ++i) {
+            const WaterState& here = found[i];
+            const pelagic_water there{
+                .size = size,
+                .height_m = here.height_m,
+                .normal = {here.normal.x, here.normal.y, here.normal.z},
+                .velocity_mps = {here.velocity_mps.x, here.velocity_mps.y, here.velocity_mps.z}};
+            std::memcpy(reinterpret_cast<char*>(water) + i * size, &there, std::min(size, sizeof there));
+        }
         return PELAGIC_OK;
     });
 }

@@ -27,8 +27,8 @@ namespace {
 constexpr std::size_t kRayCache_bytes = std::size_t{256} << 20;
 
 constexpr ProductSet kProducts =
-    products(Product::Position, Product::Normal, Product::Velocity, Product::SlopeVariance, Product::Coverage,
-             Product::Breaking, Product::FoamAge);
+    products(Product::Position, Product::Displacement, Product::Normal, Product::Velocity,
+             Product::SlopeVariance, Product::Coverage, Product::Breaking, Product::FoamAge);
 
 // finest_cell_m: becomes what was asked for, or what the shot's camera needs.
 Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
@@ -151,7 +151,6 @@ void ShotFrame::set(double open_s, double close_s) {
             without_past_.emplace(state_.frame(), 0, now, glm::dvec2(0.0), &*of_->without_past);
         half_open_s_ = 0.5 * (close_s - open_s);
         fastest_mps_ = glm::dvec3(0.0);
-        bounds_.clear();
         tiles_.reset();
         everywhere_.reset();
         cells_.reset();
@@ -177,27 +176,15 @@ void ShotFrame::check_times(const float* time_s, std::size_t count, const char* 
                 " s, when the shutter isn't open; accepted: 0 to " + number_text(open_for_s) + " s");
 }
 
-const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
-    const std::lock_guard<std::mutex> lock(lock_);
-    auto& bounds = bounds_[rung_m];
-    // By this thread alone, which must not take up other work meanwhile: that might wait for the lock.
-    if (!bounds)
-        tbb::task_arena(1).execute([&] {
-            bounds = std::make_unique<const FrameBounds<float>>(
-                state_.frame(), 0, FootprintRange{.finest_m = rung_m, .coarsest_m = 2.0 * rung_m});
-        });
-    return *bounds;
-}
-
 // Level by level: a bound that holds for all footprints of a wide range would be loose for each.
 template <class Bound>
 DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
     double rung_m = rung_below_m(std::max(cells.finest_m, of_->finest_cell_m()));
-    DisplacementBounds all = bound(bounds_from(rung_m));
+    DisplacementBounds all = bound(bounds_.from_level(rung_m));
     // Where a footprint resolves no waves, nothing moves, and larger ones change nothing.
     const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
     for (bool goes_on = moves(all); goes_on && 2.0 * rung_m < cells.coarsest_m;) {
-        const DisplacementBounds here = bound(bounds_from(rung_m *= 2.0));
+        const DisplacementBounds here = bound(bounds_.from_level(rung_m *= 2.0));
         goes_on = moves(here);
         for (const auto axis : {&DisplacementBounds::z, &DisplacementBounds::dx, &DisplacementBounds::dy}) {
             (all.*axis).lo = std::min((all.*axis).lo, (here.*axis).lo);
@@ -293,6 +280,11 @@ void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results, Cover
 void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float>& results,
                                 CoverageOf coverage) const {
     ask(points, results, coverage, false);
+}
+
+void ShotFrame::water_at(std::span<const glm::dvec2> places_m, float footprint_m,
+                         std::span<WaterState> water) const {
+    pelagic::water_at(bounds_, *query_, places_m, footprint_m, water, true);
 }
 
 void ShotFrame::prepare(const Points<float>& points) const {

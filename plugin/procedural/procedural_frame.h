@@ -5,15 +5,14 @@
 
 #include <cstddef>
 #include <glm/vec3.hpp>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/effects/sea_at_time.h"
-#include "core/evaluate/bounds.h"
-#include "core/evaluate/prepared_query.h"
+#include "core/evaluate/water.h"
 #include "core/plan/plan.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
@@ -92,12 +91,12 @@ class ShotFrame {
     // The same in the middle of the shutter, by all threads of the calling arena.
     void evaluate_by_all(const Points<float>& points, const Results<float>& results,
                          CoverageOf coverage = CoverageOf::AllFoam) const;
+    // Above places of the world in the middle of the shutter, by the calling thread alone; 0: the finest footprints.
+    void water_at(std::span<const glm::dvec2> places_m, float footprint_m, std::span<WaterState> water) const;
     // Goes through the past of the foam at these points, by several threads.
     void prepare(const Points<float>& points) const;
 
   private:
-    // Bounds for cells from this level to the next.
-    const FrameBounds<float>& bounds_from(double rung_m) const;
     template <class Bound>
     DisplacementBounds over_rungs(FootprintRange cells, const Bound& bound) const;
 
@@ -106,12 +105,11 @@ class ShotFrame {
 
     std::shared_ptr<const ShotSea> of_;
     SeaAtTime<float> state_;
+    BoundsByLevel<float> bounds_{state_.frame(), 0};
     std::optional<PreparedQuery<float>> query_, without_past_;
     double half_open_s_ = 0.0;
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
     mutable std::mutex lock_;      // of members that are made when asked for
-    mutable std::map<double, std::unique_ptr<const FrameBounds<float>>>
-        bounds_;  // by level, made when asked for
     mutable std::unique_ptr<const SurfaceTiles> tiles_;
     mutable std::optional<SurfaceBounds> everywhere_;
     struct Cells {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/effects/sea_at_time.h"
-#include "core/evaluate/places.h"
+#include "core/evaluate/surface_above.h"
 #include "core/scene/limits.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -220,7 +220,9 @@ class PythonFrame {
                                               .rest_m = from(points.rest_m, first),
                                               .cell_m = from(points.cell_m, first),
                                               .pixel_m = from(points.pixel_m, first)};
-                    alone([&] { find_rest(query, piece, {}, {&rest_m[first]}, {&residual_m[first]}); });
+                    alone([&] {
+                        find_highest_rest(bounds_, query, piece, {}, {&rest_m[first]}, {&residual_m[first]});
+                    });
                 }
                 std::vector<glm::vec3> displacement_m(points.count);
                 if (!asked.results.holds(Product::Displacement))
@@ -355,6 +357,7 @@ class PythonFrame {
 
     PythonSea sea_;
     SeaAtTime<float> state_;
+    BoundsByLevel<float> bounds_{state_.frame(), 0};
     mutable std::shared_mutex mutex_;
 };
 
@@ -451,12 +454,12 @@ void add_frame(py::module_& module) {
             py::kw_only(), py::arg("footprint_m") = none(), py::arg("outputs") = none(),
             py::arg("progress") = none(), py::arg("cancel") = none(),
             "The sea above places of the world: what evaluate() gives at the points at rest that are displaced "
-            "there, found by iteration. The sea must hold positions.\n\n"
+            "there, found by iteration; where the sea has folded over itself, at the highest. The sea must hold positions.\n\n"
             "xy: numbers of shape (n, 2), relative to origin [m]. footprint_m: as cell_m and pixel_m of "
             "evaluate().\n"
             "A dict: height_m, float32 (n,); rest_m, float32 (n, 2), the points at rest; residual_m, float32 "
-            "(n,), how far from its place each one's surface is, below a millimetre but where the sea has "
-            "folded over and the search ended; and the outputs named, by default normal and velocity, of "
+            "(n,), how far from its place each one's surface is, below a millimetre but for a few places of a sea that "
+            "has folded over; and the outputs named, by default normal and velocity, of "
             "those that the sea holds. All are finite. progress, cancel: as evaluate()'s.")
         .def_property_readonly("sea", &PythonFrame::sea, "The sea that it is of.")
         .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")

@@ -143,7 +143,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
 
     const auto count = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
     using Vec = glm::vec<2, T>;
-    std::vector<Vec> places(count), axes(count), rest(count);
+    std::vector<Vec> places(count), axes(count);
     std::vector<T> widths(count), spreads(count), breaking(count);
     std::vector<glm::vec<3, T>> displacement(count);
     double finest_m = 0.0;
@@ -169,23 +169,21 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
                                          : static_cast<T>(beside_m) * Vec(-away.y, away.x);
         }
     }
-    Points<T> points{.origin_m = glm::dvec2(view.position_m),
-                     .count = count,
-                     .rest_m = {places.data()},
-                     .cell_m = {widths.data()},
-                     .pixel_m = {spreads.data()},
-                     .cell_axis_m = {axes.data()},
-                     .pixel_axis_m = {axes.data()}};
+    const Points<T> points{.origin_m = glm::dvec2(view.position_m),
+                           .count = count,
+                           .rest_m = {places.data()},
+                           .cell_m = {widths.data()},
+                           .pixel_m = {spreads.data()},
+                           .cell_axis_m = {axes.data()},
+                           .pixel_axis_m = {axes.data()}};
     const PreparedQuery<T> query(frame, kQuery, products(Product::Displacement, Product::Breaking),
                                  points.origin_m);
     // Texels are metres wide but beside the camera.
     constexpr PlaceSearch kSearch{.tolerance_m = 0.02, .most_steps = 16};
-    find_rest(query, points, kSearch, Strided<Vec>{rest.data()}, Strided<T>{});
-    points.rest_m = {rest.data()};
     Results<T> results;
     results.set(Product::Displacement, {displacement.data()});
     results.set(Product::Breaking, {breaking.data()});
-    query.evaluate(points, results);
+    evaluate_at(query, points, kSearch, results);
 
     spray.texels.resize(count);
     spray.top_m = -std::numeric_limits<float>::infinity();

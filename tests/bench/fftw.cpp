@@ -125,7 +125,7 @@ std::vector<Timed> BareFftw::fastest(int threads) {
     }
     fftwf_set_timelimit(FFTW_NO_TIMELIMIT);
     fftwf_plan_with_nthreads(1);
-    fftwf_forget_wisdom();
+    only_recorded_plans();
     return best;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/buffer.h"
+#include "core/waves/planning.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {
@@ -60,7 +61,11 @@ class BareFftw {
 };
 
 // Lines of n values, as core/waves/transform lays them out, planned for long: what FFTW knows afterwards
-// makes LineTransform take the fastest plans that there are, until fftwf_forget_wisdom().
+// makes LineTransform take the fastest plans that there are, until only_recorded_plans().
 void learn_lines(int n);
+// What FFTW has learnt is forgotten, but for the recorded plans.
+inline void only_recorded_plans() {
+    const PlannedBy recorded(Planning::Recorded);
+}
 
 }  // namespace pelagic::bench

@@ -2,7 +2,6 @@
 // alone, in whichever arrangement and with whichever planning is fastest here, in the same process.
 //   frame [RESOLUTION…]      default: every row; else the squares of these resolutions only
 
-#include <fftw3.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -39,9 +38,9 @@ int repeats_of(int n) {
     return n <= 512 ? 61 : n <= 1024 ? 31 : n <= 2048 ? 15 : 7;
 }
 
-// Plans by FFTW's estimate alone, whatever was planned before.
+// Plans as every program does, whatever was planned before.
 Frame<float> unaided_frame(std::shared_ptr<const Sea<float>> sea) {
-    fftwf_forget_wisdom();
+    only_recorded_plans();
     return Frame<float>(std::move(sea));
 }
 
@@ -170,7 +169,7 @@ void same_every_time() {
         Frame<float> ours = unaided_frame(sea), other = unaided_frame(sea);
         learn_lines(n);
         Frame<float> free(sea);
-        fftwf_forget_wisdom();
+        only_recorded_plans();
         std::vector<float> first;
         for (const int threads : kThreads) {
             const Threads limit(threads);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 
 #include "tests/core/waves/samples.h"
 
@@ -77,6 +79,119 @@ TEST_P(EachModel, NoSheetOfAFoldedSeaIsMissed) {
         EXPECT_NEAR(*again, *highest, 1e-3);
     }
     EXPECT_GT(folded, 3);  // otherwise this has shown nothing
+}
+
+// ---- find_highest_rest()
+
+struct Highest {
+    std::vector<glm::vec2> rest_m;
+    std::vector<float> residual_m, height_m;
+};
+Highest highest(const Frame<float>& frame, const std::vector<glm::vec2>& places, glm::dvec2 origin_m = {},
+                bool alone = false) {
+    const std::size_t n = places.size();
+    Highest found{std::vector<glm::vec2>(n), std::vector<float>(n), std::vector<float>(n)};
+    const BoundsByLevel<float> bounds(frame, 0);
+    const PreparedQuery<float> query(frame, 0, products(Displacement), origin_m);
+    Points<float> points{.origin_m = origin_m, .count = n, .rest_m = {places.data()}};
+    find_highest_rest(bounds, query, points, {}, {found.rest_m.data()}, {found.residual_m.data()}, alone);
+    points.rest_m = {found.rest_m.data()};
+    std::vector<glm::vec3> displacement_m(n);
+    Results<float> results;
+    results.set(Displacement, {displacement_m.data()});
+    query.evaluate(points, results);
+    for (std::size_t i = 0; i < n; ++i) found.height_m[i] = displacement_m[i].z;
+    return found;
+}
+Frame<float> frame_for_places(WaveModel model, double choppiness) {
+    return frame_of<float>(sea_of(model, choppiness), {filtered(products(Displacement), kCell_m)}, 2.5);
+}
+
+// The greatest height over each place of a mesh that is finer than every wave, and how many of its sheets lie there.
+struct MeshHeights {
+    std::vector<double> highest_m;
+    std::vector<int> sheets;
+};
+MeshHeights of_fine_mesh(const Frame<float>& frame, const std::vector<glm::vec2>& places, double half_m) {
+    constexpr double kSpacing_m = 0.1;
+    const auto side = static_cast<std::size_t>(2.0 * half_m / kSpacing_m) + 1;
+    std::vector<glm::vec2> rest;
+    for (std::size_t j = 0; j < side; ++j)
+        for (std::size_t i = 0; i < side; ++i) rest.emplace_back(kSpacing_m * glm::dvec2(i, j) - half_m);
+    std::vector<glm::vec3> moved(rest.size());
+    Results<float> results;
+    results.set(Displacement, {moved.data()});
+    evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
+    MeshHeights mesh{std::vector<double>(places.size(), -kFar_m), std::vector<int>(places.size())};
+    const auto at = [&](std::size_t k) { return glm::dvec3(moved[k]) + glm::dvec3(rest[k], 0.0); };
+    const auto add = [&](std::size_t ka, std::size_t kb, std::size_t kc) {
+        const glm::dvec3 a = at(ka), b = at(kb), c = at(kc);
+        const glm::dvec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const glm::dvec2 p(places[i]);
+            if (p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y) continue;
+            const auto cross = [](glm::dvec3 u, glm::dvec3 v, glm::dvec2 w) {
+                return (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x);
+            };
+            const double of_a = cross(b, c, p), of_b = cross(c, a, p), of_c = cross(a, b, p),
+                         all = of_a + of_b + of_c;
+            if (all == 0.0 || of_a / all < 0.0 || of_b / all < 0.0 || of_c / all < 0.0) continue;
+            mesh.highest_m[i] = std::max(mesh.highest_m[i], (of_a * a.z + of_b * b.z + of_c * c.z) / all);
+            ++mesh.sheets[i];
+        }
+    };
+    for (std::size_t k = 0; k + side < rest.size(); ++k) {
+        if (k % side + 1 == side) continue;
+        add(k, k + 1, k + side);
+        add(k + 1, k + side + 1, k + side);
+    }
+    return mesh;
+}
+
+TEST_P(EachModel, TheHeightAtAPlaceIsThatOfTheHighestSheetOfAFineMesh) {
+    for (const double choppiness : {1.0, 10.0}) {
+        const auto frame = frame_for_places(GetParam(), choppiness);
+        const auto places = random_points<float>(20.0, 200);
+        const Highest found = highest(frame, places);
+        const MeshHeights mesh = of_fine_mesh(frame, places, 40.0);
+        const auto several =
+            std::count_if(mesh.sheets.begin(), mesh.sheets.end(), [](int n) { return n > 1; });
+        if (choppiness > 1.0)
+            EXPECT_GT(several, 10);
+        else
+            EXPECT_LT(several, 5);  // rounding at an edge
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            // Beside an edge of a fold the mesh, or the millimetre, ends on the other side of it.
+            EXPECT_LE(found.residual_m[i], 1e-3f) << i;
+            EXPECT_NEAR(static_cast<double>(found.height_m[i]), mesh.highest_m[i],
+                        choppiness > 1.0 ? 0.1 : 0.02)
+                << "choppiness " << choppiness << ", place " << i;
+        }
+    }
+}
+
+TEST_P(EachModel, TheHighestOfAFoldedSeaIsThatOfTheWholeSearch) {
+    const auto frame =
+        frame_of<float>(sea_of(GetParam(), 10.0), {filtered(products(Displacement, Position), kCell_m)}, 2.5);
+    const auto places = random_points<float>(300.0, 60, 5);
+    const Highest found = highest(frame, places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto whole = surface_above(frame, 0, glm::dvec3(glm::dvec2(places[i]), -kFar_m), kCell_m);
+        ASSERT_TRUE(whole);
+        EXPECT_NEAR(static_cast<double>(found.height_m[i]), *whole, 0.03) << i;
+    }
+}
+
+TEST_P(EachModel, APlaceHasTheSameHighestAloneAndInCompany) {
+    const auto frame = frame_for_places(GetParam(), 6.0);
+    const auto places = random_points<float>(300.0, 200);
+    const Highest together = highest(frame, places), by_one_thread = highest(frame, places, {}, true);
+    EXPECT_EQ(together.rest_m, by_one_thread.rest_m);
+    for (const std::size_t i : {0, 17, 150, 199})
+        EXPECT_EQ(highest(frame, {places[i]}).rest_m[0], together.rest_m[i]);
+    EXPECT_TRUE(highest(frame, {}).rest_m.empty());
+    const Highest far = highest(frame, places, {2e6, -3e6});
+    EXPECT_LE(*std::max_element(far.residual_m.begin(), far.residual_m.end()), 1e-3f);
 }
 
 INSTANTIATE_TEST_SUITE_P(SurfaceAbove, EachModel, testing::Values(WaveModel::Fft, WaveModel::Trochoid),

@@ -51,7 +51,6 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
         }
     std::vector<float> cells(places.size(), static_cast<float>(cell_m)),
         spreads(places.size(), static_cast<float>(std::max(cell_m, kScale_m))), coverage(places.size());
-    std::vector<glm::vec2> rest(places.size());
     std::vector<glm::vec3> displacement(places.size());
     Points<float> points{.origin_m = glm::dvec2(eye_m),
                          .count = places.size(),
@@ -60,12 +59,10 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
                          .pixel_m = {spreads.data()}};
     const PreparedQuery<float> query(frame, 0, products(Product::Displacement, Product::Breaking),
                                      points.origin_m);
-    find_rest(query, points, {}, Strided<glm::vec2>{rest.data()}, Strided<float>{});
-    points.rest_m = {rest.data()};
     Results<float> results;
     results.set(Product::Displacement, {displacement.data()});
     results.set(Product::Breaking, {coverage.data()});
-    query.evaluate(points, results);
+    evaluate_at(query, points, {}, results);
     std::vector<SprayRay> met;
     for (std::size_t i = 0; i < steps.size();) {
         SprayRay ray{.direction = rays[steps[i].ray].direction};

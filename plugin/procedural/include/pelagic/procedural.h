@@ -10,6 +10,7 @@
  *   pelagic_expand(frame, &camera, &options, &buffers, &error);
  *   pelagic_prepare(frame, &points, &error);
  *   pelagic_evaluate(frame, &points, &values, &error);
+ *   pelagic_water_at(frame, places, count, footprint_m, water, &error);
  *   pelagic_intersect(frame, &rays, &hits, &error);
  *   pelagic_frame_release(frame);
  *   pelagic_close(sea);
@@ -33,9 +34,8 @@
  * pelagic_frame_set() or pelagic_frame_release() runs on it. pelagic_open(), pelagic_frame_create(), pelagic_frame_set(),
  * pelagic_prepare(), pelagic_expand_size() and pelagic_expand() use several threads (pelagic_open_options.threads); all others work on the calling thread
  * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Where foam is
- * persistent, calls that want coverage or age_s look into its past one after another. Frames are made and released, and foam is
- * asked for, with FFTW's planner, of which a process has one that isn't safe between libraries: a host that plans with FFTW itself, or has
- * another copy of Pelagic, must not do so at the same moment.
+ * persistent, calls that want coverage or age_s look into its past one after another. FFTW's planner, of which a process has one, is
+ * made safe between threads (fftwf_make_planner_thread_safe) by the first frame: a host that plans with FFTW itself shares its lock.
  *
  * Errors. Each function returns a status. Where it isn't PELAGIC_OK, `error`, which may be null, has a sentence for people. What is refused
  * (PELAGIC_INVALID_ARGUMENT, PELAGIC_SHOT_REFUSED, PELAGIC_TOO_SMALL) leaves all results as they were; after other failures what buffers
@@ -231,6 +231,23 @@ PELAGIC_API pelagic_status pelagic_prepare(const pelagic_frame* frame, const pel
 /* Each value depends on its point alone, and is finite where the point's place is. */
 PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
                                             const pelagic_values* values, pelagic_error* error);
+
+/* ---- The water above places */
+
+typedef struct pelagic_water {
+    size_t size;
+    float height_m;        /* z, in the world */
+    float normal[3];       /* unit */
+    float velocity_mps[3]; /* of the water at that height */
+} pelagic_water;
+
+/* The water above `count` places (x, y) of the world, in the middle of the shutter: what floats there asks it. The points at rest that are
+ * displaced to the places are found by iteration, to a millimetre; where the surface has folded over itself its highest sheet counts.
+ * footprint_m: about the width of what floats; waves shorter than twice that are left out; 0: the finest there is. `water`: an array as
+ * long as the places, each as large as the size of the first says. Each answer depends on its place alone, and is finite; what is no
+ * place is refused. Some 10 us a place and, where the surface has folded nearby, a millisecond. */
+PELAGIC_API pelagic_status pelagic_water_at(const pelagic_frame* frame, const double* places_m, size_t count,
+                                            double footprint_m, pelagic_water* water, pelagic_error* error);
 
 /* ---- Rays */
 

@@ -121,8 +121,6 @@ std::string explain(const Plan& plan) {
     if (!spectrum.empty()) page += format(", peak wavelength %.4g m", kTwoPi / spectrum.peak_wavenumber());
     page += format("\n  capillary-gravity dispersion, viscous cutoff at %g rad/m\n", kViscousWavenumber);
 
-    if (!plan.from->budget.empty()) page += "\nBudget\n  " + plan.from->budget + '\n';
-
     page += "\nOutputs\n";
     for (const PlannedQuery& planned : plan.queries) {
         page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +

@@ -1,22 +1,23 @@
 #include "core/plan/prepared_scene.h"
 
+#include <stdexcept>
+#include <string>
 #include <utility>
 
-#include "core/plan/budget.h"
+#include "core/scene/budget.h"
 
 namespace pelagic {
 
 std::shared_ptr<const PreparedScene> prepare(Scene scene) {
+    if (has_budget(scene.quality))
+        throw std::invalid_argument(
+            std::string(scene.quality.max_error ? "quality.max_error" : "quality.frame_ms") +
+            " isn't resolved yet: a plan takes settings, which a host chooses for a budget before it (pelagic explain "
+            "says which)");
     DirectionalSpectrum spectrum(scene.sea, scene.waves.band_gains);
     const Extent extent = expected_extent(spectrum, Choppiness::asked(scene));
-    PreparedScene prepared{std::move(scene), std::move(spectrum), extent};
-    if (has_budget(prepared.scene.quality)) {
-        MeshBudget budget = mesh_budget(prepared);
-        prepared.scene = std::move(budget.scene);
-        prepared.budget = std::move(budget.text);
-        prepared.holds_budget = budget.holds;
-    }
-    return std::make_shared<const PreparedScene>(std::move(prepared));
+    return std::make_shared<const PreparedScene>(
+        PreparedScene{std::move(scene), std::move(spectrum), extent});
 }
 
 }  // namespace pelagic

@@ -515,7 +515,7 @@ void add_effects_and_quality(Built& out) {
         row<&Quality::frame_ms>(
             {.name = "frame_ms",
              .help = "instead of level: the most accurate settings that compute a frame of a run "
-                     "in this time, on the two cores on which costs are recorded",
+                     "in this time, on the machine that begins it (pelagic calibrate)",
              .unit = "ms",
              .range = limits::kFrame_ms,
              .soft = SoftRange{1.0, 1e4, true},

@@ -197,7 +197,7 @@ struct Effects {
 // [quality]
 struct Quality {
     QualityLevel level = QualityLevel::Final;
-    // Instead of the level, one of the two (core/plan/budget.h, plugin/render/picture_budget.h).
+    // Instead of the level, one of the two (core/scene/budget.h); nothing that is planned has one.
     std::optional<double> max_error{};
     std::optional<double> frame_ms{};
 };

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "plugin/accuracy/sea_answers.h"
+#include "plugin/budget/picture_errors.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
-#include "plugin/render/picture_budget.h"
 #include "plugin/render/picture_files.h"
 
 namespace pelagic {

@@ -35,7 +35,7 @@ class SweepPicture {
     Picture picture_;
 };
 
-// relative_error() (plugin/render/picture_budget.h): the 95th percentile and the mean.
+// relative_error() (plugin/budget/picture_errors.h): the 95th percentile and the mean.
 std::vector<double> relative_errors(const Picture& picture, const Picture& reference);
 
 struct PictureSetting {

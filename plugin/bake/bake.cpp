@@ -44,7 +44,6 @@ void refuse_own_sky(const Scene& scene, const std::filesystem::path& out) {
 
 Plan planned(const Scene& scene, std::span<const int> frames, std::size_t max_memory_bytes) {
     Plan plan = plan_bake(prepare(scene), frames);
-    if (!plan.from->holds_budget) throw std::invalid_argument(plan.from->budget + "; raise the budget");
     if (plan.outputs.empty())
         throw std::invalid_argument(
             "the shot asks for no output: accepted: output.mesh, output.maps, output.volumes");

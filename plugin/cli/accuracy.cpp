@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/plan/budget.h"
 #include "core/scene/names.h"
 #include "plugin/accuracy/report.h"
+#include "plugin/budget/budget.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
@@ -110,7 +110,9 @@ int run(const AccuracyArguments& arguments) {
     refuse_rows(arguments.rows);
     const std::vector<const ApproximationRow*> rows = asked_rows(arguments.rows);
     // Sweeps turn the knobs that a budget would choose.
-    const Scene shot = settled(arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene));
+    const Scene shot =
+        held(settle(arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene), Purpose::Mesh))
+            .scene;
     const fs::path folder =
         arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
     files::ensure_folder(folder);

@@ -9,6 +9,7 @@
 
 #include "core/base/text.h"
 #include "core/plan/plan.h"
+#include "core/scene/budget.h"
 #include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/memory.h"
@@ -63,12 +64,16 @@ std::string out_of_memory(const Scene& scene, int threads) {
 }
 
 int run(const RunArguments& arguments) {
-    const Scene scene = load_shot(arguments.shot, check_scene);
+    const Scene asked = load_shot(arguments.shot, check_scene);
+    Scene scene = without_budget(asked);
     return run_frames(arguments, run_options(arguments, scene.shot),
                       {.out_of_memory = [&](int threads) { return out_of_memory(scene, threads); },
                        .work =
-                           [&](const RunOptions& options, Session&) {
+                           [&](RunOptions options, Session& session) {
                                print_warnings(arguments.shot, scene);
+                               const Settled settled = settled_for(options, asked, Purpose::Mesh, session);
+                               scene = settled.scene;
+                               options.chosen = settled.chosen();
                                return bake(scene, options);
                            },
                        .report = print_done});

@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "core/base/instruction_set.h"
-#include "core/plan/budget.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "core/scene/budget.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/measure.h"
 #include "plugin/bake/stage.h"
+#include "plugin/budget/budget.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
@@ -27,7 +28,6 @@
 #include "plugin/cli/warnings.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
-#include "plugin/render/picture_budget.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
 
@@ -110,23 +110,21 @@ int print_prices(const Scene& scene, const ExplainArguments& arguments) {
         {.shot = {}, .threads = arguments.threads, .stops = false, .out_of_memory = out_of_memory}, print);
 }
 
-// Of a shot with a budget: what pictures of it take. What a mesh of it takes is in the plan's page.
-PictureBudget print_picture_budget(const Scene& scene) {
-    if (!has_budget(scene.quality)) return picture_budget(scene);
+// What the shot's budget, if it has one, asks for.
+Settled print_settled(const Scene& scene, Purpose purpose, const std::string& title) {
     Progress progress;
-    PictureBudget budget;
+    Settled settled;
     try {
-        budget = picture_budget(
-            scene, {}, 0,
-            {.progress = [&](double done) { progress.show_measuring(done); }, .cancel = nullptr});
+        settled = settle(
+            scene, purpose,
+            {.watch = {.progress = [&](double done) { progress.show_measuring(done); }, .cancel = nullptr}});
     } catch (const std::exception& error) {  // who only bakes needs no picture
-        budget.scene = without_budget(scene);
-        budget.options = render_options(budget.scene);
-        budget.text = std::string("none: ") + error.what();
+        settled = settle(without_budget(scene), purpose);
+        settled.text = std::string("none: ") + error.what();
     }
     progress.clear();
-    std::cout << "\nBudget of pictures\n  " << budget.text << "\n\n";
-    return budget;
+    if (!settled.text.empty()) std::cout << title << "\n  " << settled.text << "\n\n";
+    return settled;
 }
 
 // What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.
@@ -158,9 +156,9 @@ Verb add_explain(CLI::App& program) {
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
     return {command, [arguments] {
                 const Scene scene = load_shot(arguments->shot, check_scene);
-                const Plan plan = plan_bake(scene);
+                const Plan plan = plan_bake(print_settled(scene, Purpose::Mesh, "Budget").scene);
                 std::cout << explain(plan);
-                const PictureBudget pictures = print_picture_budget(scene);
+                const Settled pictures = print_settled(scene, Purpose::Pictures, "\nBudget of pictures");
                 print_memory(pictures.scene, pictures.options, plan);
                 print_warnings(arguments->shot, scene);
                 return arguments->measure ? print_prices(plan.from->scene, *arguments) : int{kDone};

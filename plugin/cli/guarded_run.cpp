@@ -51,6 +51,21 @@ RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
     return options;
 }
 
+Settled settled_for(const RunOptions& options, const Scene& scene, Purpose purpose, Session& session,
+                    const FixedSettings& fixed) {
+    const BuildWatch watch{.progress = [&](double done) { session.progress.show_measuring(done); },
+                           .cancel = options.cancel};
+    Settled settled =
+        settle_for(options, scene, purpose,
+                   {.fixed = fixed, .max_memory_bytes = options.max_memory_bytes, .watch = watch},
+                   purpose == Purpose::Pictures ? "--samples and --sky-quality" : "");
+    session.progress.clear();
+    if (!settled.text.empty()) std::cout << settled.text << std::endl;
+    if (!settled.note.empty())
+        std::cerr << "pelagic: in " << line_text(options.out.string()) << ' ' << settled.note << std::endl;
+    return settled;
+}
+
 int run_frames(const RunArguments& arguments, RunOptions options, const FrameVerb& verb) {
     RunReport report;
     const std::string out = line_text(options.out.string());

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "plugin/budget/budget.h"
 #include "plugin/cli/progress.h"
 #include "plugin/cli/stop.h"
 #include "plugin/cli/threads.h"
@@ -56,6 +57,10 @@ struct RunArguments {
 };
 // Throws WrongUsage.
 RunOptions run_options(const RunArguments& arguments, const Shot& shot);
+
+// settle_for(), which says what it chose.
+Settled settled_for(const RunOptions& options, const Scene& scene, Purpose purpose, Session& session,
+                    const FixedSettings& fixed = {});
 
 // What such a verb does, beside that.
 struct FrameVerb {

@@ -18,6 +18,7 @@ const char* const kProgramFooter =
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            every key of a shot file\n"
     "  pelagic presets                         seas that a shot file can begin with\n"
+    "  pelagic calibrate                       what quality.frame_ms costs on this machine\n"
     "\n"
     "\"pelagic VERB --help\" has more on each verb.\n"
     "\n"
@@ -273,6 +274,16 @@ const char* const kPresetsFooter =
     "Examples:\n"
     "  pelagic presets\n"
     "  pelagic presets beaufort-7";
+
+const char* const kCalibrate =
+    "Measure this machine anew, for shots with quality.frame_ms.\n"
+    "A few seconds of small seas and pictures say how long it takes for what a frame consists of. That is kept\n"
+    "in the user's cache folder ($XDG_CACHE_HOME/pelagic or ~/.cache/pelagic) for the version, the CPU, the\n"
+    "number of threads and its vectors. A shot with quality.frame_ms measures by itself where nothing is kept.";
+const char* const kCalibrateFooter =
+    "Examples:\n"
+    "  pelagic calibrate                after other work slowed the machine, or its cooling changed\n"
+    "  pelagic calibrate --threads 4    for runs with --threads 4";
 
 std::string version_text() {
 #ifdef __clang__

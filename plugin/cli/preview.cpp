@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/plan/budget.h"
 #include "core/plan/plan.h"
+#include "core/scene/budget.h"
 #include "core/scene/names.h"
 #include "core/scene/shot_text.h"
 #include "plugin/cli/exit_status.h"

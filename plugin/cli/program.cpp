@@ -116,7 +116,8 @@ int run(int argc, const char* const* argv) {
     program.formatter(formatter);  // inherited by the verbs
     const std::vector<Verb> verbs{add_bake(program),     add_render(program),   add_preview(program),
                                   add_explain(program),  add_accuracy(program), add_verify(program),
-                                  add_validate(program), add_keys(program),     add_presets(program)};
+                                  add_validate(program), add_keys(program),     add_presets(program),
+                                  add_calibrate(program)};
 
     if (argc < 2) return usage_error("a verb is missing", "pelagic");
     if (const std::string problem = refuse_verb(argc, argv, verbs); !problem.empty())

@@ -145,7 +145,7 @@ void Progress::show_building(double built) {
 }
 
 void Progress::show_measuring(double done) {
-    show("measuring a small picture of the shot: " + percent(done));
+    show("measuring for the budget: " + percent(done));
 }
 
 void Progress::show(const std::string& line) {

@@ -17,7 +17,7 @@ class Progress {
 
     void show(const RunProgress& progress);
     void show(const std::string& line);  // progress of other work than a run, as a text
-    void show_measuring(double done);    // of a small picture of the shot, for its budget
+    void show_measuring(double done);    // of the shot or the machine, for a budget
     void clear();                        // erases the line, so that a message can follow
 
   private:

@@ -68,12 +68,11 @@ SkyQuality parse_sky_quality(const std::string& text) {
     throw WrongUsage("sky quality \"" + text + "\"; accepted: one, nine, integral");
 }
 
-PictureOrder order_of(const RenderArguments& arguments) {
+PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
     PictureOrder order{.scene = load_shot(arguments.shot, check_scene), .options = {}};
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) order.scene.camera.resolution = size;
     RenderOptions& options = order.options = render_options(order.scene);
-    order.samples = arguments.samples;
-    options.samples = order.samples.value_or(options.samples);
+    options.samples = arguments.samples.value_or(options.samples);
     if (options.samples < 1 || options.samples > kMostSamples)
         throw WrongUsage("samples " + std::to_string(options.samples) + "; accepted: 1 to " +
                          std::to_string(kMostSamples));
@@ -84,8 +83,10 @@ PictureOrder order_of(const RenderArguments& arguments) {
     options.shutter_frames = arguments.shutter_frames;
     options.alpha = arguments.alpha;
     if (arguments.layers) options.layers = asked([&] { return parse_picture_layers(*arguments.layers); });
-    if (arguments.sky_quality) order.sky_quality = parse_sky_quality(*arguments.sky_quality);
-    options.lighting.sky_quality = order.sky_quality.value_or(options.lighting.sky_quality);
+    if (arguments.sky_quality) options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
+    fixed = {
+        .samples = arguments.samples, .shutter_frames = options.shutter_frames, .layers = options.layers};
+    if (arguments.sky_quality) fixed.sky_quality = options.lighting.sky_quality;
     if (!(std::abs(arguments.exposure_stops) <= kMostStops))
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
                          number_text(-kMostStops) + " to " + number_text(kMostStops));
@@ -121,7 +122,8 @@ void print_rendered(const RunReport& report, const PictureOrder& order, const Ru
 }
 
 int run(const RenderArguments& arguments) {
-    PictureOrder order = order_of(arguments);
+    FixedSettings fixed;
+    PictureOrder order = order_of(arguments, fixed);
     const RunOptions options = run_options(arguments, order.scene.shot);
     const auto out_of_memory = [&](int) {
         const glm::ivec2 size = order.scene.camera.resolution;
@@ -129,15 +131,12 @@ int run(const RenderArguments& arguments) {
                std::to_string(size.y) +
                ") or lower the cascades' resolutions; files already written are whole";
     };
-    const auto work = [&](const RunOptions& watched, Session& session) {
+    const auto work = [&](RunOptions watched, Session& session) {
         if (const std::string thin = spray_warning(order.scene); !thin.empty())
             std::cerr << line_text(arguments.shot) << ": note: " << thin << std::endl;
-        const std::string budget =
-            spend_budget(order, options.max_memory_bytes, "--samples and --sky-quality",
-                         {.progress = [&](double done) { session.progress.show_measuring(done); },
-                          .cancel = watched.cancel});
-        session.progress.clear();
-        if (!budget.empty()) std::cout << budget << std::endl;
+        const Settled settled = settled_for(watched, order.scene, Purpose::Pictures, session, fixed);
+        settled.apply(order);
+        watched.chosen = settled.chosen();
         return render_files(order, watched);
     };
     return run_frames(arguments, options,

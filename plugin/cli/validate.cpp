@@ -9,6 +9,7 @@
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "plugin/bake/bake.h"
+#include "plugin/budget/budget.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/text.h"
@@ -54,9 +55,10 @@ Verb add_validate(CLI::App& program) {
                 for (const std::string& file : *files) {
                     try {
                         const Scene scene = load_shot(file, check_scene);
-                        const Plan plan = plan_bake(scene);
-                        if (!plan.from->holds_budget)
-                            throw ShotError(placed(file, plan.from->budget + "; raise the budget"));
+                        const Settled settled = settle(scene, Purpose::Mesh);
+                        if (!settled.holds)
+                            throw ShotError(placed(file, settled.text + "; raise the budget"));
+                        const Plan plan = plan_bake(settled.scene);
                         std::cout << line_text(file) << ": fine\n    " << summary(scene, plan) << std::endl;
                         print_warnings(file, scene);
                     } catch (const ShotError& error) {

@@ -23,5 +23,6 @@ Verb add_validate(CLI::App& program);
 Verb add_keys(CLI::App& program);
 Verb add_presets(CLI::App& program);
 Verb add_accuracy(CLI::App& program);
+Verb add_calibrate(CLI::App& program);
 
 }  // namespace pelagic::cli

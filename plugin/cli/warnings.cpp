@@ -3,7 +3,8 @@
 #include <iostream>
 
 #include "core/base/text.h"
-#include "core/plan/budget.h"
+#include "core/plan/prepared_scene.h"
+#include "core/scene/budget.h"
 #include "core/waves/folding.h"
 
 namespace pelagic::cli {

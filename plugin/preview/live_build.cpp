@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "core/plan/budget.h"
 #include "core/plan/plan.h"
+#include "core/scene/budget.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"

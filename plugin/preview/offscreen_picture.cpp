@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/evaluate/values.h"
-#include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/plan/quality.h"
 #include "core/surface/earth.h"
@@ -143,7 +142,7 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
 }
 
 OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std::size_t max_memory_bytes) {
-    OffscreenPlan planned{.scene = without_budget(scene), .frame = frame, .plan = {}, .grid = {}};
+    OffscreenPlan planned{.scene = scene, .frame = frame, .plan = {}, .grid = {}};
     if (size.x > 0 && size.y > 0) planned.scene.camera.resolution = size;
     check_size(planned.scene.camera.resolution);
     const MemoryLimit limit = machine::memory_limit_or(max_memory_bytes);

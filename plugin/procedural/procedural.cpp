@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/budget.h"
 #include "core/scene/limits.h"
 #include "core/surface/earth.h"
 #include "core/surface/rungs.h"
@@ -29,15 +30,17 @@
 namespace pelagic::procedural {
 namespace {
 
+// A budget is left out: a renderer says itself how fine its points are.
 Scene scene_of(const pelagic_source& source) {
     if (source.text) {
         const std::size_t length = source.text_length > 0 ? source.text_length : std::strlen(source.text);
         if (length > kMostShotBytes)
             throw std::invalid_argument("source.text has " + std::to_string(length) +
                                         " bytes; accepted: at most " + std::to_string(kMostShotBytes));
-        return parse_shot({source.text, length}, source.path ? source.path : "shot.toml", check_scene);
+        return without_budget(
+            parse_shot({source.text, length}, source.path ? source.path : "shot.toml", check_scene));
     }
-    return load_shot(&required(source.path, "source.path"), check_scene);
+    return without_budget(load_shot(&required(source.path, "source.path"), check_scene));
 }
 
 View view_of(const pelagic_camera& camera) {

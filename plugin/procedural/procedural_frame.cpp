@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "core/plan/budget.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/memory.h"
 #include "core/scene/text.h"
@@ -32,7 +31,7 @@ constexpr ProductSet kProducts =
 
 // finest_cell_m: becomes what was asked for, or what the shot's camera needs.
 Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
-    auto prepared = prepare(without_budget(scene));  // a renderer says itself how fine its points are
+    auto prepared = prepare(scene);
     double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
     if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
         ProjectedGridOptions grid = projected_grid_options(*prepared);

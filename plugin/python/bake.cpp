@@ -91,7 +91,11 @@ struct RunOrder {
 RunOrder bake_order(const Scene& scene, const Out& out, const Frames& frames, bool trust_times,
                     Bytes max_memory) {
     require_valid(scene);
-    return {[scene](const RunOptions& options) { return bake(scene, options); },
+    return {[scene](RunOptions options) {
+                const Settled settled = settle_for(options, scene, Purpose::Mesh);
+                options.chosen = settled.chosen();
+                return bake(settled.scene, options);
+            },
             scene.shot,
             out,
             frames,
@@ -103,12 +107,17 @@ RunOrder pictures_order(const Scene& scene, const Out& out, const Frames& frames
                         Bytes max_memory, const PictureSize& size, std::optional<int> samples,
                         const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
                         double shutter, bool alpha, double exposure) {
-    const auto work = [asked = picture_order(scene, size, samples, sky_quality, layers, shutter, alpha,
-                                             exposure)](const RunOptions& options) {
+    const auto work = [asked = picture_request(scene, size, samples, sky_quality, layers, shutter, alpha,
+                                               exposure)](RunOptions options) {
         PictureOrder order = asked;
         try {
-            spend_budget(order, options.max_memory_bytes, kByName,
-                         {.progress = {}, .cancel = options.cancel});
+            const Settled settled = settle_for(options, asked.scene, Purpose::Pictures,
+                                               {.fixed = asked.fixed,
+                                                .max_memory_bytes = options.max_memory_bytes,
+                                                .watch = {.progress = {}, .cancel = options.cancel}},
+                                               kByName);
+            settled.apply(order);
+            options.chosen = settled.chosen();
         } catch (const BuildCancelled&) {
             RunReport none;
             none.cancelled = true;
@@ -291,7 +300,7 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     std::unique_ptr<Maps> made;
     const auto make = [&] {
-        Plan plan = plan_bake(asked);
+        Plan plan = plan_bake(held(settle(asked, Purpose::Mesh)).scene);
         made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
             return std::make_unique<MapsOf<T>>(std::move(plan), building);
         });

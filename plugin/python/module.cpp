@@ -5,6 +5,7 @@
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "plugin/budget/budget.h"
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/watch.h"
@@ -19,7 +20,9 @@ std::string explain_bake(const pelagic::Scene& scene) {
     pelagic::python::require_valid(scene);
     const pelagic::Scene kept = scene;
     const pelagic::python::OthersMayRun others_may_run;  // a plan looks at each frame's view
-    return pelagic::explain(pelagic::plan_bake(kept));
+    const pelagic::Settled settled = pelagic::settle(kept, pelagic::Purpose::Mesh);
+    return (settled.text.empty() ? "" : "Budget\n  " + settled.text + "\n\n") +
+           pelagic::explain(pelagic::plan_bake(settled.scene));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/plan/budget.h"
+#include "core/scene/budget.h"
 #include "core/scene/text.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -40,14 +40,19 @@ py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, st
                       const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
                       double shutter, bool alpha, const py::object& progress, const py::object& cancel,
                       std::optional<std::size_t> max_memory_bytes) {
-    PictureOrder asked = picture_order(scene, size, samples, sky_quality, layers, shutter, alpha);
+    PictureRequest asked = picture_request(scene, size, samples, sky_quality, layers, shutter, alpha);
     asked.options.layers &= ~light_layers();  // which are there in any case
     const auto watch = shared_watch(progress, cancel);
     const auto drawn = std::make_shared<Picture>();
     const auto draw = [=] {
         PictureOrder order = asked;
         const std::size_t most_bytes = max_memory_bytes.value_or(0);
-        spend_budget(order, most_bytes, kByName, {.progress = {}, .cancel = watch->flag()});
+        held(settle(order.scene, Purpose::Pictures,
+                    {.fixed = asked.fixed,
+                     .max_memory_bytes = most_bytes,
+                     .watch = {.progress = {}, .cancel = watch->flag()}}),
+             kByName)
+            .apply(order);
         const std::array frames{frame};
         require_memory(render_memory(order.scene, order.options, frames, std::nullopt,
                                      tbb::this_task_arena::max_concurrency()),
@@ -82,12 +87,13 @@ py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, st
 
 }  // namespace
 
-PictureOrder picture_order(const Scene& scene, const PictureSize& size, std::optional<int> samples,
-                           const std::optional<std::string>& sky_quality,
-                           const std::vector<std::string>& layers, double shutter, bool alpha,
-                           double exposure) {
-    PictureOrder order{.scene = scene, .options = {}, .exposure_stops = exposure, .samples = samples};
-    if (sky_quality) order.sky_quality = sky_quality_of(*sky_quality);
+PictureRequest picture_request(const Scene& scene, const PictureSize& size, std::optional<int> samples,
+                               const std::optional<std::string>& sky_quality,
+                               const std::vector<std::string>& layers, double shutter, bool alpha,
+                               double exposure) {
+    PictureRequest order{{.scene = scene, .options = {}, .exposure_stops = exposure}, {.samples = samples}};
+    FixedSettings& fixed = order.fixed;
+    if (sky_quality) fixed.sky_quality = sky_quality_of(*sky_quality);
     if (size) order.scene.camera.resolution = {(*size)[0], (*size)[1]};
     require_valid(order.scene);
     if (!(std::abs(exposure) <= kMostStops))
@@ -95,9 +101,10 @@ PictureOrder picture_order(const Scene& scene, const PictureSize& size, std::opt
                               number_text(-kMostStops) + " to " + number_text(kMostStops));
     RenderOptions& options = order.options = render_options(order.scene);
     options.samples = samples.value_or(options.samples);
-    options.lighting.sky_quality = order.sky_quality.value_or(options.lighting.sky_quality);
+    options.lighting.sky_quality = fixed.sky_quality.value_or(options.lighting.sky_quality);
     for (const std::string& name : layers) options.layers |= parse_picture_layers(name);
-    options.shutter_frames = shutter;
+    options.shutter_frames = fixed.shutter_frames = shutter;
+    fixed.layers = options.layers;
     options.alpha = alpha;
     if (!has_budget(order.scene.quality)) check_render(order.scene, options);
     return order;

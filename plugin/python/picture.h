@@ -6,18 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "plugin/budget/budget.h"
 #include "plugin/render/render_files.h"
 
 namespace pelagic::python {
 
 using PictureSize = std::optional<std::array<int, 2>>;
 
+struct PictureRequest : PictureOrder {
+    FixedSettings fixed;
+};
+
 // Of a copy of the scene; `layers` beside the light's. Throws ShotError, pybind11::value_error and std::invalid_argument for
 // what no picture can have.
-PictureOrder picture_order(const Scene& scene, const PictureSize& size, std::optional<int> samples,
-                           const std::optional<std::string>& sky_quality,
-                           const std::vector<std::string>& layers, double shutter, bool alpha,
-                           double exposure = 0.0);
+PictureRequest picture_request(const Scene& scene, const PictureSize& size, std::optional<int> samples,
+                               const std::optional<std::string>& sky_quality,
+                               const std::vector<std::string>& layers, double shutter, bool alpha,
+                               double exposure = 0.0);
 
 // How what a budget would decide is asked for by name.
 inline constexpr const char* kByName = "samples and sky_quality";

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/plan/budget.h"
 #include "core/plan/prepared_scene.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
@@ -18,6 +17,8 @@
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
 #include "core/waves/folding.h"
+#include "core/scene/budget.h"
+#include "plugin/budget/budget.h"
 #include "plugin/files/files.h"
 #include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
@@ -215,13 +216,8 @@ std::vector<std::string> warnings_of(const Scene& scene) {
 Scene settled_scene(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
-    std::shared_ptr<const PreparedScene> prepared;
-    {
-        const OthersMayRun others_may_run;
-        prepared = prepare(kept);
-    }
-    if (!prepared->holds_budget) throw py::value_error(prepared->budget + "; raise the budget");
-    return prepared->scene;
+    const OthersMayRun others_may_run;
+    return held(settle(kept, Purpose::Mesh)).scene;
 }
 
 std::vector<std::string> problem_lines(const Scene& scene) {

@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
+#include "plugin/budget/budget.h"
 #include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/task.h"
@@ -107,8 +107,11 @@ struct SeaOrder {
 
 SeaOrder order_of(const Scene& scene, SeaRequest request) {
     require_valid(scene);
-    SeaOrder order{
-        .scene = settled(scene), .asked = {}, .held = {}, .plain = {}, .request = std::move(request)};
+    SeaOrder order{.scene = held(settle(scene, Purpose::Mesh)).scene,
+                   .asked = {},
+                   .held = {},
+                   .plain = {},
+                   .request = std::move(request)};
     for (const std::string& name : order.request.products) order.asked.set(output_of(name));
     order.held = order.asked;
     if (order.asked[index(Product::Position)]) order.held.set(index(Product::Displacement));

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "core/lighting/air.h"
-#include "core/plan/budget.h"
 #include "core/plan/plan.h"
+#include "core/scene/budget.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
 #include "core/surface/projected_grid.h"

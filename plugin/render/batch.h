@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/lighting/lighting.h"
-#include "core/plan/budget.h"
 #include "core/scene/scene.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
@@ -16,7 +15,7 @@ namespace pelagic {
 
 // Samples are pixels of a larger picture with cells as large as before.
 inline Scene of_samples(const Scene& scene, int samples) {
-    Scene sampled = without_budget(scene);  // of pictures: what it chose is in their options
+    Scene sampled = scene;
     sampled.camera.resolution *= samples;
     sampled.surface.cell_px *= samples;
     return sampled;

@@ -107,6 +107,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
+    if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
     for (exr::Attribute& attribute : radiance_attributes(scene)) attributes.push_back(std::move(attribute));
     for (const PictureLayerRow& row : kPictureLayers)
         if (!row.light && context.options.layers[index(row.layer)])

@@ -15,8 +15,9 @@ struct PictureContext {
     const Scene& scene;
     const RenderOptions& options;
     const Sky& sky;
-    std::string made_of;  // PictureFingerprint::of(the frame)
-    float exposure;       // shot_exposure() (plugin/light/exposure.h)
+    std::string made_of;   // PictureFingerprint::of(the frame)
+    float exposure;        // shot_exposure() (plugin/light/exposure.h)
+    std::string chosen{};  // RunOptions::chosen (plugin/run/run.h), in the EXR's header
 };
 
 // Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.

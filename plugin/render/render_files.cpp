@@ -7,15 +7,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "core/plan/budget.h"
 #include "plugin/files/files.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
-#include "plugin/render/picture_budget.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/run/work.h"
 
@@ -30,10 +29,11 @@ constexpr std::array kExtensions{"png", "exr"};
 
 class Pictures final : public Sequence {
   public:
-    Pictures(const PictureOrder& order, const PictureFingerprint& made_of, std::span<const int> frames,
-             const std::function<BuildWatch(RunStage)>& watch)
+    Pictures(const PictureOrder& order, const PictureFingerprint& made_of, std::string chosen,
+             std::span<const int> frames, const std::function<BuildWatch(RunStage)>& watch)
         : order_(order),
           made_of_(made_of),
+          chosen_(std::move(chosen)),
           cancel_(watch(RunStage::Building).cancel),
           renderer_(order.scene, order.options, make_sky(order.scene), frames, watch(RunStage::Building)),
           exposure_(shot_exposure(order.scene, renderer_.sky(), order.exposure_stops)) {
@@ -54,7 +54,8 @@ class Pictures final : public Sequence {
                                      .options = order_.options,
                                      .sky = renderer_.sky(),
                                      .made_of = made_of_.of(slot.frame),
-                                     .exposure = exposure_};
+                                     .exposure = exposure_,
+                                     .chosen = chosen_};
         if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);
         if (slot.wants(1)) slot.files[1] = encode_exr(context, slot.picture, slot.frame);
     }
@@ -70,28 +71,13 @@ class Pictures final : public Sequence {
   private:
     const PictureOrder& order_;
     const PictureFingerprint& made_of_;
+    std::string chosen_;
     const std::atomic<bool>* cancel_;
     Renderer renderer_;
     float exposure_;
 };
 
 }  // namespace
-
-std::string spend_budget(PictureOrder& order, std::size_t max_memory_bytes, const std::string& by_name,
-                         const BuildWatch& watch) {
-    if (!has_budget(order.scene.quality)) return {};
-    RenderOptions& options = order.options;
-    const FixedSettings fixed{order.samples, order.sky_quality, options.shutter_frames, options.layers};
-    const PictureBudget budget = picture_budget(order.scene, fixed, max_memory_bytes, watch);
-    if (!budget.holds)
-        throw std::invalid_argument(budget.text + "; raise the budget, or give " + by_name +
-                                    " instead of it");
-    order.scene = budget.scene;
-    options.samples = budget.options.samples;
-    options.lighting.sky_quality = budget.options.lighting.sky_quality;
-    options.lighting.fresnel = budget.options.lighting.fresnel;
-    return budget.text;
-}
 
 RunReport render_files(const PictureOrder& order, const RunOptions& options) {
     const Shot& shot = order.scene.shot;
@@ -117,7 +103,8 @@ RunReport render_files(const PictureOrder& order, const RunOptions& options) {
                                                  tbb::this_task_arena::max_concurrency()),
                                    machine::memory_limit_or(options.max_memory_bytes), "this picture");
                     files::check_folder(options.out);
-                    auto pictures = std::make_unique<Pictures>(order, *made_of, frames, watch);
+                    auto pictures =
+                        std::make_unique<Pictures>(order, *made_of, options.chosen, frames, watch);
                     prepare_folders(options.out, parts);  // whatever is refused has left none behind
                     return pictures;
                 }},

@@ -169,7 +169,8 @@ ShotRecord shot_from_json(const Json& json) {
     ShotRecord shot{.name = json.at("name").get<std::string>(),
                     .first_frame = integer_from<int>(json.at("frame_range").at(0)),
                     .last_frame = integer_from<int>(json.at("frame_range").at(1)),
-                    .files = {}};
+                    .files = {},
+                    .chosen = json.value("chosen", std::string())};
     for (const auto& [path, file] : json.at("files").items()) shot.files[path] = file_from_json(file);
     return shot;
 }

@@ -58,6 +58,7 @@ struct ShotRecord {
     std::string name;
     int first_frame = 0, last_frame = 0;
     std::map<std::string, FileRecord> files;  // that belong to no frame
+    std::string chosen{};                     // RunOptions::chosen
 };
 
 // What was found in a record.
@@ -85,6 +86,10 @@ class Record {
     // the record from now on. whitecap_threshold: without gusts.
     void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold,
                   double residual_coverage);
+    // After describe(): RunOptions::chosen.
+    void set_chosen(const std::string& chosen) {
+        if (!chosen.empty()) shot_["chosen"] = chosen;
+    }
     // Whether a frame that an earlier run recorded is of another version of the shot; may be empty.
     void mark_stale(std::function<bool(int, const FrameRecord&)> is_stale) {
         is_stale_ = std::move(is_stale);

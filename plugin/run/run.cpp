@@ -280,6 +280,7 @@ class Run {
     // The shot's part, the files that belong to no frame, and the entries of whole frames that list other files as well.
     void begin_record() {
         sequence_->describe(record_);
+        record_.set_chosen(options_.chosen);
         record_.mark_stale(
             [this](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts_); });
         sequence_->write_static(named_, [this](const FileJob& file) {

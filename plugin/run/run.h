@@ -49,6 +49,9 @@ struct RunOptions {
     // Files of the recorded size that are no newer than the record count as whole, unread; pictures that say so at their
     // beginning and end.
     bool trust_times = false;
+    // What the shot's settings were chosen for, and which they are (plugin/budget): the record or the pictures say it. Empty: they
+    // are the shot's own.
+    std::string chosen{};
 };
 
 struct RunReport {

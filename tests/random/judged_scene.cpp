@@ -30,6 +30,7 @@
 #include "core/scene/names.h"
 #include "core/waves/sea.h"
 #include "plugin/bake/bake.h"
+#include "plugin/budget/budget.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
@@ -397,21 +398,15 @@ Judgement judge(const fs::path& shot, std::uint64_t variant) {
             judge_refusal(shot, judgement.refusal);
             return judgement;
         }
-        const std::shared_ptr<const PreparedScene> prepared = prepare(*scene);
-        if (!prepared->holds_budget) {
-            judgement.refusal = prepared->budget;
-            try {
-                bake(*scene, {.out = folder / "baked", .frames = {}, .progress = {}, .cancel = nullptr});
-            } catch (const std::invalid_argument& error) {
-                if (std::string(error.what()).find(prepared->budget) == std::string::npos)
-                    throw Failed("budget", error.what());
-                return judgement;
-            }
-            throw Failed("budget", "baked, and nothing holds " + prepared->budget);
+        const Settled settled = settle(*scene, Purpose::Mesh, with_rates(recorded_rates()));
+        if (!settled.holds) {
+            judgement.refusal = settled.text;
+            return judgement;
         }
+        scene = settled.scene;
         if (variant % 2 == 0) judge_energy_of(plan_bake(*scene));
         judge_bake(*scene, folder);
-        judgement.is_pictured = judge_pictures(prepared->scene, variant);
+        judgement.is_pictured = judge_pictures(*scene, variant);
     } catch (const Failed& failed) {
         judgement.failure = failed.kind;
         judgement.detail = failed.what();

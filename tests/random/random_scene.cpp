@@ -17,6 +17,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/cascade_bands.h"
 #include "core/spectrum/possible.h"
+#include "plugin/budget/budget.h"
 #include "plugin/exr/exr.h"
 #include "plugin/obj/obj.h"
 #include "plugin/render/render.h"
@@ -596,12 +597,13 @@ bool costs_too_much(const Key& key) {
 }
 
 bool is_affordable(const RandomScene& random) {
-    const std::optional<Scene> scene = random.scene();
+    std::optional<Scene> scene = random.scene();
     if (!scene || !problems_of(*scene).empty()) return true;  // refused
     if (!scene->output.volumes.empty() &&
         scene->surface.size_m / scene->output.voxel_m > 1.001 * cap(kVoxelsASide).high)
         return false;
     if (!scene->waves.cascades.empty() || scene->waves.model == WaveModel::Trochoid) return true;
+    scene = settle(*scene, Purpose::Mesh, with_rates(recorded_rates())).scene;
     const int frame = scene->shot.first_frame;
     const std::size_t bytes =
         std::max(plan_bake(*scene).frame_bytes(), picture_plan(*scene, std::span(&frame, 1)).frame_bytes());

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/plan/budget.h"
-#include "core/plan/prepared_scene.h"
+#include "core/scene/budget.h"
 #include "core/scene/keys.h"
 #include "core/scene/scene.h"
 #include "core/scene/validate.h"
+#include "plugin/budget/budget.h"
 #include "plugin/shot/ndbc.h"
 #include "tests/core/scene/key_samples.h"
 
@@ -338,10 +338,11 @@ inline std::vector<Edit> edits_of(const BaseShot& base) {
             if (value == now || set_value(changed, key, value)) continue;
             if (has_budget(changed.quality)) {
                 // Of meshes that a bake writes in a moment; a picture's budget becomes options before it is rendered.
-                const auto prepared = base.is_picture ? nullptr : prepare(changed);
+                if (base.is_picture) continue;
+                const Settled settled = settle(changed, Purpose::Mesh, with_rates(recorded_rates()));
                 constexpr int kMostQuads = 64;
-                if (!prepared || !prepared->holds_budget || prepared->scene.surface.resolution > kMostQuads)
-                    continue;
+                if (!settled.holds || settled.scene.surface.resolution > kMostQuads) continue;
+                changed = settled.scene;
             }
             const std::string text = value_text(key, value);
             add(std::move(changed), text.empty() ? "none" : text);

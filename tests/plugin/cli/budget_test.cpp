@@ -1,10 +1,12 @@
 // Budgets on the command line: what a user sees of them, what is written, and what is refused.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "plugin/budget/calibration.h"
 #include "tests/plugin/cli/program.h"
 
 namespace pelagic::test {
@@ -12,7 +14,12 @@ namespace {
 
 class Budget : public ::testing::Test {
   protected:
-    Ended ended(const std::string& verb, const std::string& quality,
+    // A machine that takes the recorded times, whichever this is.
+    void SetUp() override {
+        ASSERT_FALSE(keep(as_recorded(), folder_.path() / "cache" / "pelagic").empty());
+        setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);
+    }
+    Ended ended(const std::string& verb, const std::string& quality = {},
                 std::vector<std::string> options = {}) const {
         write_file(
             folder_.path() / "shot.toml",
@@ -21,6 +28,7 @@ class Budget : public ::testing::Test {
             "[quality]\n" +
                 quality + "\n");
         options.insert(options.begin(), {verb, "shot.toml"});
+        if (verb == "calibrate") options.pop_back();
         return run({.arguments = options, .folder = folder_.path()});
     }
     std::string record() const { return read_file(folder_.path() / "s" / "s.json"); }
@@ -57,10 +65,13 @@ TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
 }
 
 TEST_F(Budget, PicturesTakeItAndNamedSettingsStay) {
-    const Ended cheap = ended("render", "frame_ms = 1000", {"--frames", "1"});
+    const Ended part = ended("render", "frame_ms = 1000", {"--frames", "1"});
+    EXPECT_EQ(part.status, 1);
+    EXPECT_TRUE(has(part.err, "shot.toml:13:12: quality.frame_ms = 1000: isn't settled yet")) << part.err;
+    const Ended cheap = ended("render", "frame_ms = 1000");
     ASSERT_EQ(cheap.status, 0) << cheap.err;
     EXPECT_TRUE(has(cheap.out, "samples a pixel and")) << cheap.out;
-    const Ended named = ended("render", "frame_ms = 1000", {"--frames", "1", "--samples", "3"});
+    const Ended named = ended("render", "frame_ms = 999", {"--samples", "3"});
     ASSERT_EQ(named.status, 0) << named.err;
     EXPECT_TRUE(has(named.out, "3 × 3 samples a pixel")) << named.out;
     // All is named: nothing is left to it.
@@ -75,6 +86,19 @@ TEST_F(Budget, ExplainSaysWhatIsChosen) {
     for (const char* part : {"Budget\n  quality.max_error = 0.1: the cheapest mesh is quality.level",
                              "ms a frame\n", "Budget of pictures\n  quality.max_error = 0.1"})
         EXPECT_TRUE(has(page.out, part)) << page.out;
+}
+
+// By the verb, into the same file.
+TEST_F(Budget, AMachineIsMeasuredAnew) {
+    const Ended printed = ended("calibrate");
+    ASSERT_EQ(printed.status, 0) << printed.err;
+    for (const char* part : {"transforms", "integral", "kept in "})
+        EXPECT_TRUE(has(printed.out, part)) << printed.out;
+    EXPECT_NE(kept_calibration(folder_.path() / "cache" / "pelagic")->times, as_recorded().times);
+    setenv("XDG_CACHE_HOME", "/proc/no", 1);
+    const Ended homeless = ended("calibrate");
+    EXPECT_EQ(homeless.status, 0) << homeless.err;
+    EXPECT_TRUE(has(homeless.err, "no cache folder that can be written")) << homeless.err;
 }
 
 }  // namespace

@@ -1,21 +1,24 @@
-#include "core/plan/cost_model.h"
+#include "plugin/budget/cost.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <vector>
 
 #include "core/base/constants.h"
 #include "core/plan/foam.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
+#include "core/surface/view.h"
+#include "plugin/render/spray_map.h"
 
 namespace pelagic {
 namespace {
 
-// [ms] of each Work in single precision.
-constexpr WorkDone kMs{0.05, 0.306, 3.84, 0.0212, 0.347, 2.19, 18.0};
-constexpr double kDouble =
-    1.8;  // as much in double precision (`pelagic accuracy --rows precision`: 1.4 … 1.84)
+// As much as in single precision costs the sea in double (`pelagic accuracy --rows precision`: 1.4 … 1.84).
+constexpr double kDouble = 1.8;
+// Pictures look at few tiles of foam on many levels, each of which has a sea of its own, and pay more for each than bakes.
+constexpr double kFoamOfPictures = 4.0;
 
 double& at(WorkDone& work, Work what) {
     return work[static_cast<std::size_t>(what)];
@@ -83,7 +86,50 @@ void add_foam(const Plan& plan, WorkDone& work) {
     }
 }
 
+double water_share(const Camera& camera, int frame) {
+    constexpr int kLines = 64;
+    const View view = view_at(camera, frame);
+    int water = 0;
+    for (int y = 0; y < kLines; ++y)
+        for (int x = 0; x < kLines; ++x)
+            water += view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kLines) *
+                                    glm::dvec2(view.resolution))
+                         .z < 0.0;
+    return static_cast<double>(water) / (kLines * kLines);
+}
+
+// Of a plan whose points are those of the camera's grid: with the samples that show the sea, and at so many moments. A point of the
+// grid asks for its position alone, which about half of the fields answer. The foam's past is as long with a shutter as without,
+// and adding it up again at each moment takes little beside (bench_cost_model has shutters).
+WorkDone with_samples(WorkDone work, double points, double samples, double moments) {
+    const double points_factor = 0.5 * moments + samples / points;
+    for (std::size_t i = 0; i < kWorkCount; ++i) switch (static_cast<Work>(i)) {
+            case Work::Frame:
+            case Work::Transforms:
+            case Work::Modes:
+                work[i] *= moments;
+                break;
+            case Work::Reads:
+            case Work::Trains:
+            case Work::Answers:
+                work[i] *= points_factor;
+                break;
+            case Work::Foam:
+                work[i] *= kFoamOfPictures;
+                break;
+            default:  // of the light, which isn't here yet
+                break;
+        }
+    return work;
+}
+
 }  // namespace
+
+const Rates& recorded_rates() {
+    static constexpr Rates kMs{0.05, 0.306,  3.84,    0.0212, 0.347,  2.19,
+                               18.0, 2400.0, 31000.0, 50.0,   3000.0, 600.0};
+    return kMs;
+}
 
 WorkDone work_of(const Plan& plan) {
     WorkDone work{};
@@ -91,17 +137,34 @@ WorkDone work_of(const Plan& plan) {
     for (const CascadePlan& cascade : plan.cascades) add_grids(cascade, work);
     if (plan.foam && plan.from->scene.sea.wind_speed_mps > 0.0) add_foam(plan, work);
     for (const PlannedQuery& planned : plan.queries) add_points(plan, planned, work);
+    if (plan.knobs.double_precision)
+        for (double& each : work) each *= kDouble;
     return work;
 }
 
-double cost_ms(const WorkDone& work, bool double_precision) {
-    double ms = 0.0;
-    for (std::size_t i = 0; i < kWorkCount; ++i) ms += kMs[i] * work[i];
-    return double_precision ? kDouble * ms : ms;
+WorkDone picture_work(const Plan& plan, std::span<const int> frames, const RenderOptions& options) {
+    const Camera& camera = plan.from->scene.camera;
+    const auto moments = static_cast<double>(moments_of(frames.front(), options).size());
+    double water = 0.0;
+    for (const int frame : frames) water = std::max(water, water_share(camera, frame));
+    const double samples = 1e-6 * camera.resolution.x * camera.resolution.y;
+    const double points = 1e-6 * static_cast<double>(plan.queries.front().query.points);
+    WorkDone work = with_samples(work_of(plan), points, water * samples, moments);
+    const bool is_integral = options.lighting.sky_quality == SkyQuality::Integral;
+    at(work, is_integral ? Work::SeaByIntegral : Work::SeaByLookups) = water * samples;
+    at(work, Work::Sky) = (1.0 - water) * samples;
+    if (options.lighting.spray) {
+        const SprayMapSize map = spray_map_size(camera.resolution.x);
+        at(work, Work::SprayTexels) = 1e-6 * map.columns * map.rows * moments;
+        at(work, Work::SpraySamples) = samples;
+    }
+    return work;
 }
 
-double frame_ms(const Plan& plan) {
-    return cost_ms(work_of(plan), plan.knobs.double_precision);
+double cost_ms(const WorkDone& work, const Rates& rates) {
+    double ms = 0.0;
+    for (std::size_t i = 0; i < kWorkCount; ++i) ms += rates[i] * work[i];
+    return ms;
 }
 
 }  // namespace pelagic

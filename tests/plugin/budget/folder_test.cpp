@@ -1,0 +1,115 @@
+// A folder that several runs fill has one answer to a budget: the one that its files say.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "core/plan/prepared_scene.h"
+#include "plugin/bake/bake.h"
+#include "plugin/budget/budget.h"
+#include "tests/plugin/cli/program.h"
+
+namespace pelagic::test {
+namespace {
+
+Scene small_shot() {
+    Scene scene;
+    scene.shot.name = "s";
+    scene.shot.last_frame = 3;
+    scene.waves.cascades = {{200.0, 64, {}}};
+    scene.surface.size_m = 100.0;
+    scene.effects.foam_decay_s = 0.0;
+    scene.camera.resolution = {32, 18};
+    return scene;
+}
+
+// A machine on which everything takes so many times as long as recorded.
+SettleOptions on_machine(double times) {
+    Rates rates = recorded_rates();
+    for (double& rate : rates) rate *= times;
+    return with_rates(rates);
+}
+
+std::string refusal(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return {};
+}
+
+class FolderOf : public testing::TestWithParam<Purpose> {
+  protected:
+    void SetUp() override {
+        scene_ = small_shot();
+        scene_.quality.frame_ms = GetParam() == Purpose::Mesh ? 2.0 : 30.0;
+        whole_.out = first_.out = folder_.path() / "s";
+        first_.frames = {1};
+    }
+    // As hosts do.
+    void make(const RunOptions& asked, const Settled& settled) const {
+        RunOptions options = asked;
+        options.chosen = settled.chosen();
+        if (GetParam() == Purpose::Mesh) {
+            bake(settled.scene, options);
+        } else {
+            PictureOrder order{.scene = scene_, .options = settled.options};
+            settled.apply(order);
+            render_files(order, options);
+        }
+    }
+    Settled settled(const RunOptions& run, double times = 1.0) const {
+        return settle_for(run, scene_, GetParam(), on_machine(times));
+    }
+
+    TempFolder folder_;
+    Scene scene_;
+    RunOptions whole_, first_;
+};
+
+TEST_P(FolderOf, KeepsWhatItsFilesSay) {
+    const std::string refused = refusal([&] { settled(first_); });
+    for (const char* part :
+         {"quality.frame_ms = ", "isn't settled yet", "begin with a run of all frames", "quality.level = "})
+        EXPECT_TRUE(has(refused, part)) << refused;
+    EXPECT_FALSE(std::filesystem::exists(whole_.out));
+
+    const Settled begun = settled(whole_);
+    EXPECT_FALSE(begun.is_recorded);
+    make(whole_, begun);
+    for (const RunOptions& run : {whole_, first_}) {
+        const Settled again = settled(run);
+        EXPECT_TRUE(again.is_recorded);
+        EXPECT_EQ(again.settings, begun.settings);
+        EXPECT_EQ(again.note, "");
+        const Settled elsewhere = settled(run, 3.0);
+        EXPECT_EQ(elsewhere.settings, begun.settings);
+        EXPECT_NE(settle(scene_, GetParam(), on_machine(3.0)).settings, begun.settings);
+        EXPECT_TRUE(has(elsewhere.note, settle(scene_, GetParam(), on_machine(3.0)).settings))
+            << elsewhere.note;
+    }
+    // Another budget is another question.
+    *scene_.quality.frame_ms *= 3.0;
+    EXPECT_FALSE(settled(whole_).is_recorded);
+    EXPECT_NE(refusal([&] { settled(first_); }), "");
+    // And without one, nothing is asked.
+    scene_.quality.frame_ms.reset();
+    EXPECT_EQ(settled(first_).chosen(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, FolderOf, testing::Values(Purpose::Mesh, Purpose::Pictures),
+                         [](const auto& purpose) {
+                             return purpose.param == Purpose::Mesh ? "Bakes" : "Pictures";
+                         });
+
+TEST(Budget, IsNoSettingOfAPlan) {
+    Scene scene = small_shot();
+    scene.quality.max_error = 0.05;
+    const std::string refused = refusal([&] { prepare(scene); });
+    EXPECT_TRUE(has(refused, "quality.max_error isn't resolved yet")) << refused;
+}
+
+}  // namespace
+}  // namespace pelagic::test

@@ -18,6 +18,13 @@ void need_context() {
     if (!context) context.emplace();
 }
 
+bool is_software() {
+    need_context();
+    const std::string_view renderer(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+    return renderer.find("llvmpipe") != std::string_view::npos ||
+           renderer.find("softpipe") != std::string_view::npos;
+}
+
 ShaderSource caller(ShaderSource source, std::string_view declarations, std::string_view body) {
     source.add_constants(
         "uniform sampler2D input_texels;\n"

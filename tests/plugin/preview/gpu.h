@@ -16,6 +16,10 @@ namespace pelagic::gpu {
 // that tests fail with its message.
 void need_context();
 
+// Whether Mesa draws on the CPU: it filters textures in floats and contracts no product with a sum. GPUs do, as OpenGL lets
+// them, and their textures' weights have eight bits.
+bool is_software();
+
 // A fragment shader that evaluates, for element i of a batch, the expression in `body` (a vec4) from the i-th
 // `texels` inputs, input(0) … input(texels − 1). `declarations` come before it.
 ShaderSource caller(ShaderSource source, std::string_view declarations, std::string_view body);

@@ -279,6 +279,13 @@ class OnBoth {
     LightingChoice choice_;
 };
 
+// What a GPU may add to kBound, measured on one (an H200: 1.2e-4, 1.9e-3, 1.8e-3): products contracted with sums, lookups by
+// weights of eight bits, and what both make of a net's edge.
+float bound(float on_gpu) {
+    return gpu::is_software() ? kBound : on_gpu;
+}
+constexpr float kContracted = 3e-4f, kLookedUp = 4e-3f, kEdge = 4e-3f;
+
 #define PELAGIC_COMPARE(on, name, floor) \
     on.compare(#name, &decltype(of)::name, decltype(of)::name##_text, floor)
 
@@ -292,14 +299,14 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     EXPECT_LE(PELAGIC_COMPARE(on, frame_x, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, frame_variance, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, areas, 1e-4f).worst, kBound);
-    EXPECT_LE(PELAGIC_COMPARE(on, sun, 1e-4f).worst, kBound);
-    EXPECT_LE(PELAGIC_COMPARE(on, sky, 1e-2f).worst, kBound);
+    EXPECT_LE(PELAGIC_COMPARE(on, sun, 1e-4f).worst, bound(kContracted));
+    EXPECT_LE(PELAGIC_COMPARE(on, sky, 1e-2f).worst, bound(kLookedUp));
     EXPECT_LE(PELAGIC_COMPARE(on, water, 1e-3f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, level, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, foam, 1e-2f).worst, kBound);
     // At a net's edge the pattern rises as the root of the distance, which makes more of the last digits.
-    EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, 1e-3f);
-    EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, kBound);
+    EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
+    EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));
     EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-3f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, disc, 1e-3f).worst, kBound);
 }
@@ -308,8 +315,8 @@ TEST(LightingOnTheGpu, OfOneLookupAndThePapersFresnelIsCPlusPluses) {
     const SkyMap map = test_map();
     both::Functions<1, false> of(map);
     OnBoth<both::Functions<1, false>> on(1, false);
-    EXPECT_LE(PELAGIC_COMPARE(on, sky, 1e-2f).worst, kBound);
-    EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, kBound);
+    EXPECT_LE(PELAGIC_COMPARE(on, sky, 1e-2f).worst, bound(kLookedUp));
+    EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));
 }
 
 TEST(LightingOnTheGpu, OfTheIntegralIsCPlusPluses) {
@@ -319,7 +326,7 @@ TEST(LightingOnTheGpu, OfTheIntegralIsCPlusPluses) {
     EXPECT_LE(on.compare("sky", &std::remove_pointer_t<decltype(of)>::sky,
                          std::remove_pointer_t<decltype(of)>::sky_text, 1e-2f, 1000)
                   .worst,
-              kBound);
+              bound(kContracted));
 }
 
 }  // namespace

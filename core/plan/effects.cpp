@@ -6,7 +6,6 @@
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
-#include "core/plan/spray.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -82,8 +81,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .is_asked_for = [](const Scene& scene) { return scene.effects.foam_structure > 0.0; },
      .why_not = "effects.foam_structure is 0",
      .depends_on = {Effect::Whitecaps},
-     .turn_off = [](Scene& scene) { scene.effects.foam_structure = 0.0; },
-     .about = [](const Plan&) { return std::string("of pictures' light alone"); }},
+     .turn_off = [](Scene& scene) { scene.effects.foam_structure = 0.0; }},
     {.effect = Effect::Spray,
      .name = "spray",
      .is_asked_for = [](const Scene& scene) { return scene.effects.spray; },
@@ -96,12 +94,8 @@ const std::array kEffectTable = std::to_array<EffectRow>({
          },
      // Its map lies over places of the world.
      .adds_to =
-         [](const Query& query) { return query.is_picture ? products(Product::Displacement) : ProductSet(); },
-     .about =
-         [](const Plan& plan) {
-             return "of volumes and pictures; takes " +
-                    rough_text(-100.0 * std::expm1(-spray_law(plan.from->scene).optical_thickness())) +
-                    " % of the light straight up, on average";
+         [](const Query& query) {
+             return query.is_picture ? products(Product::Displacement) : ProductSet();
          }},
     {.effect = Effect::Gusts,
      .name = "gusts",
@@ -112,11 +106,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .plan = [](Plan& plan) { plan.gusts = plan_gusts(plan.from->scene); },
      .feeds = feeds(Feed::Gusts),
      .shapes =
-         [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); },
-     .about =
-         [](const Plan& plan) {
-             return "patches of " + number_text(plan.from->scene.sea.gust_size_m) + " m";
-         }},
+         [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); }},
 });
 
 }  // namespace

@@ -88,7 +88,7 @@ std::string trains_text(const Plan& plan) {
     return page;
 }
 
-// What a frame would do and hold less without the effect.
+// What a frame would do and hold less without the effect; of a plan that is no bake, of the same queries.
 std::string cost_text(const Plan& plan, const EffectRow& row) {
     const auto from = std::make_shared<PreparedScene>(*plan.from);
     row.turn_off(from->scene);
@@ -104,7 +104,7 @@ std::string cost_text(const Plan& plan, const EffectRow& row) {
     };
     const int transforms = plan.transforms_per_frame() - without.transforms_per_frame();
     const double bytes = held(plan) - held(without);
-    if (transforms == 0 && bytes == 0.0) return "nothing";
+    if (transforms == 0 && bytes == 0.0) return "no transform and no memory";
     return std::to_string(transforms) + " transforms, " + (bytes < 0.0 ? "-" : "") +
            bytes_text(static_cast<std::size_t>(std::abs(bytes)));
 }
@@ -149,12 +149,12 @@ std::string explain(const Plan& plan) {
         }
     }
 
-    page += "\nEffects, and what a frame would do and hold less without each\n";
+    page += "\nEffects, and what a frame of the bake would do and hold less without each\n";
     for (const EffectRow& row : effect_table()) {
         const bool is_on = row.is_on(scene);
-        page += format("  %s%s: %s\n", is_on ? "" : "no ", row.name,
-                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str());
-        if (is_on && row.about) page += "    " + row.about(plan) + '\n';
+        page += format("  %s%s: %s%s\n", is_on ? "" : "no ", row.name,
+                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str(),
+                       is_on && row.about ? ("; " + row.about(plan)).c_str() : "");
     }
 
     if (plan.trains) page += "\nWave trains\n" + trains_text(plan);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/plan/effects.h"
 #include "core/plan/grid_layout.h"
 
 namespace pelagic {

@@ -9,6 +9,7 @@
 
 #include "core/base/constants.h"
 #include "core/plan/copies.h"
+#include "core/plan/effects.h"
 #include "core/plan/extent.h"
 #include "core/plan/foam_tiles.h"
 #include "core/plan/grid_layout.h"

@@ -14,7 +14,6 @@
 
 #include "core/plan/breaking.h"
 #include "core/plan/choppiness.h"
-#include "core/plan/effects.h"
 #include "core/plan/filter.h"
 #include "core/plan/foam.h"
 #include "core/plan/gusts.h"

@@ -1,4 +1,5 @@
 #include "core/waves/folding.h"
+#include "core/plan/effects.h"
 #include "core/plan/spray.h"
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/lighting/lighting.h"
+#include "core/plan/effects.h"
 #include "core/surface/fitted_cage.h"
 #include "core/surface/patch.h"
 #include "plugin/accuracy/rows.h"

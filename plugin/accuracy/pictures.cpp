@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "core/plan/effects.h"
 #include "core/plan/taps.h"
 #include "core/scene/text.h"
 #include "plugin/accuracy/picture_trials.h"

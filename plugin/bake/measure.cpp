@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 
+#include "core/plan/effects.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/plan/effects.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 

@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "core/plan/effects.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "plugin/budget/budget.h"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/precision.h"
+#include "core/plan/effects.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
 #include "core/scene/text.h"

@@ -11,6 +11,7 @@
 #include "core/base/instruction_set.h"
 #include "core/lighting/air.h"
 #include "core/lighting/tone.h"
+#include "core/plan/effects.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
@@ -68,8 +69,8 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
 
 // What a picture depends on, besides the camera at its frame.
 FeedSet feeds_beside_the_view(const RenderOptions& options) {
-    FeedSet fed =
-        feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Grid, Feed::Light, Feed::Water);
+    FeedSet fed = feeds(Feed::Clock, Feed::Waves, Feed::Grid, Feed::Light, Feed::Water);
+    for (const EffectRow& row : effect_table()) fed |= row.feeds;
     if (options.lighting.spray) fed |= feeds(Feed::Spray);
     return fed;
 }

@@ -74,7 +74,7 @@ TEST(Effects, ThePageListsEachWithItsCostOrWhyItIsOff) {
     EXPECT_NE(page_of(dry).find("\n  no spray: there is none without whitecaps"), std::string::npos);
     // Velocities along x and y, and the displacement itself: what breaks keeps its displacement gradient.
     EXPECT_NE(all.find("\n  horizontal displacement: 4 transforms, "), std::string::npos) << all;
-    EXPECT_NE(all.find("\n  gusts: nothing\n"), std::string::npos) << all;
+    EXPECT_NE(all.find("\n  gusts: no transform and no memory\n"), std::string::npos) << all;
 }
 
 TEST(Effects, TheGainOfSlopesStandsUnderTheirVariance) {

@@ -4,6 +4,7 @@
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "pelagic/version.h"
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/watch.h"

@@ -361,7 +361,7 @@ std::string content_of(const CageMesh& mesh) {
 
 }  // namespace
 
-std::string text_of(CageError::Where where) {
+std::string PELAGIC_VERSION_NAMESPACE::text_of(CageError::Where where) {
     constexpr const char* kParts[] = {"the mesh", "point", "texture coordinate", "face", "crease",
                                       "corner",   "hole"};
     const std::string part = kParts[static_cast<std::size_t>(where.part)];

@@ -300,4 +300,14 @@ void CageSurface::faces_at(int frame, Faces& faces) const {
     faces = laid_at(frame)->faces;
 }
 
+std::unique_ptr<const RestSurface> make_cage_surface(const Scene& scene, const Extent& extent) {
+    return std::make_unique<const CageSurface>(scene, extent);
+}
+
 }  // namespace pelagic
+
+// Whoever links pelagic_cage asks for this name, and so gets the function above, which the core asks for weakly.
+extern "C" {
+extern const char cages_are_linked;
+const char cages_are_linked = 0;
+}

@@ -98,4 +98,7 @@ class CageSurface final : public RestSurface {
     mutable std::shared_ptr<const Fineness> fineness_;
 };
 
+// As the table of surfaces asks for it.
+std::unique_ptr<const RestSurface> make_cage_surface(const Scene& scene, const Extent& extent);
+
 }  // namespace pelagic

@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "core/scene/text.h"
-#include "core/surface/cage.h"
 #include "core/surface/earth.h"
 #include "core/surface/near_far.h"
 #include "core/surface/patch.h"
@@ -18,6 +17,10 @@
 #include "core/surface/rungs.h"
 
 namespace pelagic {
+
+// Of the library pelagic_cage, which alone needs OpenSubdiv: null where a program isn't linked with it.
+[[gnu::weak]] std::unique_ptr<const RestSurface> make_cage_surface(const Scene& scene, const Extent& extent);
+
 namespace {
 
 // Points on a square lattice about the origin, `margin` of them outside the patch on each side.
@@ -221,12 +224,18 @@ std::unique_ptr<const RestSurface> make_patch(const Scene& scene, const Extent& 
                                                                 : make<Patch>(scene, extent);
 }
 
+std::unique_ptr<const RestSurface> make_cage(const Scene& scene, const Extent& extent) {
+    if (!make_cage_surface)
+        throw std::invalid_argument("surface.kind = \"cage\": this program isn't linked with Pelagic::cage");
+    return make_cage_surface(scene, extent);
+}
+
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
     {SurfaceKind::Patch, make_patch},
     {SurfaceKind::ProjectedGrid, make<CameraGrid>},
     {SurfaceKind::NearFar, make<NearFar>},
     {SurfaceKind::Planet, make<Planet>},
-    {SurfaceKind::Cage, make<CageSurface>},
+    {SurfaceKind::Cage, make_cage},
 });
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "core/plan/copies.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "pelagic/version.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/exr/exr.h"
 

@@ -19,6 +19,7 @@
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/surface/view.h"
+#include "pelagic/version.h"
 #include "plugin/bake/volumes.h"
 #include "plugin/exr/exr.h"
 #include "plugin/light/light.h"

@@ -10,6 +10,7 @@
 #include "core/evaluate/places.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "pelagic/version.h"
 #include "plugin/bake/level_set.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/volumes.h"

@@ -2,6 +2,7 @@
 #include "plugin/cli/help.h"
 
 #include "core/base/instruction_set.h"
+#include "pelagic/version.h"
 
 namespace pelagic::cli::help {
 

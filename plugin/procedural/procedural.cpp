@@ -21,6 +21,7 @@
 #include "core/surface/earth.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "pelagic/version.h"
 #include "plugin/light/light.h"
 #include "plugin/procedural/c_interface.h"
 #include "plugin/procedural/expansion.h"

@@ -6,6 +6,7 @@
 #include "core/plan/effects.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "pelagic/version.h"
 #include "plugin/budget/budget.h"
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"

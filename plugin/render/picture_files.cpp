@@ -17,6 +17,7 @@
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
+#include "pelagic/version.h"
 #include "plugin/exr/exr.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"

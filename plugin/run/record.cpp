@@ -25,6 +25,7 @@
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/viscous_cutoff.h"
 #include "core/waves/whitecaps.h"
+#include "pelagic/version.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
 #include "plugin/light/light.h"

@@ -15,7 +15,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 CONSUMER = SOURCE / "tests/package/consumer"
 cmake, build, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
 prefix = folder / "moved/elsewhere"
-OWN_FLAGS = ("-Werror", "-Wconversion", "-march=", "-fsanitize", "GLM_FORCE", "PELAGIC_VERSION")
+OWN_FLAGS = ("-Werror", "-Wconversion", "-march=", "-fsanitize", "-ffp-contract", "GLM_FORCE")
 
 
 def run(*command, **more):
@@ -60,26 +60,44 @@ if "python" in sys.argv[4:]:
     run("/usr/bin/python3", "-c", "import pelagic, sys; pelagic.bake(pelagic.Scene.from_file(sys.argv[1]), sys.argv[2])", shot, folder / "by_python",
         cwd="/", env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")})
     expect(len(list((folder / "by_python").rglob("*.vdb"))) == 1, "the module writes no volume")
-headers = sorted(p.relative_to(prefix / "include/pelagic") for p in prefix.glob("include/pelagic/core/**/*.h"))
-expect({p.relative_to(SOURCE) for p in SOURCE.glob("core/**/*.h") if not p.name.endswith("-inl.h")} == set(headers),
-       "the headers aren't those of core")
+headers = sorted(str(p.relative_to(prefix / "include")) for p in (prefix / "include").rglob("*") if p.is_file())
+expect(headers == [f"pelagic/{name}.h" for name in ("cage", "ocean", "procedural", "scene", "version")], f"the headers are {headers}")
 pc = {**os.environ, "PKG_CONFIG_PATH": str(next(prefix.rglob("pkgconfig")))}
 cflags = run("pkg-config", "--cflags", "pelagic-core", env=pc).split()
 libs = run("pkg-config", "--libs", "pelagic-core", env=pc).split()
 expect(str(prefix) in " ".join(cflags), f"pkg-config doesn't say where it was moved to: {cflags}")
-all_of_them = folder / "all.cpp"
-all_of_them.write_text("".join(f'#include "{header}"\n' for header in headers))
-run("g++", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", *cflags, all_of_them)
+for header in headers:
+    alone = folder / "alone.cpp"
+    alone.write_text(f"#include <{header}>\n")
+    run("g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror", *cflags, alone)
+
+# One number, whoever is asked; and names of C++ that other versions' libraries don't have.
+version = re.search(r'^set\(PACKAGE_VERSION "(.*)"\)', next(prefix.rglob("pelagic-config-version.cmake")).read_text(), re.M)[1]
+expect(run("pkg-config", "--modversion", "pelagic-core", env=pc).strip() == version, "pkg-config has another version")
+expect(run(prefix / "bin/pelagic", "--version").startswith(f"pelagic {version}\n"), "the program has another version")
+if "python" in sys.argv[4:]:
+    expect(run("/usr/bin/python3", "-c", "import pelagic; print(pelagic.__version__)", cwd="/",
+               env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")}).strip() == version, "the module has another version")
+expect("osd" not in " ".join(libs), f"OpenSubdiv is forced on who asks for no cages: {libs}")
+major, minor, patch = version.split(".")
+expect(f"pelagic::v{major}_{minor}::Ocean::water_at" in run("nm", "-C", "--defined-only", next(prefix.rglob("libpelagic_core.a"))),
+       "the library's names have no version")
 
 # Three users, with their own compilers and flags, get the bits that our own build gets.
 own = run(build / "tests/package_consumer")
-expect(len(own.splitlines()) == 9, f"the consumer says\n{own}")
-run("clang++", "-Wall", "-Wextra", "-Werror", "-O1", *cflags, CONSUMER / "consumer.cpp", "-o", folder / "by_pkg_config", *libs)
+expect(len(own.splitlines()) == 9 and own.endswith(f"{version} {major} {minor} {patch}\n"), f"the consumer says\n{own}")
+run("clang++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-O1", *cflags, CONSUMER / "consumer.cpp", "-o", folder / "by_pkg_config", *libs)
 expect(run(folder / "by_pkg_config") == own, "other bits by clang++ and pkg-config")
 found = by_cmake("found", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
                  "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_CXX_FLAGS=-march=native -Wall -Wextra -Wpedantic -Werror")
 run(cmake, "--build", found)
+expect("osd" not in run("ninja", "-C", found, "-t", "commands"), "OpenSubdiv is linked by who asks for no cages")
 expect(run(found / "consumer") == own, "other bits by g++ -march=native and find_package")
+
+# The first programs.
+EXAMPLES = SOURCE / "examples"
+run("g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", *cflags, EXAMPLES / "first_sea.cpp", "-o", folder / "first_sea", *libs)
+expect(" m high" in run(folder / "first_sea"), "the first sea says nothing")
 
 # The shared library, from C, without any other library's package: the example by pkg-config and by CMake, the same mesh.
 example, shot = SOURCE / "examples/procedural.c", SOURCE / "examples/first-shot.toml"
@@ -88,11 +106,13 @@ STRICT = ("-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror")
 run("cc", *STRICT, *procedural[0], example, "-o", folder / "procedural", *procedural[1])
 run("c++", "-x", "c++", "-fsyntax-only", "-std=c++11", "-Wall", "-Wextra", "-pedantic", "-Werror",
     prefix / "include/pelagic/procedural.h")
+run("cc", *STRICT, *procedural[0], EXAMPLES / "first_sea.c", "-o", folder / "first_sea_in_c", *procedural[1])
 renderer = folder / "renderer"
 run(cmake, "-S", SOURCE / "tests/package/renderer", "-B", renderer, "-G", "Ninja", f"-DEXAMPLE={example}",
     f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_C_FLAGS={' '.join(STRICT)}", "-DCMAKE_CXX_COMPILER=/none/is/needed")
 run(cmake, "--build", renderer)
 (lib,) = {p.parent for p in prefix.rglob("libpelagic.so")}
+expect(" m high" in run(folder / "first_sea_in_c", shot, env={**os.environ, "LD_LIBRARY_PATH": str(lib)}), "the first sea in C says nothing")
 meshes = []
 for program in (folder / "procedural", renderer / "renderer"):
     meshes.append(folder / f"{program.name}.obj")
@@ -112,5 +132,5 @@ for word in ("GLFW", "IMGUI", "EPOXY", "EGL", "GTest", "pybind11", "PELAGIC_BLEN
     expect("\n" + word not in cache, f"{word} is looked for inside another project")  # a line's begin: not in help texts
 commands = json.loads((part / "compile_commands.json").read_text())
 (theirs,) = [c["command"] for c in commands if c["file"].endswith("consumer.cpp")]
-expect("-ffp-contract=off" in theirs and not any(flag in theirs for flag in OWN_FLAGS), f"our rules in their build: {theirs}")
+expect(not any(flag in theirs for flag in OWN_FLAGS), f"our rules in their build: {theirs}")
 print(f"{len(headers)} headers, {prefix}: by CMake, pkg-config and as a part, the same bits")

@@ -10,6 +10,10 @@ allow() {
         grep -vE "\"($(echo "$1 $2" | tr ' ' '|'))/" || true)
     [ -z "$found" ] || { echo "$found: not below $1"; bad=1; }
 }
+# What others may use includes nothing else of ours; and ocean.h is of core/evaluate.
+found=$(grep -rnE '#include "' core/include | grep -v '"pelagic/' || true)
+found+=$(grep -rnl '"pelagic/ocean.h"' core/{base,scene,spectrum,surface,plan,waves,lighting} || true)
+[ -z "$found" ] || { echo "$found: not for core/include, or not below it"; bad=1; }
 allow core/base ""
 allow core/scene "core/base"
 allow core/spectrum "core/base core/scene"

@@ -11,9 +11,10 @@
 #include <memory>
 #include <span>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
+#include "pelagic/version.h"
 
-namespace pelagic {
+namespace pelagic::inline PELAGIC_VERSION_NAMESPACE {
 
 struct WaterState {
     float height_m = 0.0f;               // z; the sea at rest is at 0
@@ -47,5 +48,5 @@ class Ocean {
     struct State;
     std::unique_ptr<State> state_;
 };
-
-}  // namespace pelagic
+// clang-format off
+}  // namespace pelagic::inline PELAGIC_VERSION_NAMESPACE (clang-format 14 replaces it by itself)

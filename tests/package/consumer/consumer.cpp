@@ -1,44 +1,30 @@
-// Heights and normals of a sea through a camera and at a buoy, every bit of them: what a user of the package computes.
-#include <cstddef>
-#include <cstdio>
-#include <memory>
-#include <vector>
+// The water at a buoy and at floats near and far, every bit of it: what a user of the package asks.
+#include <pelagic/ocean.h>
+#include <pelagic/version.h>
 
-#include "core/evaluate/prepared_query.h"
-#include "core/lighting/water.h"
-#include "core/plan/plan.h"
-#include "core/surface/view.h"
-#include "core/waves/frame.h"
+#include <array>
+#include <cstdio>
+#include <type_traits>
+
+// Names stand in the version's namespace, and without it.
+static_assert(std::is_same_v<pelagic::Ocean, pelagic::PELAGIC_VERSION_NAMESPACE::Ocean>);
 
 int main() {
-    using namespace pelagic;
-    Scene scene;
+    pelagic::Scene scene;
     scene.sea.wind_speed_mps = 14.0;
-    scene.waves.cascades = {{.size_m = 200.0, .resolution = 64}};
-
-    Query query;
-    query.name = "points";
-    query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
-    query.cell_m = query.pixel_m = {4.0};
-    Frame<float> frame(
-        std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.double_precision = false})));
-    frame.set(1.5);
-    const PreparedQuery<float> sea(frame, 0, query.products);
-
-    const View view = view_at(scene.camera, 1.0);
-    std::vector<glm::vec2> rest{{3.0f, -8.0f}};
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec3 along = view.direction({160.0 * i, 700.0});
-        if (along.z < 0.0)
-            rest.emplace_back(glm::dvec2(view.position_m) +
-                              glm::dvec2(along) * (-view.position_m.z / along.z));
-    }
-    std::vector<glm::vec3> position(rest.size()), normal(rest.size());
-    Results<float> results;
-    results.set(Product::Position, {position.data()});
-    results.set(Product::Normal, {normal.data()});
-    sea.evaluate({.count = rest.size(), .rest_m = {rest.data()}}, results);
-    for (std::size_t i = 0; i < rest.size(); ++i)
-        std::printf("%a %a %a\n", static_cast<double>(position[i].z), static_cast<double>(normal[i].x),
-                    static_cast<double>(normal[i].y));
+    scene.waves.cascades.resize(1);
+    scene.waves.cascades[0].size_m = 200.0;
+    scene.waves.cascades[0].resolution = 64;
+    pelagic::Ocean ocean(scene, 4.0);
+    ocean.set(scene.shot.time_s(37.0));
+    std::array<glm::dvec2, 8> places;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        places[i] = {3.0 + 1e5 * static_cast<double>(i), -8.0 - 70.0 * static_cast<double>(i)};
+    std::array<pelagic::WaterState, 8> water;
+    ocean.water_at(places, water);
+    for (const pelagic::WaterState& here : water)
+        std::printf("%a %a %a %a\n", static_cast<double>(here.height_m), static_cast<double>(here.normal.x),
+                    static_cast<double>(here.normal.y), static_cast<double>(here.velocity_mps.z));
+    std::printf("%s %d %d %d\n", PELAGIC_VERSION, PELAGIC_VERSION_MAJOR, PELAGIC_VERSION_MINOR,
+                PELAGIC_VERSION_PATCH);
 }

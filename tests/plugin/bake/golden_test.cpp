@@ -29,6 +29,7 @@
 #include "core/plan/fingerprint.h"
 #include "core/plan/outputs.h"
 #include "core/scene/names.h"
+#include "pelagic/version.h"
 #include "plugin/bake/bake.h"
 #include "plugin/files/files.h"
 #include "plugin/light/exposure.h"

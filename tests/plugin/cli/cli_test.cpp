@@ -9,6 +9,7 @@
 
 #include "core/scene/canonical.h"
 #include "core/scene/presets.h"
+#include "pelagic/version.h"
 #include "plugin/render/layers.h"
 #include "plugin/shot/shot.h"
 #include "tests/plugin/cli/program.h"

@@ -23,7 +23,7 @@ using namespace test;
 constexpr double kTime_s = 2.5, kFootprint_m = 0.5;
 
 // Cascades of its own, so that who asks has no say in which there are.
-std::string shot_text(double choppiness) {
+std::string sea_text(double choppiness) {
     return "[sea]\nwind_speed_mps = 15.0\n[waves]\nchoppiness = " + std::to_string(choppiness) +
            "\ncascades = [ { size_m = 250.0, resolution = 256 }, { size_m = 31.0, resolution = 128 } ]\n";
 }
@@ -51,7 +51,7 @@ struct InC {
 };
 
 // x, y, … of each: heights, then normals and velocities.
-std::vector<float> in_python(const std::string& text, const std::vector<glm::dvec2>& places) {
+std::vector<float> water_in_python(const std::string& text, const std::vector<glm::dvec2>& places) {
     std::string list;
     for (const glm::dvec2 place : places) {
         char one[80];
@@ -75,7 +75,7 @@ std::vector<float> in_python(const std::string& text, const std::vector<glm::dve
 
 TEST(OneWater, IsTheSameInCAndCppAndPython) {
     for (const double choppiness : {1.0, 8.0}) {  // a sea, and one that has folded over itself
-        const std::string text = shot_text(choppiness);
+        const std::string text = sea_text(choppiness);
         const auto at = places();
         Ocean ocean(parse_shot(text, "shot.toml", check_scene), kFootprint_m);
         ocean.set(kTime_s);
@@ -84,7 +84,7 @@ TEST(OneWater, IsTheSameInCAndCppAndPython) {
         const InC c(text);
         std::vector<pelagic_water> c_water(at.size(), PELAGIC_INIT(pelagic_water));
         ASSERT_EQ(c.ask(at, 0.0, c_water.data()), PELAGIC_OK) << c.error.message;
-        const std::vector<float> python = in_python(text, at);
+        const std::vector<float> python = water_in_python(text, at);
         ASSERT_EQ(python.size(), 7 * at.size());
         for (std::size_t i = 0; i < at.size(); ++i) {
             const WaterState& here = water[i];
@@ -105,7 +105,7 @@ TEST(OneWater, IsTheSameInCAndCppAndPython) {
 }
 
 TEST(OneWater, InCItHasTheFootprintThatIsAskedFor) {
-    const InC c(shot_text(1.0));
+    const InC c(sea_text(1.0));
     const auto at = places();
     std::vector<pelagic_water> fine(at.size(), PELAGIC_INIT(pelagic_water)), coarse = fine;
     ASSERT_EQ(c.ask(at, 0.0, fine.data()), PELAGIC_OK);
@@ -124,7 +124,7 @@ TEST(OneWater, InCEachIsAsLargeAsTheFirstSays) {
         pelagic_water water;
         double later;
     };
-    const InC c(shot_text(1.0));
+    const InC c(sea_text(1.0));
     const auto at = places();
     std::vector<pelagic_water> plain(at.size(), PELAGIC_INIT(pelagic_water));
     ASSERT_EQ(c.ask(at, 0.0, plain.data()), PELAGIC_OK);
@@ -138,7 +138,7 @@ TEST(OneWater, InCEachIsAsLargeAsTheFirstSays) {
 }
 
 TEST(OneWater, InCWhatIsNotAcceptedIsRefusedAndChangesNothing) {
-    const InC c(shot_text(1.0));
+    const InC c(sea_text(1.0));
     pelagic_water water = PELAGIC_INIT(pelagic_water), none{};
     water.height_m = 77.0f;
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -96,7 +96,7 @@ typedef struct pelagic_error {
 typedef struct pelagic_sea pelagic_sea;
 typedef struct pelagic_frame pelagic_frame;
 
-/* "0.1.0" */
+/* "0.1.0": that of the library; pelagic/version.h has that of the headers. */
 PELAGIC_API const char* pelagic_version(void);
 /* "invalid argument", … */
 PELAGIC_API const char* pelagic_status_text(pelagic_status status);

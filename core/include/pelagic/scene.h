@@ -1,0 +1,224 @@
+// What the artist asks for, as a plain value: the first link of Scene → Plan → Sea → Frame → evaluate. Nothing is computed in the
+// headers that others have: with their compilers and flags the bits would be others.
+//
+// Each struct mirrors a table of the shot file, each member the key of the same name (scene/keys.h describes
+// them); the defaults here *are* the shot file's defaults. Nothing in a Scene depends on a file: a measured
+// spectrum and a cage are in it as data, already parsed. validate() (scene/validate.h) says whether the values make sense
+// together.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pelagic/cage.h"
+#include "pelagic/version.h"
+
+namespace pelagic::inline PELAGIC_VERSION_NAMESPACE {
+
+enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
+enum class ShortWaves { Elfouhaily, None };
+enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
+enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
+enum class WaveModel { Fft, Trochoid };
+enum class Tiling { Random, Periodic };
+enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
+enum class CameraInterpolation { Linear, Smooth };
+enum class WaterType { Ocean, Coastal, Turbid };
+enum class QualityLevel { Draft, Preview, Final, Reference };
+enum class MeshFormat { Usda, Usdc, None };
+enum class MeshAttribute { Normal, Velocity, SlopeVariance, Whitecaps };
+enum class MapKind { Displacement, Normal, SlopeVariance, Whitecaps };
+enum class MeshScheme { None, CatmullClark };
+enum class VolumeKind { Spray, LevelSet };
+
+// [shot]
+struct Shot {
+    std::string name = "sea";  // letters, digits, _ and -
+    int first_frame = 1;       // both included; time_s() says what a frame shows
+    int last_frame = 48;
+    double fps = 24.0;           // > 0
+    std::uint64_t seed = 1;      // 0 … 2^63 − 1
+    double loop_s = 0.0;         // > 0: repeats exactly after this long, a whole number of frames; 0: no loop
+    double time_scale = 1.0;     // seconds of the sea in a second on the screen, ≥ 0: 1/2 is slow motion
+    double time_offset_s = 0.0;  // the sea's time at frame 1
+
+    // The sea's time that a frame shows, also between two of them: t = offset + scale (f − 1)/fps. In a loop the
+    // time in its first round: counted in whole frames, so that frames a loop apart show the same to the bit.
+    double time_s(double frame) const;
+    // loop_s as the whole number of frames that it is to within rounding; 0: no loop.
+    double exact_loop_s() const;
+    // The sea's own period: what it goes through in a loop. 0: no loop, or a sea that stands still.
+    double sea_loop_s() const;
+};
+
+// A swell from a far storm: a second, narrow spectrum.
+struct Swell {
+    double height_m = 0.0;       // 4 √m0, ≥ 0
+    double period_s = 10.0;      // peak period, > 0
+    double direction_deg = 0.0;  // travelling towards, counter-clockwise from +x
+};
+
+// One hour of a directional buoy, in Pelagic's convention (not the buoy's): already turned to "towards,
+// counter-clockwise from +x". c1, c2: the first and second Fourier coefficients ∫D e^{iθ} dθ and ∫D e^{2iθ}
+// dθ.
+struct MeasuredSpectrum {
+    struct Bin {
+        double frequency_hz;
+        double density_m2_per_hz;  // ≥ 0
+        double c1_re, c1_im;
+        double c2_re, c2_im;
+        bool has_direction;  // false: r1, α1, … were missing; only the density counts
+    };
+    std::vector<Bin> bins;  // by rising frequency, at least two
+    std::string station;    // for messages and the record, e.g. "41010"
+    std::string time;       // e.g. "2019-02-06T00:40:00Z"
+    std::string file = {};  // where it was read; what a shot depends on is the content
+};
+
+// [sea]
+struct SeaState {
+    double wind_speed_mps = 10.0;                              // 10 m above the sea, 0 … 80
+    double wind_direction_deg = 0.0;                           // blowing towards, counter-clockwise from +x
+    double fetch_m = 300e3;                                    // > 0
+    double depth_m = std::numeric_limits<double>::infinity();  // > 0
+    SpectrumKind spectrum = SpectrumKind::Jonswap;
+    // The tail and the spreading that take the spectrum's place beyond a few peak wavenumbers.
+    ShortWaves short_waves = ShortWaves::Elfouhaily;
+    std::optional<double> significant_height_m;  // of the wind sea or the measured one, instead of its own
+    double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
+    double gust_strength = 0.0;                  // 0 … 1: how much the wind varies over the surface
+    double gust_size_m = 300.0;                  // > 0
+    SpreadingKind spreading = SpreadingKind::Hasselmann;
+    std::vector<Swell> swell;
+    std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File
+};
+
+// Multiplies the amplitudes of waves of these lengths.
+struct BandGain {
+    double from_m = 1.0, to_m = 10.0;  // wavelengths at its edges, in either order
+    double gain = 1.0;                 // of amplitudes, ≥ 0
+};
+
+struct CascadeSize {
+    double size_m = 400.0;               // period, > 0
+    int resolution = 512;                // even, 16 … 8192
+    std::optional<double> choppiness{};  // λ ≥ 0 of its waves; without: the shot's
+};
+
+// [waves]
+struct Waves {
+    WaveModel model = WaveModel::Fft;
+    double choppiness = 1.0;  // λ ≥ 0
+    // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the
+    // waves that are shorter than the trains.
+    std::vector<CascadeSize> cascades;
+    Tiling tiling = Tiling::Random;    // of the cascades (core/plan/copies.h)
+    std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
+    // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
+    // spectrum's (core/plan/trains.h).
+    int trains = 60;  // 1 … 10000
+    std::optional<double> shortest_m, longest_m;
+};
+
+// [surface]
+struct Surface {
+    SurfaceKind kind = SurfaceKind::Patch;
+    double size_m = 200.0;  // > 0
+    int resolution = 256;   // quads a side, 1 … 8192; (N+1)² vertices
+    double cell_px = 8.0;   // of the projected grid, which pictures of the sea always use: a cell's side
+    bool earth_curvature = true;  // of surfaces to the horizon: they lie on the earth's sphere
+    std::string cage_file;        // where the cage was read, or empty; what a shot depends on is the content
+    std::shared_ptr<const Cage> cage;  // with SurfaceKind::Cage
+    CageLevel cage_level;
+};
+
+struct CameraKey {
+    int frame = 1;
+    glm::dvec3 position_m{0.0};
+    glm::dvec3 look_at_m{0.0};
+    std::optional<double> fov_deg{};  // without: the camera's
+    double roll_deg = 0.0;            // about the line of sight; above 0 the camera's right side goes down
+};
+
+// [camera]
+struct Camera {
+    glm::dvec3 position_m{0.0, -60.0, 4.0};
+    glm::dvec3 look_at_m{0.0, 0.0, 0.0};                              // up is z; looking along z, +y
+    std::vector<CameraKey> keys;                                      // by rising frame, constant outside
+    CameraInterpolation interpolation = CameraInterpolation::Linear;  // between keys
+    double fov_deg = 50.0;                                            // horizontal, 1 … 179
+    glm::ivec2 resolution{1280, 720};                                 // 1 … 65536 each
+};
+
+// [light]
+struct Light {
+    double sun_elevation_deg = 20.0;  // −90 … 90
+    double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
+    // "daylight", or the path of a lat-long picture, as the host that loaded the scene finds it.
+    std::string sky = "daylight";
+    double turbidity = 3.0;                 // of the daylight: 1.7 … 10, haze
+    std::optional<double> visibility_km{};  // of the air under a picture's sky; without: clear
+};
+
+// [water]
+struct Water {
+    WaterType type = WaterType::Ocean;
+    double chlorophyll_mg_m3 = 0.1;  // 0.01 … 100
+};
+
+// [effects]
+struct Effects {
+    bool whitecaps = true;
+    double foam_decay_s = 4.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
+    double foam_drift = 0.02;   // of the wind's speed, along the wind
+    WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
+    double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986
+    double whitecap_amount = 1.0;  // ≥ 0, times the law
+    double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
+    double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
+    double foam_streaks = 0.5;     // 0 … 1, along the wind
+    bool spray = false;
+    double spray_gain = 1.0;
+};
+
+// [quality]
+struct Quality {
+    QualityLevel level = QualityLevel::Final;
+    // Instead of the level, one of the two (core/scene/budget.h); nothing that is planned has one.
+    std::optional<double> max_error{};
+    std::optional<double> frame_ms{};
+};
+
+// [output]
+struct Output {
+    MeshFormat mesh = MeshFormat::Usdc;
+    std::vector<MeshAttribute> attributes{MeshAttribute::Normal, MeshAttribute::Velocity,
+                                          MeshAttribute::SlopeVariance, MeshAttribute::Whitecaps};
+    std::vector<MapKind> maps;
+    int map_resolution = 512;  // 1 … 8192 pixels a side
+    bool cascade_tiles = false;
+    MeshScheme mesh_scheme = MeshScheme::None;
+    std::vector<VolumeKind> volumes;
+    double voxel_m = 0.5;  // > 0
+};
+
+struct Scene {
+    Shot shot;
+    SeaState sea;
+    Waves waves;
+    Surface surface;
+    Camera camera;
+    Light light;
+    Water water;
+    Effects effects;
+    Quality quality;
+    Output output;
+};
+// clang-format off
+}  // namespace pelagic::inline PELAGIC_VERSION_NAMESPACE (clang-format 14 replaces it by itself)

@@ -34,10 +34,6 @@ constexpr std::size_t kGroups = kWorkGroups.size();
 // The group of each Work.
 constexpr std::array<std::size_t, kWorkCount> kGroupOf{0, 0, 1, 2, 3, 2, 4, 5, 6, 5, 5, 5};
 
-double ms_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 // A small sea or picture whose frames are timed one after another.
 struct Probe {
     WorkDone work;
@@ -57,6 +53,7 @@ Probe bake_probe(Scene scene) {
 Probe picture_probe(SkyQuality sky, glm::ivec2 size, double foam_decay_s) {
     Scene scene;
     scene.shot.last_frame = 1000;
+    scene.sea.wind_speed_mps = 14.0;
     scene.effects.foam_decay_s = foam_decay_s;
     scene.camera.resolution = size;
     scene.surface.cell_px = 2.0;
@@ -81,82 +78,71 @@ Scene small_sea(QualityLevel level, int quads) {
     return scene;
 }
 
-struct ProbeRow {
-    double recorded_ms;  // least of its frames on the machine of recorded_rates()
-    Probe (*make)();
-};
 // Each has much of one group, and together they have all.
-constexpr std::array kProbes = std::to_array<ProbeRow>({
-    {1.0, [] { return bake_probe(small_sea(QualityLevel::Draft, 96)); }},
-    {1.0, [] { return bake_probe(small_sea(QualityLevel::Final, 96)); }},
-    {1.0, [] { return bake_probe(small_sea(QualityLevel::Final, 24)); }},
-    {1.0,
-     [] {
-         Scene scene = small_sea(QualityLevel::Final, 192);
-         scene.waves.cascades = {{100.0, 64, {}}};
-         return bake_probe(scene);
-     }},
-    {1.0,
-     [] {
-         Scene scene = small_sea(QualityLevel::Final, 96);
-         scene.waves.model = WaveModel::Trochoid;
-         return bake_probe(scene);
-     }},
-    {1.0,
-     [] {
-         Scene scene = small_sea(QualityLevel::Final, 192);
-         scene.sea.wind_speed_mps = 18.0;
-         scene.waves.cascades = {{200.0, 64, {}}};
-         scene.effects.foam_decay_s = 4.0;
-         scene.surface.size_m = 300.0;
-         return bake_probe(scene);
-     }},
-    {1.0,
-     [] {
-         return picture_probe(SkyQuality::Nine, {48, 27}, 0.0);
-     }},
-    {1.0,
-     [] {
-         return picture_probe(SkyQuality::Nine, {32, 18}, 4.0);
-     }},
-    {1.0,
-     [] {
-         return picture_probe(SkyQuality::Integral, {16, 9}, 0.0);
-     }},
+constexpr std::array kProbes = std::to_array<Probe (*)()>({
+    [] { return bake_probe(small_sea(QualityLevel::Draft, 96)); },
+    [] { return bake_probe(small_sea(QualityLevel::Final, 96)); },
+    [] { return bake_probe(small_sea(QualityLevel::Final, 24)); },
+    [] {
+        Scene scene = small_sea(QualityLevel::Final, 192);
+        scene.waves.cascades = {{100.0, 64, {}}};
+        return bake_probe(scene);
+    },
+    [] {
+        Scene scene = small_sea(QualityLevel::Final, 128);
+        scene.waves.model = WaveModel::Trochoid;
+        scene.waves.trains = 300;
+        scene.waves.shortest_m = 2.0;
+        return bake_probe(scene);
+    },
+    [] {
+        Scene scene = small_sea(QualityLevel::Final, 96);
+        scene.sea.wind_speed_mps = 18.0;
+        scene.waves.cascades = {{200.0, 64, {}}};
+        scene.effects.foam_decay_s = 4.0;
+        scene.surface.size_m = 200.0;
+        return bake_probe(scene);
+    },
+    [] {
+        return picture_probe(SkyQuality::Nine, {64, 36}, 0.0);
+    },
+    [] {
+        return picture_probe(SkyQuality::Nine, {48, 27}, 4.0);
+    },
+    [] {
+        return picture_probe(SkyQuality::Integral, {16, 9}, 0.0);
+    },
 });
 
-double least_ms(const Probe& probe, const BuildWatch& watch) {
-    constexpr double kLeast_ms = 400.0;
+double least_ms(const Probe& probe, const BuildWatch& watch, double (*now_ms)()) {
+    constexpr double kLeast_ms = 300.0;
     constexpr int kFewest = 5;
     constexpr int kPause_ms = 4;  // who has slept isn't interrupted soon by other programs
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = now_ms();
     probe.next_frame();  // goes through the foam's past, and allocates
     double least = 0.0;
-    for (int i = 0; i < kFewest || ms_since(begin) < kLeast_ms; ++i) {
+    for (int i = 0; i < kFewest || now_ms() - begin < kLeast_ms; ++i) {
         stop_if(watch.cancel);
         std::this_thread::sleep_for(std::chrono::milliseconds(kPause_ms));
-        const auto start = std::chrono::steady_clock::now();
+        const double start = now_ms();
         probe.next_frame();
-        const double ms = ms_since(start);
+        const double ms = now_ms() - start;
         least = i == 0 ? ms : std::min(least, ms);
     }
     return least;
 }
 
-// The groups' times that come nearest to what the probes took, over what they took when the rates were recorded. Each group is
-// pulled a little towards the mean of all, so that no probe's noise sends one far off.
-std::array<double, kGroups> fitted(const std::vector<std::array<double, kGroups>>& shares,
-                                   const std::vector<double>& ratios) {
-    constexpr double kPull = 0.01;
-    double mean = 0.0;
-    for (const double ratio : ratios) mean += ratio / static_cast<double>(ratios.size());
+// The groups' times that come nearest to what the probes took. shares: of each probe, the groups' recorded times over what it took,
+// which is `mean` times the recorded time on average: every group is pulled a little towards that, so that no noise sends one far off.
+std::array<double, kGroups> fitted(const std::vector<std::array<double, kGroups>>& shares, double mean) {
+    constexpr double kPull = 0.003;
     std::array<double, kGroups> times{};
     times.fill(mean);
     for (int round = 0; round < 1000; ++round)
         for (std::size_t g = 0; g < kGroups; ++g) {
-            double above = kPull * mean, below = kPull;
+            double above = kPull / mean, below = kPull / (mean * mean);
             for (std::size_t p = 0; p < shares.size(); ++p) {
-                double rest = ratios[p];
+                double rest = 1.0;
                 for (std::size_t other = 0; other < kGroups; ++other)
                     if (other != g) rest -= shares[p][other] * times[other];
                 above += rest * shares[p][g];
@@ -205,28 +191,26 @@ Calibration as_recorded() {
     return machine;
 }
 
-Calibration measure_machine(const BuildWatch& watch) {
+double wall_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+Calibration measure_machine(const BuildWatch& watch, double (*now_ms)()) {
     std::vector<std::array<double, kGroups>> shares;
-    std::vector<double> ratios;
-    for (const ProbeRow& row : kProbes) {
+    double mean = 0.0;
+    for (const auto& make : kProbes) {
         stop_if(watch.cancel);
         if (watch.progress) watch.progress(static_cast<double>(shares.size()) / kProbes.size());
-        const Probe probe = row.make();
-        ratios.push_back(least_ms(probe, watch) / row.recorded_ms);
-        const double whole = cost_ms(probe.work);
+        const Probe probe = make();
+        const double recorded_ms = cost_ms(probe.work), ms = least_ms(probe, watch, now_ms);
+        mean += ms / recorded_ms / kProbes.size();
         auto& share = shares.emplace_back();
         for (std::size_t i = 0; i < kWorkCount; ++i)
-            share[kGroupOf[i]] += recorded_rates()[i] * probe.work[i] / whole;
+            share[kGroupOf[i]] += recorded_rates()[i] * probe.work[i] / ms;
     }
     Calibration measured = as_recorded();
-    measured.times = fitted(shares, ratios);
-    if (std::getenv("PELAGIC_PROBES"))
-        for (std::size_t p = 0; p < kProbes.size(); ++p) {
-            std::fprintf(stderr, "probe %zu: %.4f ms, model %.4f, ratio %.2f;", p,
-                         ratios[p] * kProbes[p].recorded_ms, cost_ms(kProbes[p].make().work), ratios[p]);
-            for (const double s : kProbes[p].make().work) std::fprintf(stderr, " %.8g", s);
-            std::fprintf(stderr, "\n");
-        }
+    measured.times = fitted(shares, mean);
     return measured;
 }
 

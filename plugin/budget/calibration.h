@@ -41,8 +41,9 @@ struct Calibration {
 // This machine, with the threads of the calling arena, as if it took the recorded times.
 Calibration as_recorded();
 
-// Measured anew, on the threads of the calling arena. Seconds. Throws BuildCancelled.
-Calibration measure_machine(const BuildWatch& watch = {});
+// Measured anew, on the threads of the calling arena, by a clock. Seconds. Throws BuildCancelled.
+double wall_ms();
+Calibration measure_machine(const BuildWatch& watch = {}, double (*now_ms)() = wall_ms);
 
 // What an earlier one kept of this machine in the folder, whole.
 std::optional<Calibration> kept_calibration(const std::filesystem::path& folder);

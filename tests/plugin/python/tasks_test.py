@@ -125,7 +125,7 @@ class Refusals(unittest.TestCase):
             task = begun(long_bake(folder))
             task.cancel()
             self.assertTrue(task.result().cancelled)
-        task = pelagic.Sea.begin(small_scene(1024))
+        task = pelagic.Sea.begin(small_scene(2048))  # long enough to be stopped on a busy machine
         task.cancel()
         with self.assertRaises(pelagic.Cancelled):
             task.result()

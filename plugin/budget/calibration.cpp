@@ -50,10 +50,12 @@ Probe bake_probe(Scene scene) {
             }};
 }
 
-Probe picture_probe(SkyQuality sky, glm::ivec2 size, double foam_decay_s) {
+Probe picture_probe(WaveModel model, SkyQuality sky, glm::ivec2 size, double foam_decay_s) {
     Scene scene;
     scene.shot.last_frame = 1000;
     scene.sea.wind_speed_mps = 14.0;
+    scene.waves.model = model;
+    scene.waves.trains = 12;  // with them the light takes most
     scene.effects.foam_decay_s = foam_decay_s;
     scene.camera.resolution = size;
     scene.surface.cell_px = 2.0;
@@ -104,13 +106,16 @@ constexpr std::array kProbes = std::to_array<Probe (*)()>({
         return bake_probe(scene);
     },
     [] {
-        return picture_probe(SkyQuality::Nine, {64, 36}, 0.0);
+        return picture_probe(WaveModel::Trochoid, SkyQuality::Nine, {64, 36}, 0.0);
     },
     [] {
-        return picture_probe(SkyQuality::Nine, {48, 27}, 4.0);
+        return picture_probe(WaveModel::Fft, SkyQuality::Nine, {48, 27}, 0.0);
     },
     [] {
-        return picture_probe(SkyQuality::Integral, {16, 9}, 0.0);
+        return picture_probe(WaveModel::Fft, SkyQuality::Nine, {48, 27}, 4.0);
+    },
+    [] {
+        return picture_probe(WaveModel::Trochoid, SkyQuality::Integral, {16, 9}, 0.0);
     },
 });
 

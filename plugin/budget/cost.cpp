@@ -17,8 +17,6 @@ namespace {
 
 // As much as in single precision costs the sea in double (`pelagic accuracy --rows precision`: 1.4 … 1.84).
 constexpr double kDouble = 1.8;
-// Pictures look at few tiles of foam on many levels, each of which has a sea of its own, and pay more for each than bakes.
-constexpr double kFoamOfPictures = 4.0;
 
 double& at(WorkDone& work, Work what) {
     return work[static_cast<std::size_t>(what)];
@@ -114,10 +112,7 @@ WorkDone with_samples(WorkDone work, double points, double samples, double momen
             case Work::Answers:
                 work[i] *= points_factor;
                 break;
-            case Work::Foam:
-                work[i] *= kFoamOfPictures;
-                break;
-            default:  // of the light, which isn't here yet
+            default:  // the foam's past, and no light yet
                 break;
         }
     return work;

@@ -281,6 +281,6 @@ int main(int argc, char** argv) {
         row.work.erase(row.work.begin(), row.work.begin() + kFoam);
     }
     print(
-        "pictures [ms], the sea as in bakes: foam (times kFoamOfPictures what it is in bakes); samples with nine, with the integral, of sky; texels and samples of spray",
+        "pictures [ms], the sea as in bakes: foam; samples with nine, with the integral, of sky; texels and samples of spray",
         of_pictures, fitted(of_pictures));
 }

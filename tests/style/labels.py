@@ -1,4 +1,4 @@
-"""Every test that CTest knows has exactly one of the four labels, or nightly, of tests/CMakeLists.txt.
+"""Every test that CTest knows has exactly one of the labels of tests/CMakeLists.txt.
 
     labels.py CTEST BUILD-FOLDER
 """
@@ -18,9 +18,9 @@ count = dict.fromkeys(sorted(LABELS), 0)
 wrong = []
 for test in tests:
     labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
-    of_four = LABELS.intersection(labels)
-    if len(of_four) == 1:
-        count[of_four.pop()] += 1
+    of_them = LABELS.intersection(labels)
+    if len(of_them) == 1:
+        count[of_them.pop()] += 1
     else:
         wrong.append(f"{test['name']}: {', '.join(labels) or 'no label'}")
 if wrong:

@@ -13,7 +13,8 @@
 
 #include "pelagic/version.h"
 
-namespace pelagic::inline PELAGIC_VERSION_NAMESPACE {
+namespace pelagic {
+inline namespace PELAGIC_VERSION_NAMESPACE {
 
 // What the limit surface does at the cage's edges that have one face alone.
 enum class CageBoundary {
@@ -95,5 +96,5 @@ class Cage {
     CageMesh mesh_;
     std::string content_;
 };
-// clang-format off
-}  // namespace pelagic::inline PELAGIC_VERSION_NAMESPACE (clang-format 14 replaces it by itself)
+}  // namespace PELAGIC_VERSION_NAMESPACE
+}  // namespace pelagic

@@ -14,7 +14,8 @@
 #include "pelagic/scene.h"
 #include "pelagic/version.h"
 
-namespace pelagic::inline PELAGIC_VERSION_NAMESPACE {
+namespace pelagic {
+inline namespace PELAGIC_VERSION_NAMESPACE {
 
 struct WaterState {
     float height_m = 0.0f;               // z; the sea at rest is at 0
@@ -48,5 +49,5 @@ class Ocean {
     struct State;
     std::unique_ptr<State> state_;
 };
-// clang-format off
-}  // namespace pelagic::inline PELAGIC_VERSION_NAMESPACE (clang-format 14 replaces it by itself)
+}  // namespace PELAGIC_VERSION_NAMESPACE
+}  // namespace pelagic

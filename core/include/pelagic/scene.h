@@ -19,7 +19,8 @@
 #include "pelagic/cage.h"
 #include "pelagic/version.h"
 
-namespace pelagic::inline PELAGIC_VERSION_NAMESPACE {
+namespace pelagic {
+inline namespace PELAGIC_VERSION_NAMESPACE {
 
 enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
 enum class ShortWaves { Elfouhaily, None };
@@ -220,5 +221,5 @@ struct Scene {
     Quality quality;
     Output output;
 };
-// clang-format off
-}  // namespace pelagic::inline PELAGIC_VERSION_NAMESPACE (clang-format 14 replaces it by itself)
+}  // namespace PELAGIC_VERSION_NAMESPACE
+}  // namespace pelagic

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/plan/prepared_scene.h"
+#include "core/scene/budget.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
@@ -17,7 +18,6 @@
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
 #include "core/waves/folding.h"
-#include "core/scene/budget.h"
 #include "plugin/budget/budget.h"
 #include "plugin/files/files.h"
 #include "plugin/light/light.h"

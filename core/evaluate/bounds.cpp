@@ -542,13 +542,14 @@ template <class T>
 const FrameBounds<T>& BoundsByLevel<T>::from_level(double level_m) const {
     const std::lock_guard lock(lock_);
     std::unique_ptr<FrameBounds<T>>& bounds = bounds_[level_m];
+    if (bounds && bounds->is_current()) return *bounds;
     // By this thread alone, which must not take up other work meanwhile: that might wait for the lock.
     tbb::task_arena(1).execute([&] {
         if (!bounds)
             bounds = std::make_unique<FrameBounds<T>>(
                 *frame_, static_cast<int>(query_),
                 FootprintRange{.finest_m = level_m, .coarsest_m = 2.0 * level_m});
-        else if (!bounds->is_current())
+        else
             bounds->refresh();
     });
     return *bounds;

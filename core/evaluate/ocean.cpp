@@ -10,6 +10,7 @@
 
 #include "core/evaluate/water.h"
 #include "core/plan/plan.h"
+#include "core/scene/budget.h"
 #include "core/scene/limits.h"
 #include "core/scene/validate.h"
 
@@ -78,9 +79,7 @@ Ocean::Ocean(const Scene& scene, double footprint_m) {
     for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
     if (!(footprint_m >= 0.0 && footprint_m <= 1e6))
         throw std::invalid_argument("footprint_m is outside the range; accepted: 0 to 1e6 m");
-    Scene plain = scene;  // who asks says how fine the water is: no budget does
-    plain.quality.max_error.reset();
-    plain.quality.frame_ms.reset();
+    const Scene plain = without_budget(scene);  // who asks says how fine the water is
     Query query;
     query.name = "water";
     query.products = kWaterProducts;

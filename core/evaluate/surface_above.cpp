@@ -40,6 +40,8 @@ struct Sheet {
 struct Steps {
     int most = 4;              // towards the surface itself
     double tolerance_m = 0.0;  // near enough
+    bool must_arrive =
+        false;  // one that they don't reach doesn't count: otherwise the triangle is the answer
 };
 
 // The surface round one place of the world. Coordinates are relative to that place.
@@ -134,7 +136,7 @@ class Surroundings {
             found_m = glm::dvec2(rest_m_[0]);
             rest_m -= rest_from_position * glm::dvec2(position_m);
         }
-        if (!(height_m > highest_m_)) return;
+        if (!(height_m > highest_m_) || (steps_.must_arrive && missing_m > steps_.tolerance_m)) return;
         highest_m_ = height_m;
         highest_ = {height_m, found_m, missing_m};
     }
@@ -242,9 +244,9 @@ void find_highest_rest(const BoundsByLevel<T>& bounds, const PreparedQuery<T>& q
         if (!has_folded(query, places.origin_m, rest_m[i], cell_m, innermost_m, height_m) && is_there) return;
         Surroundings<T> surroundings(bounds.of_cell(cell_m), query, Product::Displacement,
                                      places.origin_m + place_m, cell_m, kCoarser, true);
-        const auto sheet =
-            surroundings.highest_above(is_there ? height_m : -std::numeric_limits<double>::infinity(),
-                                       {.most = search.most_steps, .tolerance_m = search.tolerance_m});
+        const auto sheet = surroundings.highest_above(
+            is_there ? height_m : -std::numeric_limits<double>::infinity(),
+            {.most = search.most_steps, .tolerance_m = search.tolerance_m, .must_arrive = is_there});
         if (!sheet) return;
         rest_m[i] = glm::vec<2, T>(place_m + sheet->rest_m);
         residual_m[i] = static_cast<T>(sheet->residual_m);

@@ -514,8 +514,9 @@ void add_effects_and_quality(Built& out) {
              .feeds = kQuality}),
         row<&Quality::frame_ms>(
             {.name = "frame_ms",
-             .help = "instead of level: the most accurate settings that compute a frame of a run "
-                     "in this time, on the machine that begins it (pelagic calibrate)",
+             .help =
+                 "instead of level: the most accurate settings that compute a frame of a run "
+                 "in this time: of files on the machine that begins them (pelagic calibrate), in Blender on two recorded cores",
              .unit = "ms",
              .range = limits::kFrame_ms,
              .soft = SoftRange{1.0, 1e4, true},

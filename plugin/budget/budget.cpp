@@ -268,15 +268,16 @@ class Pictures final : public Choices {
 // What is chosen from, with what a host settles first; null: nothing is left to choose.
 std::unique_ptr<Choices> choices(const Scene& scene, Purpose purpose, const SettleOptions& with,
                                  Settled& settled) {
-    if (!has_budget(scene.quality)) return nullptr;
+    const FixedSettings& fixed = with.fixed;
+    if (!has_budget(scene.quality) || (purpose == Purpose::Pictures && fixed.sky_quality &&
+                                       (fixed.samples || *fixed.sky_quality == SkyQuality::One)))
+        return nullptr;
     Rates rates = recorded_rates();
     if (with.rates)
         rates = *with.rates;
     else if (scene.quality.frame_ms)
         rates = calibration(cache_folder(), with.watch).rates();
     if (purpose == Purpose::Mesh) return std::make_unique<Meshes>(settled.scene, rates);
-    const FixedSettings& fixed = with.fixed;
-    if (fixed.sky_quality && (fixed.samples || *fixed.sky_quality == SkyQuality::One)) return nullptr;
     settled.scene.quality.level = QualityLevel::Final;
     settled.scene.surface.cell_px = kPictureCell_px;
     MeasuredErrors errors = kTypical;
@@ -337,6 +338,8 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
         for (std::size_t step = 0; step < from->steps; ++step) {
             from->apply(row, step, recorded);
             if (!is_said(recorded.chosen())) continue;
+            // Of another shot than today's, perhaps, for which it was enough.
+            if (budget.max_error && from->error(row, step) > *budget.max_error) continue;
             take({row, step, from->error(row, step), from->ms(row, step)}, recorded);
             recorded.is_recorded = true;
             if (row != best.row || step != best.step || !settled.holds) {

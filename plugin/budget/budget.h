@@ -39,7 +39,8 @@ struct SettleOptions {
     std::optional<Rates> rates{};
 };
 
-// As if this were a machine of these rates.
+// As if this were a machine of these rates: recorded_rates() for hosts whose answer must be the same on every machine at once, such
+// as Blender on a farm.
 SettleOptions with_rates(const Rates& rates, const FixedSettings& fixed = {});
 
 struct Settled {
@@ -75,7 +76,7 @@ Settled settle(const Scene& scene, Purpose purpose, const SettleOptions& with = 
 Settled held(Settled settled, const std::string& or_else = {});
 
 // The settings that hold the budget, for a run into a folder: those that its record, or one of its pictures, says were chosen for the
-// same budget, so that all tasks that fill it agree; otherwise today's. Throws as settle() and held(), and std::invalid_argument
+// same budget, so that all tasks that fill it agree, unless they err by more than max_error in today's shot; otherwise today's. Throws as settle() and held(), and std::invalid_argument
 // for a part of the shot's frames where the folder says nothing yet.
 Settled settle_for(const RunOptions& run, const Scene& scene, Purpose purpose, const SettleOptions& with = {},
                    const std::string& or_else = {});

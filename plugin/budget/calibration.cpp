@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "core/base/instruction_set.h"
+#include "core/base/text.h"
+#include "core/plan/fingerprint.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/files/files.h"
 #include "plugin/files/read.h"
@@ -162,16 +164,26 @@ std::string cpu_name() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)
         if (line.starts_with("model name") && line.find(": ") != std::string::npos)
-            return line.substr(line.find(": ") + 2);
+            return line_text(line.substr(line.find(": ") + 2));
     return "unknown";
 }
 
+// Numbers that change with the model: its times are measured over the recorded ones, by these probes.
+std::string model_name() {
+    std::string text = std::to_string(kProbes.size());
+    for (const double rate : recorded_rates()) text += ' ' + number_text(rate);
+    return Fingerprint().add(text).text();
+}
+
+// One for each machine, version and model that share the folder.
 std::string file_name(const Calibration& of) {
-    return "calibration-" + std::to_string(of.threads) + '-' + of.instruction_set + ".json";
+    return "calibration-" + std::to_string(of.threads) + '-' + of.instruction_set + '-' +
+           Fingerprint().add(of.version + of.cpu + model_name()).text().substr(0, 8) + ".json";
 }
 
 Json to_json(const Calibration& of) {
     Json json{{"pelagic", of.version},
+              {"model", model_name()},
               {"cpu", of.cpu},
               {"threads", of.threads},
               {"instruction_set", of.instruction_set}};

@@ -105,7 +105,7 @@ MeasuredErrors measured_errors(const Scene& scene, std::size_t max_memory_bytes,
         }
     }
     if (measured_frames == 0) throw std::invalid_argument(under_water);
-    // Of a few pixels more samples may err by more: then fewer do as well.
+    // Of a few pixels more samples may be measured to err by more: fewer then count as no better.
     for (std::size_t i = kMeasuredSamples.size() - 1; i > 0; --i)
         errors.by_samples[i - 1] = std::max(errors.by_samples[i - 1], errors.by_samples[i]);
     return errors;

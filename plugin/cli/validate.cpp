@@ -55,7 +55,7 @@ Verb add_validate(CLI::App& program) {
                 for (const std::string& file : *files) {
                     try {
                         const Scene scene = load_shot(file, check_scene);
-                        const Settled settled = settle(scene, Purpose::Mesh);
+                        const Settled settled = settle(scene, Purpose::Mesh, with_rates(recorded_rates()));
                         if (!settled.holds)
                             throw ShotError(placed(file, settled.text + "; raise the budget"));
                         const Plan plan = plan_bake(settled.scene);

@@ -88,19 +88,36 @@ struct RunOrder {
     RunOptions options;
 };
 
+// The run with what its budget asks for.
+template <class Work>
+RunReport settled_run(RunOptions options, const Scene& scene, Purpose purpose, const FixedSettings& fixed,
+                      const Work& work) {
+    try {
+        const Settled settled = settle_for(options, scene, purpose,
+                                           {.fixed = fixed,
+                                            .max_memory_bytes = options.max_memory_bytes,
+                                            .watch = {.progress = {}, .cancel = options.cancel}},
+                                           purpose == Purpose::Pictures ? kByName : "");
+        options.chosen = settled.chosen();
+        RunReport report = work(settled, options);
+        report.note = settled.note;
+        return report;
+    } catch (const BuildCancelled&) {
+        RunReport none;
+        none.cancelled = true;
+        return none;
+    }
+}
+
 RunOrder bake_order(const Scene& scene, const Out& out, const Frames& frames, bool trust_times,
                     Bytes max_memory) {
     require_valid(scene);
-    return {[scene](RunOptions options) {
-                const Settled settled = settle_for(options, scene, Purpose::Mesh);
-                options.chosen = settled.chosen();
-                return bake(settled.scene, options);
-            },
-            scene.shot,
-            out,
-            frames,
-            trust_times,
-            max_memory};
+    const auto work = [scene](const RunOptions& options) {
+        return settled_run(
+            options, scene, Purpose::Mesh, {},
+            [](const Settled& settled, const RunOptions& run) { return bake(settled.scene, run); });
+    };
+    return {work, scene.shot, out, frames, trust_times, max_memory};
 }
 
 RunOrder pictures_order(const Scene& scene, const Out& out, const Frames& frames, bool trust_times,
@@ -108,22 +125,13 @@ RunOrder pictures_order(const Scene& scene, const Out& out, const Frames& frames
                         const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
                         double shutter, bool alpha, double exposure) {
     const auto work = [asked = picture_request(scene, size, samples, sky_quality, layers, shutter, alpha,
-                                               exposure)](RunOptions options) {
-        PictureOrder order = asked;
-        try {
-            const Settled settled = settle_for(options, asked.scene, Purpose::Pictures,
-                                               {.fixed = asked.fixed,
-                                                .max_memory_bytes = options.max_memory_bytes,
-                                                .watch = {.progress = {}, .cancel = options.cancel}},
-                                               kByName);
-            settled.apply(order);
-            options.chosen = settled.chosen();
-        } catch (const BuildCancelled&) {
-            RunReport none;
-            none.cancelled = true;
-            return none;
-        }
-        return render_files(order, options);
+                                               exposure)](const RunOptions& options) {
+        return settled_run(options, asked.scene, Purpose::Pictures, asked.fixed,
+                           [&](const Settled& settled, const RunOptions& run) {
+                               PictureOrder order = asked;
+                               settled.apply(order);
+                               return render_files(order, run);
+                           });
     };
     return {work, scene.shot, out, frames, trust_times, max_memory};
 }
@@ -178,6 +186,9 @@ void add_bake_report(py::module_& module) {
     report.def_readonly("done", &RunReport::done, "Frames that were baked or rendered.")
         .def_readonly("kept", &RunReport::kept, "Frames that were whole already.")
         .def_readonly("total", &RunReport::total, "Frames that were asked for.")
+        .def_readonly(
+            "note", &RunReport::note,
+            "Where files that are there were made with other settings than the budget asks for today, and those stay: in words.")
         .def_readonly("cancelled", &RunReport::cancelled,
                       "Whether it was cancelled; what is in the files is whole, and the next run goes on.")
         .def_readonly("seconds", &RunReport::seconds, "From the call to its end.")
@@ -300,7 +311,7 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     std::unique_ptr<Maps> made;
     const auto make = [&] {
-        Plan plan = plan_bake(held(settle(asked, Purpose::Mesh)).scene);
+        Plan plan = plan_bake(held(settle(asked, Purpose::Mesh, with_rates(recorded_rates()))).scene);
         made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
             return std::make_unique<MapsOf<T>>(std::move(plan), building);
         });

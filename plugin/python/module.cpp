@@ -22,7 +22,8 @@ std::string explain_bake(const pelagic::Scene& scene) {
     pelagic::python::require_valid(scene);
     const pelagic::Scene kept = scene;
     const pelagic::python::OthersMayRun others_may_run;  // a plan looks at each frame's view
-    const pelagic::Settled settled = pelagic::settle(kept, pelagic::Purpose::Mesh);
+    const pelagic::Settled settled =
+        pelagic::settle(kept, pelagic::Purpose::Mesh, pelagic::with_rates(pelagic::recorded_rates()));
     return (settled.text.empty() ? "" : "Budget\n  " + settled.text + "\n\n") +
            pelagic::explain(pelagic::plan_bake(settled.scene));
 }

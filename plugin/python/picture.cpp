@@ -50,7 +50,8 @@ py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, st
         held(settle(order.scene, Purpose::Pictures,
                     {.fixed = asked.fixed,
                      .max_memory_bytes = most_bytes,
-                     .watch = {.progress = {}, .cancel = watch->flag()}}),
+                     .watch = {.progress = {}, .cancel = watch->flag()},
+                     .rates = recorded_rates()}),
              kByName)
             .apply(order);
         const std::array frames{frame};

@@ -217,7 +217,7 @@ Scene settled_scene(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
     const OthersMayRun others_may_run;
-    return held(settle(kept, Purpose::Mesh)).scene;
+    return held(settle(kept, Purpose::Mesh, with_rates(recorded_rates()))).scene;
 }
 
 std::vector<std::string> problem_lines(const Scene& scene) {
@@ -285,7 +285,9 @@ void add_scene(py::module_& module) {
         .def(
             "settled", &settled_scene,
             "A copy with the keys of the mesh that the budget asks for (quality.max_error, quality.frame_ms), and without "
-            "the budget; without one as it is. ValueError where nothing holds the budget, ShotError for a scene that can't "
+            "the budget; without one as it is. frame_ms counts here, as in a Sea, in Maps and in render(), the milliseconds of the "
+            "recorded two cores, so that all machines of a farm choose alike; bake() and render_files() count this machine's. "
+            "ValueError where nothing holds the budget, ShotError for a scene that can't "
             "be.")
         .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(

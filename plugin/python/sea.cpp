@@ -107,7 +107,7 @@ struct SeaOrder {
 
 SeaOrder order_of(const Scene& scene, SeaRequest request) {
     require_valid(scene);
-    SeaOrder order{.scene = held(settle(scene, Purpose::Mesh)).scene,
+    SeaOrder order{.scene = held(settle(scene, Purpose::Mesh, with_rates(recorded_rates()))).scene,
                    .asked = {},
                    .held = {},
                    .plain = {},

@@ -38,7 +38,7 @@ class Ocean {
     void set(double t_s);
 
     // The water above places (x, y) of the world [m], within 1e9 m. Waves move water to the side: the point at rest that is displaced
-    // to the place is found by iteration, to a millimetre. Where the surface has folded over itself its highest sheet counts.
+    // to the place is found by iteration, to a millimetre but for a few places of a sea that folds much. Where the surface has folded over itself its highest sheet counts.
     // Each place's answer depends on nothing but the place and the time, and is finite. Any number of threads may ask at
     // once; many places are shared among the threads of the calling arena. Throws std::invalid_argument for what is no place, and
     // where `water` isn't as long as the places.

@@ -104,6 +104,26 @@ INSTANTIATE_TEST_SUITE_P(Of, FolderOf, testing::Values(Purpose::Mesh, Purpose::P
                              return purpose.param == Purpose::Mesh ? "Bakes" : "Pictures";
                          });
 
+// The short waves of less wind need finer quads than the folder has.
+TEST(Budget, OfAnErrorIsHeldByANewShotInAnOldFolder) {
+    const TempFolder folder;
+    RunOptions run;
+    run.out = folder.path() / "s";
+    Scene scene = small_shot();
+    scene.quality.max_error = 0.1;
+    scene.sea.wind_speed_mps = 20.0;
+    const Settled strong = settle_for(run, scene, Purpose::Mesh);
+    run.chosen = strong.chosen();
+    bake(strong.scene, run);
+    EXPECT_TRUE(settle_for(run, scene, Purpose::Mesh).is_recorded);
+    scene.sea.wind_speed_mps = 6.0;
+    const Settled weak = settle_for(run, scene, Purpose::Mesh);
+    EXPECT_FALSE(weak.is_recorded);
+    EXPECT_EQ(weak.settings, settle(scene, Purpose::Mesh).settings);
+    EXPECT_NE(weak.settings, strong.settings);
+    EXPECT_LE(weak.error, 0.1);
+}
+
 TEST(Budget, IsNoSettingOfAPlan) {
     Scene scene = small_shot();
     scene.quality.max_error = 0.05;

@@ -242,7 +242,7 @@ typedef struct pelagic_water {
 } pelagic_water;
 
 /* The water above `count` places (x, y) of the world, in the middle of the shutter: what floats there asks it. The points at rest that are
- * displaced to the places are found by iteration, to a millimetre; where the surface has folded over itself its highest sheet counts.
+ * displaced to the places are found by iteration, to a millimetre but for a few places of a sea that folds much; where the surface has folded over itself its highest sheet counts.
  * footprint_m: about the width of what floats; waves shorter than twice that are left out; 0: the finest there is. `water`: an array as
  * long as the places, each as large as the size of the first says. Each answer depends on its place alone, and is finite; what is no
  * place is refused. Some 10 us a place and, where the surface has folded nearby, some milliseconds. */

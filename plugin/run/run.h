@@ -70,7 +70,8 @@ struct RunReport {
     // Why other runs into DIR weren't kept from writing the record at the same time, in words; empty where they were, as far
     // as the system says. What they have written was merged.
     std::string unlocked;
-    std::string note;  // of whoever settles a budget for the run: where files that are there say otherwise, and that stays
+    std::string
+        note;  // of whoever settles a budget for the run: where files that are there say otherwise, and that stays
     // What wasn't as it was recorded, and was made again, a line each: "mesh/sea.0007.usdc holds other bytes …".
     std::vector<std::string> damaged;
 };

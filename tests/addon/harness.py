@@ -33,8 +33,8 @@ def fresh_file():
 
 
 def add_ocean(horizon=False, **settings):
-    """A small ocean without a horizon; settings are keys with their dots as __, such as sea__wind_speed_mps. Set before the
-    sea is first built, which is then built once."""
+    """A small ocean without a horizon, which it is before its sea is first built; settings are keys with their dots as __, such
+    as sea__wind_speed_mps."""
     from pelagic_ocean import ocean
 
     make = ocean.make
@@ -43,7 +43,6 @@ def add_ocean(horizon=False, **settings):
         obj = make(name, collection)
         obj.pelagic.horizon = horizon
         obj.pelagic.surface.resolution = 32
-        assign(obj, settings)
         return obj
 
     ocean.make = make_small
@@ -51,17 +50,16 @@ def add_ocean(horizon=False, **settings):
         bpy.ops.pelagic.add_ocean()
     finally:
         ocean.make = make
-    return bpy.context.object
-
-
-def assign(obj, settings):
-    for path, value in settings.items():
-        table, name = path.split("__")
-        setattr(getattr(obj.pelagic, table), name, value)
+    obj = bpy.context.object
+    if settings:
+        change(obj, **settings)
+    return obj
 
 
 def change(obj, **settings):
-    assign(obj, settings)
+    for path, value in settings.items():
+        table, name = path.split("__")
+        setattr(getattr(obj.pelagic, table), name, value)
     bpy.context.view_layer.update()
 
 

@@ -67,7 +67,7 @@ TEST(ProceduralBounds, AreNeverLeft) {
     std::sort(shots.begin(), shots.end());
     ASSERT_GE(shots.size(), 8u);
     std::printf(
-        "largest extent along an axis, of what 128 x 128 points reach; regions in peak waves, and of 1 m\n");
+        "largest extent along an axis, of what 64 x 64 points reach; regions in peak waves, and of 1 m\n");
     for (const std::filesystem::path& shot : shots) {
         const SeaHandle sea = open_file(shot.string());
         pelagic_info info = PELAGIC_INIT(pelagic_info);
@@ -90,7 +90,7 @@ TEST(ProceduralBounds, AreNeverLeft) {
                     pelagic_error error;
                     ASSERT_EQ(pelagic_bounds(frame.get(), &region, &box, &error), PELAGIC_OK)
                         << error.message;
-                    const Box is = seen(frame, region, 128, static_cast<float>(footprint_m), shutter_s);
+                    const Box is = seen(frame, region, 64, static_cast<float>(footprint_m), shutter_s);
                     for (int axis = 0; axis < 3; ++axis) {
                         ASSERT_LE(box.min_m[axis], is.low[axis]) << shot << " axis " << axis;
                         ASSERT_GE(box.max_m[axis], is.high[axis]) << shot << " axis " << axis;

@@ -21,6 +21,7 @@
 #include "core/base/instruction_set.h"
 #include "core/base/text.h"
 #include "core/plan/fingerprint.h"
+#include "core/scene/text.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/files/files.h"
 #include "plugin/files/read.h"

@@ -40,8 +40,8 @@ struct Sheet {
 struct Steps {
     int most = 4;              // towards the surface itself
     double tolerance_m = 0.0;  // near enough
-    bool must_arrive =
-        false;  // one that they don't reach doesn't count: otherwise the triangle is the answer
+    // Whether one that they don't reach doesn't count: otherwise the triangle is the answer.
+    bool must_arrive = false;
 };
 
 // The surface round one place of the world. Coordinates are relative to that place.

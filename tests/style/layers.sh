@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that each room includes only rooms above it in the layer table of README.md.
+# Checks that each room includes only rooms above it in the layer table of core/README.md (Rooms).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bad=0

@@ -24,10 +24,10 @@
 #include "plugin/bake/bake.h"
 #include "plugin/bake/maps.h"
 #include "plugin/bake/sequence.h"
-#include "plugin/exr/exr.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/files.h"
 #include "plugin/files/read.h"
+#include "plugin/format/exr/exr.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {
@@ -112,9 +112,9 @@ std::vector<PackedMap> maps_to_pack() {
             texels.emplace_back(coverage(j, threshold, plan.knobs.third_moment), j.mean, j.variance);
     }
     // One value for all texels of a level.
-    const glm::vec3 hidden = slot.outputs[3]->values.vectors(Product::SlopeVariance).front();
+    const glm::vec3 unresolved = slot.outputs[3]->values.vectors(Product::SlopeVariance).front();
     for (int n = kN; n >= 1; n /= 2)
-        maps[3].levels.push_back({n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, hidden)});
+        maps[3].levels.push_back({n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, unresolved)});
     return maps;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int kQuads[] = {64, 128, 256, 512, 1024};
 
 struct Means {
-    double resolved_mss = 0.0, hidden_mss = 0.0, spectrum_mss = 0.0, coverage = 0.0;
+    double resolved_mss = 0.0, unresolved_mss = 0.0, spectrum_mss = 0.0, coverage = 0.0;
 };
 
 Means means_of(const Scene& scene) {
@@ -35,10 +35,10 @@ Means means_of(const Scene& scene) {
         const double sx = static_cast<double>(normal[i].x / normal[i].z),
                      sy = static_cast<double>(normal[i].y / normal[i].z);
         means.resolved_mss += sx * sx + sy * sy;
-        means.hidden_mss += static_cast<double>(variance[i].x + variance[i].y);
+        means.unresolved_mss += static_cast<double>(variance[i].x + variance[i].y);
         means.coverage += static_cast<double>(whitecaps[i]);
     }
-    for (double* sum : {&means.resolved_mss, &means.hidden_mss, &means.coverage})
+    for (double* sum : {&means.resolved_mss, &means.unresolved_mss, &means.coverage})
         *sum /= static_cast<double>(points.size());
     return means;
 }
@@ -46,7 +46,7 @@ Means means_of(const Scene& scene) {
 void slopes() {
     std::printf(
         "\nSlopes over 200 m, default sea without choppiness, mean of 8 seeds\n  %-8s %10s %10s %16s\n",
-        "quads", "resolved", "hidden", "sum / spectrum");
+        "quads", "resolved", "unresolved", "sum / spectrum");
     for (const int quads : kQuads) {
         Means sum;
         for (int seed = 1; seed <= 8; ++seed) {
@@ -57,11 +57,11 @@ void slopes() {
             scene.surface.resolution = quads;
             const Means one = means_of(scene);
             sum.resolved_mss += one.resolved_mss / 8.0;
-            sum.hidden_mss += one.hidden_mss / 8.0;
+            sum.unresolved_mss += one.unresolved_mss / 8.0;
             sum.spectrum_mss = one.spectrum_mss;
         }
-        std::printf("  %-8d %10.5f %10.5f %16.4f\n", quads, sum.resolved_mss, sum.hidden_mss,
-                    (sum.resolved_mss + sum.hidden_mss) / sum.spectrum_mss);
+        std::printf("  %-8d %10.5f %10.5f %16.4f\n", quads, sum.resolved_mss, sum.unresolved_mss,
+                    (sum.resolved_mss + sum.unresolved_mss) / sum.spectrum_mss);
     }
 }
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "plugin/usd/crate.h"
-#include "plugin/usd/text.h"
+#include "plugin/format/usd/crate.h"
+#include "plugin/format/usd/text.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {

@@ -21,7 +21,7 @@
 #include "core/plan/plan.h"
 #include "core/surface/fitted_cage.h"
 #include "core/waves/frame.h"
-#include "plugin/usd/crate.h"
+#include "plugin/format/usd/crate.h"
 #include "tests/bench/timing.h"
 
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
-#include "plugin/preview/offscreen.h"
 #include "plugin/render/render.h"
 #include "tests/bench/timing.h"
-#include "tests/plugin/preview/compare.h"
+#include "tests/plugin/host/preview/compare.h"
 
 namespace pelagic::bench {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/surface/view.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
 #include "tests/bench/timing.h"
 #include "tests/plugin/render/rims.h"
 

@@ -11,9 +11,9 @@
 #include "core/base/constants.h"
 #include "core/evaluate/values.h"
 #include "core/surface/patch.h"
-#include "plugin/exr/exr.h"
-#include "plugin/usd/layers.h"
-#include "plugin/usd/text.h"
+#include "plugin/format/exr/exr.h"
+#include "plugin/format/usd/layers.h"
+#include "plugin/format/usd/text.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {

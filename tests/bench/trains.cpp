@@ -3,7 +3,7 @@
 // The view of Bruneton, Neyret, Holzschuch 2010, §7.3: horizontal, 1024 × 768 pixels, cells of 8 × 8 pixels,
 // from 4 m, 1000 m and 8000 m above the sea. Points are projected onto the plane of the sea at rest; a
 // pixel's (a cell's) footprint is its longer side there, δ d²/height at distance d. Two workloads: all fields
-// at the cells' corners, and the paper's: positions at the corners, normals and what is hidden at each pixel.
+// at the cells' corners, and the paper's: positions at the corners, normals and what is unresolved at each pixel.
 
 #include <algorithm>
 #include <array>
@@ -49,13 +49,13 @@ struct View {
 struct Load {
     View view;
     FieldSet wanted;
-    bool hidden, filtered;
+    bool unresolved, filtered;
     std::size_t evaluated = 0;
 };
 
 void run(Load& load, const Trains<float>& trains, const std::vector<double>& start_cycles) {
     static Chunk<float> chunk;
-    static HiddenChunk<float> hidden;
+    static UnresolvedChunk<float> unresolved;
     static std::array<float, Chunk<float>::kPoints> cell_m, pixel_m;
     load.evaluated = 0;
     for (std::size_t first = 0; first < load.view.x.size(); first += Chunk<float>::kPoints) {
@@ -72,7 +72,7 @@ void run(Load& load, const Trains<float>& trains, const std::vector<double>& sta
                                              .wanted = load.wanted,
                                              .cell_of = load.filtered ? cell_m.data() : nullptr,
                                              .pixel_of = load.filtered ? pixel_m.data() : nullptr,
-                                             .hidden = load.hidden ? &hidden : nullptr},
+                                             .unresolved = load.unresolved ? &unresolved : nullptr},
                                             chunk);
     }
 }
@@ -91,7 +91,7 @@ void table() {
     std::vector<std::pair<std::string, std::vector<Load>>> rows;
     for (const double height_m : {4.0, 1000.0, 8000.0}) {
         const std::string from = "from " + std::to_string(static_cast<int>(height_m)) + " m";
-        rows.push_back({"all fields and hidden moments at cells, " + from,
+        rows.push_back({"all fields and unresolved moments at cells, " + from,
                         {{View(height_m, kCell_px), all, true, true}}});
         rows.push_back(
             {"positions at cells, normals at pixels, " + from,

@@ -17,9 +17,9 @@
 #include "core/plan/plan.h"
 #include "pelagic/procedural.h"
 #include "plugin/bake/bake.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
 
 namespace pelagic {
 namespace {

@@ -31,10 +31,10 @@
 #include "core/waves/sea.h"
 #include "plugin/bake/bake.h"
 #include "plugin/budget/budget.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/format/usd/read_mesh.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
-#include "plugin/usd/read_mesh.h"
 #include "tests/plugin/bake/read_vdb.h"
 
 namespace pelagic::test {

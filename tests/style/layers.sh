@@ -6,7 +6,7 @@ bad=0
 # allow FOLDER "OTHERS": files in FOLDER may include only from FOLDER and OTHERS.
 allow() {
     local found
-    found=$(grep -rnoE '#include "(core|plugin|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' --include='*.inl' --include='*.glsl' |
+    found=$(grep -rnoE '#include "(core|plugin|plugin/format|plugin/host|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' --include='*.inl' --include='*.glsl' |
         grep -vE "\"($(echo "$1 $2" | tr ' ' '|'))/" || true)
     [ -z "$found" ] || { echo "$found: not below $1"; bad=1; }
 }
@@ -25,21 +25,21 @@ allow core/evaluate "core/base core/scene core/spectrum core/plan core/waves cor
 allow core/effects "core/base core/scene core/spectrum core/plan core/waves core/surface core/evaluate"
 allow plugin/files "core/base"
 allow plugin/machine "core/base core/scene core/spectrum core/surface core/plan"
-allow plugin/exr ""
-allow plugin/png ""
-allow plugin/usd ""
-allow plugin/vdb ""
-allow plugin/obj "core/base core/scene"
-allow plugin/shot "core/base core/scene plugin/obj"
-allow plugin/light "core/[a-z]+ plugin/exr"
-allow plugin/run "core/[a-z]+ plugin/files plugin/exr plugin/png plugin/light plugin/usd"
-allow plugin/bake "core/[a-z]+ plugin/machine plugin/files plugin/exr plugin/light plugin/usd plugin/vdb plugin/run"
-allow plugin/render "core/[a-z]+ plugin/machine plugin/files plugin/exr plugin/light plugin/png plugin/run"
+allow plugin/format/exr ""
+allow plugin/format/png ""
+allow plugin/format/usd ""
+allow plugin/format/vdb ""
+allow plugin/format/obj "core/base core/scene"
+allow plugin/format/shot "core/base core/scene plugin/format/obj"
+allow plugin/light "core/[a-z]+ plugin/format/exr"
+allow plugin/run "core/[a-z]+ plugin/files plugin/format/exr plugin/format/png plugin/light plugin/format/usd"
+allow plugin/bake "core/[a-z]+ plugin/machine plugin/files plugin/format/exr plugin/light plugin/format/usd plugin/format/vdb plugin/run"
+allow plugin/render "core/[a-z]+ plugin/machine plugin/files plugin/format/exr plugin/light plugin/format/png plugin/run"
 allow plugin/budget "core/[a-z]+ plugin/machine plugin/files plugin/light plugin/run plugin/bake plugin/render"
-allow plugin/accuracy "core/[a-z]+ plugin/bake plugin/budget plugin/exr plugin/light plugin/render plugin/procedural"
-allow plugin/gpu "core/[a-z]+"
-allow plugin/preview "core/[a-z]+ plugin/machine plugin/files plugin/exr plugin/light plugin/png plugin/render plugin/gpu"
-allow plugin/procedural "core/[a-z]+ plugin/machine plugin/shot plugin/light"
-allow plugin/cli "core/[a-z]+ plugin/machine plugin/files plugin/shot plugin/light plugin/run plugin/bake plugin/render plugin/budget plugin/accuracy plugin/preview plugin/gpu"
-allow plugin/python "core/[a-z]+ plugin/machine plugin/files plugin/obj plugin/shot plugin/light plugin/usd plugin/run plugin/bake plugin/render plugin/budget plugin/gpu"
+allow plugin/accuracy "core/[a-z]+ plugin/bake plugin/budget plugin/format/exr plugin/light plugin/render plugin/host/procedural"
+allow plugin/host/gpu "core/[a-z]+"
+allow plugin/host/preview "core/[a-z]+ plugin/machine plugin/files plugin/format/exr plugin/light plugin/format/png plugin/render plugin/host/gpu"
+allow plugin/host/procedural "core/[a-z]+ plugin/machine plugin/format/shot plugin/light"
+allow plugin/host/cli "core/[a-z]+ plugin/machine plugin/files plugin/format/shot plugin/light plugin/run plugin/bake plugin/render plugin/budget plugin/accuracy plugin/host/preview plugin/host/gpu"
+allow plugin/host/python "core/[a-z]+ plugin/machine plugin/files plugin/format/obj plugin/format/shot plugin/light plugin/format/usd plugin/run plugin/bake plugin/render plugin/budget plugin/host/gpu"
 exit $bad

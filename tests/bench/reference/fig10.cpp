@@ -188,12 +188,12 @@ Comparison compare(const Settings& settings, const SeaUnderTest& under_test, con
                              .choppiness = settings["chop"] * 0.01,
                              .seed = static_cast<std::uint64_t>(seed),
                              .resolution = settings["waves"]});
-        const SpectralMoments hidden = tile.hidden_from_all();
+        const SpectralMoments unresolved = tile.unresolved_from_all();
         std::printf(
             "  seed %d: waves of %.3f ... %.0f m, Hs %.2f m, slope variance %.5f "
-            "(hidden at footprint 0: %.1e of it)\n",
+            "(unresolved at footprint 0: %.1e of it)\n",
             seed, tile.shortest_m(), tile.size_m(), tile.whole().significant_height_m(), tile.whole().mss(),
-            hidden.mss() / tile.whole().mss());
+            unresolved.mss() / tile.whole().mss());
         const auto start = std::chrono::steady_clock::now();
         const auto elapsed = [&] {
             return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -123,7 +123,7 @@ ProjectedSea::ProjectedSea(const WaveTile& tile, const View& view, double cell_p
     : grid_(projected_grid(view, {.cell_px = cell_px,
                                   .bounds = tile.bounds(),
                                   .significant_height_m = tile.whole().significant_height_m(),
-                                  .hidden = tile.hidden_height()})),
+                                  .unresolved = tile.unresolved_height()})),
       triangles_(projected_grid_triangles({grid_.columns, grid_.rows})) {
     RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<glm::vec3*>(

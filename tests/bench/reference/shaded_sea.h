@@ -22,7 +22,7 @@ struct PixelOptions {
     double pixels = 1.0;   // normals are filtered by this many pixels; 0: by the cell, as positions are
 };
 
-// The pixels from first_row down: normals and hidden slope variance at the position at rest of each sample
+// The pixels from first_row down: normals and unresolved slope variance at the position at rest of each sample
 // (one sample is at the pixel's centre).
 SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions& options);
 

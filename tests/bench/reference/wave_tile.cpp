@@ -14,7 +14,7 @@ constexpr double kTime_s = 100.0;  // arbitrary, but not 0, where phases are the
 
 // From a quarter of the shortest wave, which n_max lets pass fully, to the tile's size, at which n_min stops
 // all waves, in steps of √½; evaluate() interpolates between them.
-std::vector<double> ladder(double shortest_m, double size_m) {
+std::vector<double> levels(double shortest_m, double size_m) {
     std::vector<double> footprints_m;
     for (double f = 0.25 * shortest_m; f < size_m; f *= std::sqrt(2.0)) footprints_m.push_back(f);
     footprints_m.push_back(size_m);
@@ -45,21 +45,21 @@ WaveTile::WaveTile(const WaveTileOptions& options) : size_m_(options.size_m) {
     shortest_m_ = size_m_ / modes;
     scene.waves.cascades = {{.size_m = size_m_, .resolution = options.resolution},
                             {.size_m = kBandModes * shortest_m_, .resolution = kMinCascadeResolution}};
-    const auto footprints_m = ladder(shortest_m_, size_m_);
+    const auto footprints_m = levels(shortest_m_, size_m_);
     const std::vector<Query> queries{
         query("all waves", products(Product::Position, Product::Normal, Product::SlopeVariance), {0.0}),
         query("cells", products(Product::Position), footprints_m),
         query("pixels", products(Product::Normal, Product::SlopeVariance), footprints_m)};
     frame_ = std::make_unique<Frame<float>>(std::make_shared<const Sea<float>>(make_plan(scene, queries)));
     frame_->set(kTime_s);
-    hidden_height_ = prepare(scene)->extent.hidden;
+    unresolved_height_ = prepare(scene)->extent.unresolved;
 }
 
-SpectralMoments WaveTile::hidden_from_all() const {
+SpectralMoments WaveTile::unresolved_from_all() const {
     const QueryStatistics& statistics = frame_->sea().statistics(kWhole);
-    SpectralMoments resolved = statistics.resolved.front(), hidden = statistics.whole;
-    hidden += resolved *= -1.0;
-    return hidden;
+    SpectralMoments resolved = statistics.resolved.front(), unresolved = statistics.whole;
+    unresolved += resolved *= -1.0;
+    return unresolved;
 }
 
 SurfaceBounds WaveTile::bounds() const {

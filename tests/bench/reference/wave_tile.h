@@ -22,8 +22,8 @@ struct WaveTileOptions {
 // The queries of the tile's plan, all of this band only.
 enum TileQuery {
     kWhole,   // positions and normals of all waves, unfiltered
-    kCells,   // positions, filtered by cells: a ladder
-    kPixels,  // normals and hidden slope variance, filtered by pixels: a ladder
+    kCells,   // positions, filtered by cells: a levels
+    kPixels,  // normals and unresolved slope variance, filtered by pixels: a levels
 };
 
 class WaveTile {
@@ -35,15 +35,15 @@ class WaveTile {
     double shortest_m() const { return shortest_m_; }
     // Moments of the tile's band, and what a footprint of 0 hides of it: the error of "hides nothing".
     const SpectralMoments& whole() const { return frame_->sea().statistics(kWhole).whole; }
-    SpectralMoments hidden_from_all() const;
+    SpectralMoments unresolved_from_all() const;
     // Of the positions, with room for the highest crest among a few thousand.
     SurfaceBounds bounds() const;
     // What a mesh of the scene's waves hides: those longer than the tile, too, which is a little more.
-    const HiddenHeight& hidden_height() const { return hidden_height_; }
+    const UnresolvedHeight& unresolved_height() const { return unresolved_height_; }
 
   private:
     double size_m_, shortest_m_;
-    HiddenHeight hidden_height_;
+    UnresolvedHeight unresolved_height_;
     std::unique_ptr<Frame<float>> frame_;
 };
 

@@ -158,7 +158,7 @@ std::size_t bytes(const Trains<T>& trains) {
     std::size_t sum =
         of(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
            trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.before,
-           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength, trains.breaking);
+           trains.from, trains.unresolved_alone, trains.unresolved_from, trains.wavelength, trains.breaking);
     for (const auto& amplitude : trains.amplitude) sum += of(amplitude);
     return sum;
 }
@@ -185,7 +185,7 @@ TEST(Trains, OfACalmSeaAreFlat) {
     for (const auto m : kSpectralMoments) EXPECT_EQ(total(trains).*m, 0.0);
 }
 
-// (kh)²/2 along the train's direction by position at rest, as of a cascade's modes, whatever it is shown with.
+// (kh)²/2 along the train's direction by position at rest, as of a cascade's modes, whatever it is resolved with.
 TEST(TrainVariance, OfOneTrochoidIsThatOfASine) {
     for (const double kh : {0.9, 0.3, 1e-7})
         for (const double choppiness : {0.0, 1.0})
@@ -194,12 +194,12 @@ TEST(TrainVariance, OfOneTrochoidIsThatOfASine) {
                 const FootprintFilter filter;
                 const double k = kTwoPi / trains.wavelength_m[0];
                 const double q = filter.weight(k, footprint_m) * k * trains.height_m[0], closed = 0.5 * q * q;
-                const SpectralMoments shown = resolved(trains, filter, footprint_m);
+                const SpectralMoments resolved = resolved(trains, filter, footprint_m);
                 const double x = trains.kx_cycles_per_m[0] * trains.wavelength_m[0];
                 const double y = trains.ky_cycles_per_m[0] * trains.wavelength_m[0];
-                EXPECT_NEAR(shown.xx, closed * x * x, 1e-12 * kh * kh);
-                EXPECT_NEAR(shown.xy, closed * x * y, 1e-12 * kh * kh);
-                EXPECT_NEAR(shown.yy, closed * y * y, 1e-12 * kh * kh);
+                EXPECT_NEAR(resolved.xx, closed * x * x, 1e-12 * kh * kh);
+                EXPECT_NEAR(resolved.xy, closed * x * y, 1e-12 * kh * kh);
+                EXPECT_NEAR(resolved.yy, closed * y * y, 1e-12 * kh * kh);
             }
 }
 
@@ -213,20 +213,20 @@ TEST(Trains, ThatWouldLoopAreLimited) {
         for (const double footprint_m : {0.0, 2.7, 3.0, 4.0, 1e3})
             for (const auto m : kSpectralMoments) {
                 EXPECT_TRUE(std::isfinite(resolved(trains, {}, footprint_m).*m));
-                EXPECT_TRUE(std::isfinite(hidden(trains, {}, footprint_m).*m));
+                EXPECT_TRUE(std::isfinite(unresolved(trains, {}, footprint_m).*m));
             }
     }
 }
 
-// Shown and hidden variances add up to the total for every footprint.
-TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
+// Shown and unresolved variances add up to the total for every footprint.
+TEST(TrainVariance, ResolvedAndUnresolvedAreTheWhole) {
     for (const Scene& scene : many_seas()) {
         const auto trains = trains_of(scene);
         const SpectralMoments all = total(trains);
         const FootprintFilter filter;
         for (double footprint_m = 1e-3; footprint_m < 1e4; footprint_m *= 1.3) {
             SpectralMoments both = resolved(trains, filter, footprint_m);
-            const SpectralMoments rest = hidden(trains, filter, footprint_m);
+            const SpectralMoments rest = unresolved(trains, filter, footprint_m);
             both += rest;
             // Sums of at most 70 terms of either sign.
             for (const auto m : kSpectralMoments)
@@ -239,9 +239,9 @@ TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
             EXPECT_LE(rest.xy * rest.xy, rest.xx * rest.yy * (1.0 + 1e-12));
         }
         for (const auto m : kSpectralMoments) {
-            EXPECT_EQ(hidden(trains, filter, 0.0).*m, trains.outside.*m);
+            EXPECT_EQ(unresolved(trains, filter, 0.0).*m, trains.outside.*m);
             EXPECT_EQ(resolved(trains, filter, 1e9).*m, 0.0);
-            EXPECT_EQ(hidden(trains, filter, 1e9).*m, all.*m);
+            EXPECT_EQ(unresolved(trains, filter, 1e9).*m, all.*m);
         }
     }
 }
@@ -258,8 +258,8 @@ TEST(TrainVariance, OutsideTheRangeIsTheRestOfTheSpectrum) {
     SpectralMoments rest = moments(spectrum, 0.0, kTwoPi / 30.0);
     EXPECT_GT(rest.m0, 0.5 * spectrum.m0());
     rest += moments(spectrum, kTwoPi / 0.02, kForever);
-    rest.scale_strain(0.25);
-    // And what the bins have and their trains lack: slopes and strains, never energy.
+    rest.scale_gradients(0.25);
+    // And what the bins have and their trains lack: slopes and gradients, never energy.
     for (const auto m : {&SpectralMoments::m0, &SpectralMoments::m_minus1, &SpectralMoments::east})
         EXPECT_EQ(trains.outside.*m, rest.*m);
     for (const auto m : {&SpectralMoments::xx, &SpectralMoments::yy, &SpectralMoments::xxxx}) {
@@ -279,7 +279,7 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
         scene.effects.breaking_from_m = 0.0;
         const SpectralMoments all = total(trains_of(scene));
         SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kForever);
-        wanted.scale_strain(choppiness * choppiness);
+        wanted.scale_gradients(choppiness * choppiness);
         EXPECT_NEAR(all.m0, wanted.m0, 1e-6 * wanted.m0);
         EXPECT_NEAR(all.mss(), wanted.mss(), 0.01 * wanted.mss());
         EXPECT_NEAR(all.xxxx + 2.0 * all.xxyy + all.yyyy, wanted.xxxx + 2.0 * wanted.xxyy + wanted.yyyy,
@@ -290,7 +290,7 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
 // Over seeds, the energy-weighted means of k̂ and of its square are the spectrum's. The standard error over
 // 400 seeds is √(Σh⁴)/(Σh² √400), some 0.02 (a dozen trains hold the energy); the tolerance is three times
 // that.
-// Down to one train for everything: no steeper than the spectrum, and what it lacks is hidden.
+// Down to one train for everything: no steeper than the spectrum, and what it lacks is unresolved.
 TEST(TrainVariance, OfFewTrainsIsTheSpectrumsToo) {
     for (Scene scene : many_seas())
         for (const int count : {1, 2, 5, 20}) {
@@ -298,14 +298,14 @@ TEST(TrainVariance, OfFewTrainsIsTheSpectrumsToo) {
             const Trains<double> trains = trains_of(scene);
             const SpectralMoments spectrum =
                 moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
-            double shown = 0.0, energy = 0.0;
+            double resolved = 0.0, energy = 0.0;
             for (const SpectralMoments& alone : trains.alone) {
-                shown += alone.mss();
+                resolved += alone.mss();
                 energy += alone.m0;
             }
             EXPECT_GE(energy, 0.98 * spectrum.m0) << count;
             // A trochoid of steepness q has up to 2 times the slopes of its sinusoid; these are at most 7 % above it.
-            EXPECT_LE(shown, 1.07 * spectrum.mss()) << count;
+            EXPECT_LE(resolved, 1.07 * spectrum.mss()) << count;
             EXPECT_NEAR(total(trains).mss() / spectrum.mss(), 1.0, 0.07) << count;
         }
 }

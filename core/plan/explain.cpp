@@ -71,14 +71,14 @@ std::string trains_text(const Plan& plan) {
         const Query& query = planned.query;
         page += "  " + query.name + ": ";
         const FieldSet needed = fields_of(query.products) & ~plan.dropped;
-        const int pixel = resolved_moments(query.pixel_m.front());
+        const int pixel = shown(query.pixel_m.front());
         if (query.only_cascade) {
             page += "none, it is a cascade's own\n";
             continue;
         }
         if (needed.none())
             page += "none is summed";
-        else if (const int cell = resolved_moments(query.cell_m.front()); cell == pixel)
+        else if (const int cell = shown(query.cell_m.front()); cell == pixel)
             page += format("the %d longest are summed", cell);
         else
             page +=

@@ -142,9 +142,9 @@ py::object range_of(const Key& key) {
 }
 
 py::dict described_key(const Key& key) {
-    py::list key_parts, inner;
+    py::list feeds, inner;
     for (std::size_t part = 0; part < kKeyParts; ++part)
-        if (key.feeds[part]) key_parts.append(text_of(KeyPartSet(1ull << part)));
+        if (key.key_parts[part]) key_parts.append(text_of(KeyPartSet(1ull << part)));
     for (const Key& each : key.entry_keys) inner.append(described_key(each));
     py::dict out;
     out["path"] = key.path;
@@ -160,7 +160,7 @@ py::dict described_key(const Key& key) {
     out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());
     out["logarithmic"] = key.soft && key.soft->is_logarithmic;
     out["choices"] = py::cast(key.choices);
-    out["feeds"] = key_parts;
+    out["feeds"] = feeds;
     out["keys"] = inner;
     out["entry"] = key.entry_name;
     out["other_word"] = key.other_word;

@@ -193,7 +193,7 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
         }();
         for (std::size_t part = 0; part < kKeyParts; ++part) {
             const KeyPartSet only(1ull << part);
-            EXPECT_EQ(canonical(changed, only) != canonical(Scene{}, only), key.feeds[part])
+            EXPECT_EQ(canonical(changed, only) != canonical(Scene{}, only), key.key_parts[part])
                 << key.path << " and " << pelagic::text_of(only);
         }
         EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;

@@ -185,7 +185,7 @@ TEST(Trains, OfACalmSeaAreFlat) {
     for (const auto m : kSpectralMoments) EXPECT_EQ(total(trains).*m, 0.0);
 }
 
-// (kh)²/2 along the train's direction by position at rest, as of a cascade's modes, whatever it is resolved with.
+// (kh)²/2 along the train's direction by position at rest, as of a cascade's modes, whatever it is shown with.
 TEST(TrainVariance, OfOneTrochoidIsThatOfASine) {
     for (const double kh : {0.9, 0.3, 1e-7})
         for (const double choppiness : {0.0, 1.0})
@@ -194,12 +194,12 @@ TEST(TrainVariance, OfOneTrochoidIsThatOfASine) {
                 const FootprintFilter filter;
                 const double k = kTwoPi / trains.wavelength_m[0];
                 const double q = filter.weight(k, footprint_m) * k * trains.height_m[0], closed = 0.5 * q * q;
-                const SpectralMoments resolved = resolved(trains, filter, footprint_m);
+                const SpectralMoments shown = resolved(trains, filter, footprint_m);
                 const double x = trains.kx_cycles_per_m[0] * trains.wavelength_m[0];
                 const double y = trains.ky_cycles_per_m[0] * trains.wavelength_m[0];
-                EXPECT_NEAR(resolved.xx, closed * x * x, 1e-12 * kh * kh);
-                EXPECT_NEAR(resolved.xy, closed * x * y, 1e-12 * kh * kh);
-                EXPECT_NEAR(resolved.yy, closed * y * y, 1e-12 * kh * kh);
+                EXPECT_NEAR(shown.xx, closed * x * x, 1e-12 * kh * kh);
+                EXPECT_NEAR(shown.xy, closed * x * y, 1e-12 * kh * kh);
+                EXPECT_NEAR(shown.yy, closed * y * y, 1e-12 * kh * kh);
             }
 }
 
@@ -298,14 +298,14 @@ TEST(TrainVariance, OfFewTrainsIsTheSpectrumsToo) {
             const Trains<double> trains = trains_of(scene);
             const SpectralMoments spectrum =
                 moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
-            double resolved = 0.0, energy = 0.0;
+            double shown = 0.0, energy = 0.0;
             for (const SpectralMoments& alone : trains.alone) {
-                resolved += alone.mss();
+                shown += alone.mss();
                 energy += alone.m0;
             }
             EXPECT_GE(energy, 0.98 * spectrum.m0) << count;
             // A trochoid of steepness q has up to 2 times the slopes of its sinusoid; these are at most 7 % above it.
-            EXPECT_LE(resolved, 1.07 * spectrum.mss()) << count;
+            EXPECT_LE(shown, 1.07 * spectrum.mss()) << count;
             EXPECT_NEAR(total(trains).mss() / spectrum.mss(), 1.0, 0.07) << count;
         }
 }

@@ -94,7 +94,7 @@ TEST(Coverage, IsTheShareOfTheSeasArea) {
             }
 }
 
-// A sea is the same however finely it is looked at: waves resolved in one footprint and unresolved in another.
+// A sea is the same however finely it is looked at: waves shown in one footprint and unresolved in another.
 TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
     for (const double wind : {8.0, 14.0}) {
         Scene scene;
@@ -108,11 +108,10 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
             calibrated_threshold(moments(spectrum, 0.0, 1e9), law_coverage(scene), 1.0, true);
         const double all =
             coverage(jacobian_moments(0.0, 0.0, 0.0, 0.0, gradient(0.0, 1e9)), threshold, true);
-        for (const double edge : {0.3, 3.0, 30.0}) {  // rad/m: longer waves are resolved
-            const UnresolvedGradients<double> resolved = gradient(0.0, edge),
-                                              unresolved = gradient(edge, 1e9);
-            const double a = std::sqrt(resolved.xxxx), b = resolved.xxyy / a;
-            const double d = std::sqrt(resolved.yyyy - b * b), f = std::sqrt(resolved.xxyy);
+        for (const double edge : {0.3, 3.0, 30.0}) {  // rad/m: longer waves are shown
+            const UnresolvedGradients<double> shown = gradient(0.0, edge), unresolved = gradient(edge, 1e9);
+            const double a = std::sqrt(shown.xxxx), b = shown.xxyy / a;
+            const double d = std::sqrt(shown.yyyy - b * b), f = std::sqrt(shown.xxyy);
             std::mt19937_64 generator(7);
             std::normal_distribution<double> normal;
             double foam = 0.0, sea = 0.0;
@@ -128,7 +127,7 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
     }
 }
 
-// The gradient covariance of a real sea and a few resolved derivatives: J's cumulants against random draws of the
+// The gradient covariance of a real sea and a few shown derivatives: J's cumulants against random draws of the
 // three Gaussians. 20 batches give the sampling error; the tolerance is five times that.
 class GaussianRemainder : public testing::TestWithParam<double> {};
 
@@ -148,9 +147,9 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
     std::mt19937_64 generator(3);
     std::normal_distribution<double> normal;
     double two_moments_off = 0.0, three_moments_off = 0.0;
-    for (const std::array<double, 3>& resolved :
+    for (const std::array<double, 3>& shown :
          {std::array{0.0, 0.0, 0.0}, {-0.25, 0.1, 0.12}, {0.2, -0.3, -0.05}}) {
-        const auto [dxx, dyy, dxy] = resolved;
+        const auto [dxx, dyy, dxy] = shown;
         constexpr int kBatches = 20, kDraws = 50000;
         const JacobianMoments<double> theory = jacobian_moments(dxx, dyy, dxy, dxy, v);
         const double sigma = std::sqrt(theory.variance);

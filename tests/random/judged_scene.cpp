@@ -265,7 +265,7 @@ void judge_energy(const Plan& plan) {
     const Sea<T> sea(plan);
     const SpectralMoments& total = sea.total();
     for (std::size_t query = 0; query < plan.queries.size(); ++query) {
-        const SpectralMoments shown = sea.shown(static_cast<int>(query));
+        const SpectralMoments shown = sea.resolved_moments(static_cast<int>(query));
         const auto compare = [&](const char* what, double part, double whole, double tolerance) {
             judge_number(whole, Is::NotNegative, std::string("the spectrum's ") + what);
             judge_number(part, Is::NotNegative, std::string("shown ") + what);

@@ -86,10 +86,10 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
     const QueryStatistics& statistics = sea_->statistics(query);
     const auto whole = unresolved_moments<double>(has_trains() ? sea_->trains().outside : statistics.whole);
     const auto left = [&](const SpectralMoments& resolved) {
-        const auto resolved = unresolved_moments<double>(resolved);
+        const auto shown = unresolved_moments<double>(resolved);
         UnresolvedMoments<float> unresolved;
         for (std::size_t i = 0; i < unresolved.size(); ++i)
-            unresolved[i] = static_cast<float>(whole[i] - resolved[i]);
+            unresolved[i] = static_cast<float>(whole[i] - shown[i]);
         return unresolved;
     };
     for (std::size_t i = 0; i < pixels_.footprints_m.size(); ++i)
@@ -100,15 +100,15 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
 
 SeaLayout::Levels SeaLayout::levels_of(const Plan& plan, const std::vector<double>& footprints_m,
                                        const std::vector<int>& levels) {
-    Levels levels{footprints_m, {}};
+    Levels all{footprints_m, {}};
     for (const int level : levels)
         for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
             const CascadePlan& cascade = plan.cascades[c];
             const int grid = cascade.grid_of_level[level];
-            levels.tiles.push_back(
+            all.tiles.push_back(
                 {.n = grid < 0 ? 0 : cascade.grids[grid].resolution, .cascade = c, .grid = grid});
         }
-    return levels;
+    return all;
 }
 
 // Packs tiles, the largest first, into the texture of the fewest texels that most drivers have: as wide

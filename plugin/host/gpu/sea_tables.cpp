@@ -73,15 +73,15 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
     const std::size_t tiles = levels * static_cast<std::size_t>(std::max(cascades(), 1));
     std::vector<std::array<std::int32_t, 4>> first, origin;
     std::vector<std::array<float, 4>> scale, level, unresolved;
-    for (const Levels* levels : {&cells_, &pixels_, &breaking_}) {
-        for (const Tile& tile : levels->tiles) {
+    for (const Levels* all : {&cells_, &pixels_, &breaking_}) {
+        for (const Tile& tile : all->tiles) {
             const TileRow row = tile_row(*this, tile, origin_m);
             first.push_back(row.first);
             origin.push_back(row.origin);
             scale.push_back(row.scale);
         }
-        for (const double footprint_m : levels->footprints_m)
-            if (levels != &breaking_) level.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
+        for (const double footprint_m : all->footprints_m)
+            if (all != &breaking_) level.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
     }
     first.resize(tiles);
     origin.resize(tiles);

@@ -1,11 +1,11 @@
 // GLSL assembled from the files that C++ is compiled from too; the program contains their text.
 //
-// *.glsl files are used unchanged. *.inl files, written for core/base/number.h, are converted line by line:
+// *.glsl files are used without their comments. *.inl files, written for core/base/number.h, are converted line by line,
+// when the program is built (embed_shaders.cmake):
 //   lines with only `template <…>`, and lines that open or close a namespace, become empty;
 //   `inline `, `<T>` and `name_detail::` are removed;
 //   `const T ` becomes `T `, because constants of GLSL 3.30 need constant initialisers, `constexpr double `
-// becomes
-//   `const T `, and an array `T (&w)[P]` becomes `out T w[P]`.
+//   becomes `const T `, and an array `T (&w)[P]` becomes `out T w[P]`.
 // prelude.glsl defines T and the functions of number.h. Line numbers are kept, so that a compiler's messages
 // refer to the source.
 #pragma once
@@ -18,17 +18,14 @@
 namespace pelagic {
 
 struct ShaderFile {
-    std::string_view path;  // from the project's root
-    std::string_view text;
+    std::string_view path;        // from the project's root
+    std::string_view text, glsl;  // as it stands, and converted
 };
 
 // All embedded files (the generated shader_files.cpp), and one of them by its path, which throws
 // std::logic_error for an unknown path.
 const std::vector<ShaderFile>& shader_files();
 const ShaderFile& shader_file(std::string_view path);
-
-// Converts the lines of an *.inl file to GLSL.
-std::string glsl_of_inl(std::string_view text);
 
 // A whole shader for `#version 330 core`.
 class ShaderSource {

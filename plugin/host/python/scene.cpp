@@ -144,7 +144,7 @@ py::object range_of(const Key& key) {
 py::dict described_key(const Key& key) {
     py::list feeds, inner;
     for (std::size_t part = 0; part < kKeyParts; ++part)
-        if (key.key_parts[part]) key_parts.append(text_of(KeyPartSet(1ull << part)));
+        if (key.key_parts[part]) feeds.append(text_of(KeyPartSet(1ull << part)));
     for (const Key& each : key.entry_keys) inner.append(described_key(each));
     py::dict out;
     out["path"] = key.path;

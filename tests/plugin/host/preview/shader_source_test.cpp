@@ -10,47 +10,23 @@
 namespace pelagic {
 namespace {
 
-TEST(GlslOfInl, FollowsItsRulesLineByLine) {
-    EXPECT_EQ(glsl_of_inl("// σ² of it\n"
-                          "namespace some_detail {\n"
-                          "inline constexpr double kMost = 2.0;  // [-]\n"
-                          "template <class T>\n"
-                          "struct Pair {\n"
-                          "    T first, second;\n"
-                          "};\n"
-                          "}  // namespace some_detail\n"
-                          "template <int P, class T>\n"
-                          "inline Pair<T> pair_of(T x, T (&w)[P]) {\n"
-                          "    const T y = x;\n"
-                          "    return some_detail::Pair<T>(x, T(1));\n"
-                          "}\n"),
-              "\n"
-              "\n"
-              "const T kMost = 2.0;  \n"
-              "\n"
-              "struct Pair {\n"
-              "    T first, second;\n"
-              "};\n"
-              "\n"
-              "\n"
-              "Pair pair_of(T x, out T w[P]) {\n"
-              "    T y = x;\n"
-              "    return Pair(x, T(1));\n"
-              "}\n");
-}
-
-TEST(GlslOfInl, KeepsEachLineOfEachFile) {
+TEST(ShaderFiles, AreConvertedLineByLine) {
     int found = 0;
     for (const ShaderFile& file : shader_files()) {
-        if (!file.path.ends_with(".inl")) continue;
-        ++found;
-        const std::string glsl = glsl_of_inl(file.text);
-        EXPECT_EQ(std::count(glsl.begin(), glsl.end(), '\n'),
+        EXPECT_EQ(std::count(file.glsl.begin(), file.glsl.end(), '\n'),
                   std::count(file.text.begin(), file.text.end(), '\n'))
             << file.path;
-        EXPECT_TRUE(std::all_of(glsl.begin(), glsl.end(), [](char c) { return c >= 0; })) << file.path;
+        EXPECT_TRUE(std::all_of(file.glsl.begin(), file.glsl.end(), [](char c) { return c >= 0; }))
+            << file.path;
+        if (!file.path.ends_with(".inl")) continue;
+        ++found;
+        for (const char* cxx : {"inline ", "template", "namespace", "constexpr", "<T>", "::", "(&"})
+            EXPECT_EQ(file.glsl.find(cxx), std::string_view::npos) << file.path << ": " << cxx;
     }
     EXPECT_EQ(found, 11);
+    EXPECT_NE(shader_file("core/waves/spline.inl").glsl.find("out T "), std::string_view::npos);
+    EXPECT_NE(shader_file("core/waves/gusts.inl").glsl.find("\n    T resolved = weight * amplitude;\n"),
+              std::string_view::npos);
 }
 
 TEST(ShaderFiles, AreFoundByPathOrMissedByName) {

@@ -3,7 +3,7 @@
 // spline's number of taps.
 
 layout(std140) uniform SeaTables {
-    // Indexed by level · kCascades + cascade (a level is a level of footprints): levels of cells, then of pixels, then
+    // Indexed by level · kCascades + cascade, levels of footprints: of cells, then of pixels, then
     // of the waves that break. first.xy: the tile's first texel; .z: its number of nodes N, 0 where the filter lets
     // nothing through; .w: a multiple of N that makes node numbers positive.
     ivec4 tile_first[(kCellLevels + kPixelLevels + kBreakingLevels) * kTileCascades];

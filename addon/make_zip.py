@@ -6,7 +6,7 @@
 In it is one folder, pelagic_ocean, with the sources, the compiled module and the shared libraries that it needs, and
 the licences of all of them. The C library and the C++ runtime are the system's.
 
-WRITER.so is what writes volumes (plugin/vdb): the module loads it from beside itself when the first volume is baked.
+WRITER.so is what writes volumes (plugin/format/vdb): the module loads it from beside itself when the first volume is baked.
 """
 
 import re

@@ -51,7 +51,7 @@ source "$here/../examples/setup.sh"
 
 install_packages program preview python blender tests
 [ "$label" != openusd ] || install_packages openusd
-"$here/plugin/usd/openusd/install.sh"
+"$here/plugin/format/usd/openusd/install.sh"
 [ "$preset" != tsan ] || "$here/sanitizers/onetbb.sh"
 build "$preset"
 cd "$PELAGIC_ROOT"

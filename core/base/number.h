@@ -1,7 +1,7 @@
 // The operations of formulas that are written once (*.inl) and compiled for scalars (here), for SIMD vectors
-// (pack-inl.h) and for GLSL (plugin/gpu/prelude.glsl). Each includer does so inside the namespace with
+// (pack-inl.h) and for GLSL (plugin/host/gpu/prelude.glsl). Each includer does so inside the namespace with
 // the operations of its number type; OpenGL gets the text. So *.inl files use only what both languages have
-// (plugin/gpu/shader_source.h lists the lines that it adapts): arguments by value, structs made by their
+// (plugin/host/gpu/shader_source.h lists the lines that it adapts): arguments by value, structs made by their
 // constructor, `T(2)` for numbers, no `auto`.
 #pragma once
 

@@ -119,7 +119,7 @@ class FoamHistory<T>::Locator {
     Locator(const FoamHistory& history, const Points<T>& points, int query)
         : points_(points), foam_(history.foam_), kernels_(history.kernels_) {
         const auto& asked = history.sea_->plan().queries.at(static_cast<std::size_t>(query)).query;
-        whole_ = foam_rung(foam_, static_cast<float>(asked.pixel_m.front()));
+        whole_ = foam_level_blend(foam_, static_cast<float>(asked.pixel_m.front()));
         for (int level = 0; level < FoamPlan::kLevels; ++level)
             cells_[static_cast<std::size_t>(level)] = {
                 .per_m = 1.0 / foam_.cell_of(level),
@@ -147,9 +147,9 @@ class FoamHistory<T>::Locator {
         else
             take(points_.rest_m);
         for (std::size_t i = 0; points_.pixel_m && i < count; ++i) {
-            const FoamRung rung = rung_of(first + i);
-            part.level[i] = rung.level;
-            part.t[i] = rung.t;
+            const FoamLevelBlend blend = level_blend_of(first + i);
+            part.level[i] = blend.level;
+            part.t[i] = blend.t;
         }
         if (!points_.pixel_m) {
             std::fill_n(part.level.begin(), count, whole_.level);
@@ -170,12 +170,12 @@ class FoamHistory<T>::Locator {
     }
 
   private:
-    FoamRung rung_of(std::size_t i) const {
+    FoamLevelBlend level_blend_of(std::size_t i) const {
         const auto width_m = static_cast<float>(points_.pixel_m[i]);
-        if (!points_.pixel_axis_m) return foam_rung(foam_, width_m);
+        if (!points_.pixel_axis_m) return foam_level_blend(foam_, width_m);
         const glm::vec<2, T> axis = points_.pixel_axis_m[i];
         const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
-        return foam_rung(foam_, foam_footprint_m(width_m, length_m));
+        return foam_level_blend(foam_, foam_footprint_m(width_m, length_m));
     }
 
     template <class Use>
@@ -193,7 +193,7 @@ class FoamHistory<T>::Locator {
     const Points<T>& points_;
     const FoamPlan& foam_;
     const FoamKernels& kernels_;
-    FoamRung whole_;
+    FoamLevelBlend whole_;
     struct Cells {
         double per_m = 0.0;
         glm::dvec2 origin_m{0.0};  // the points', where the nodes are that drift

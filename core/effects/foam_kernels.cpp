@@ -93,7 +93,7 @@ void Add(const ResidualFoam& left, const float* breaking, std::size_t count, flo
 void Deviates(const float* mean, const float* variance, const float* third, const float* threshold,
               bool third_moment, std::span<float> y) {
     const D d;
-    constexpr float kLeastVariance = 1e-10f;  // where no breaking wave is hidden, Φ is a step
+    constexpr float kLeastVariance = 1e-10f;  // where no breaking wave is unresolved, Φ is a step
     for (std::size_t i = 0; i < y.size(); i += hn::Lanes(d)) {
         const N v = maximum(N(hn::LoadU(d, variance + i)), N(kLeastVariance)), sigma = square_root(v);
         N z = (N(hn::LoadU(d, threshold + i)) - N(hn::LoadU(d, mean + i))) / sigma;

@@ -11,7 +11,7 @@
 #include "core/base/constants.h"
 #include "core/evaluate/prepared_query.h"
 #include "core/plan/grid_layout.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -121,25 +121,25 @@ Interval times(const Interval& weight, const Interval& value) {  // weight ≥ 0
 }
 
 // The shifted tiles that a block reads; more than two along an axis are bounded together.
-struct ShownCopy {
+struct BlendedTile {
     Interval weight;
     glm::dvec2 offset;  // in tiles
 };
-struct ShownCopies {
+struct BlendedTiles {
     int count = 0;
-    std::array<ShownCopy, 4> of{};
+    std::array<BlendedTile, 4> of{};
     double most = 2.0;  // of the sum of their weights: √2 along each axis
 };
 
 // Along an axis, a tile's blending weight at this distance from its cell's middle.
-double copy_weight(double distance) {
-    if (distance <= 0.5) return copy_weights(distance).own;
-    return distance < 0.5 + 0.5 * kCopyRamp ? copy_weights(1.0 - distance).next : 0.0;
+double blend_weight(double distance) {
+    if (distance <= 0.5) return blend_weights(distance).own;
+    return distance < 0.5 + 0.5 * kBlendRamp ? blend_weights(1.0 - distance).next : 0.0;
 }
 
 // For a block between these corners, in cells.
-ShownCopies copies_of(uint key, glm::dvec2 from, glm::dvec2 to) {
-    constexpr double kHalf = 0.5 + 0.5 * kCopyRamp;
+BlendedTiles tiles_of(uint key, glm::dvec2 from, glm::dvec2 to) {
+    constexpr double kHalf = 0.5 + 0.5 * kBlendRamp;
     glm::dvec2 first, last;
     for (int axis = 0; axis < 2; ++axis) {
         const double slack = 1e-6 + 1e-14 * std::max(std::abs(from[axis]), std::abs(to[axis]));
@@ -152,19 +152,19 @@ ShownCopies copies_of(uint key, glm::dvec2 from, glm::dvec2 to) {
     const auto weight = [&](int axis, double cell) -> Interval {
         const double low = cell - from[axis], high = to[axis] - cell;  // to either end
         const double near = std::max({-low, -high, 0.0}), far = std::max(low, high);
-        return {copy_weight(far), copy_weight(near)};
+        return {blend_weight(far), blend_weight(near)};
     };
-    ShownCopies copies;
+    BlendedTiles tiling;
     for (double j = first.y; j <= last.y; ++j)
         for (double i = first.x; i <= last.x; ++i) {
             const Interval x = weight(0, i), y = weight(1, j);
-            const CopyOffset<double> offset =
-                copy_offset<double>(key, static_cast<uint>(static_cast<std::int64_t>(i)),
+            const TileOffset<double> offset =
+                tile_offset<double>(key, static_cast<uint>(static_cast<std::int64_t>(i)),
                                     static_cast<uint>(static_cast<std::int64_t>(j)));
-            copies.of[static_cast<std::size_t>(copies.count++)] = {{x.lo * y.lo, x.hi * y.hi},
+            tiling.of[static_cast<std::size_t>(tiling.count++)] = {{x.lo * y.lo, x.hi * y.hi},
                                                                    {offset.x, offset.y}};
         }
-    return copies;
+    return tiling;
 }
 
 // Blocks first … last of an axis of a period: one piece, or two where they lie across its seam.
@@ -205,14 +205,14 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
         throw std::invalid_argument("footprints to bound must rise from 0 or more");
     // From the level at or below the finest footprint to the one at or above the coarsest. Footprints beyond the
     // query's levels count as its first or last.
-    const std::vector<double>& ladder_m = query.cell_m;
-    const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end(), cells.finest_m);
-    const auto first = above - ladder_m.begin() - 1;
+    const std::vector<double>& levels_m = query.cell_m;
+    const auto above = std::upper_bound(levels_m.begin() + 1, levels_m.end(), cells.finest_m);
+    const auto first = above - levels_m.begin() - 1;
     const auto last = std::min<std::ptrdiff_t>(
-        std::lower_bound(ladder_m.begin() + first, ladder_m.end(), cells.coarsest_m) - ladder_m.begin(),
-        std::ssize(ladder_m) - 1);
+        std::lower_bound(levels_m.begin() + first, levels_m.end(), cells.coarsest_m) - levels_m.begin(),
+        std::ssize(levels_m) - 1);
     levels_.assign(planned_->cell_levels.begin() + first, planned_->cell_levels.begin() + last + 1);
-    for (double* of : {&cells_.finest_m, &cells_.coarsest_m}) *of = std::max(*of, ladder_m.front());
+    for (double* of : {&cells_.finest_m, &cells_.coarsest_m}) *of = std::max(*of, levels_m.front());
     if (plan.trains && !query.only_cascade) {
         const Trains<T>& trains = frame.sea().trains();
         for (std::size_t i = 0; i < trains.count(); ++i) {
@@ -255,8 +255,8 @@ void FrameBounds<T>::refresh() {
             places.push_back({c, g});
             GridBounds& grid = grids_.emplace_back();
             grid.size_m = plan.cascades[c].size_m;
-            if (plan.cascades[c].has_copies && !planned_->query.only_cascade)
-                grid.copies_key = copies_key(plan.from->scene.shot.seed, c);
+            if (plan.cascades[c].has_random_tiling && !planned_->query.only_cascade)
+                grid.tiling_key = tiling_key(plan.from->scene.shot.seed, c);
             const Grid& planned = plan.cascades[c].grids[g];
             grid.n = planned.resolution * (is_refined(planned) ? 2 : 1);
             const double block_m = 0.5 * kBlockCells * grid.size_m / grid.n;
@@ -368,26 +368,26 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
         for (const int g : of_level) {
             const GridBounds& grid = grids_[g];
             const glm::dvec2 from_m = origin_m + block.min_m, to_m = origin_m + block.max_m;
-            const auto copies = grid.copies_key
-                                    ? copies_of(*grid.copies_key, from_m / grid.size_m, to_m / grid.size_m)
-                                    : ShownCopies{1, {{{{1.0, 1.0}, glm::dvec2(0.0)}}}};
+            const auto tiling = grid.tiling_key
+                                    ? tiles_of(*grid.tiling_key, from_m / grid.size_m, to_m / grid.size_m)
+                                    : BlendedTiles{1, {{{{1.0, 1.0}, glm::dvec2(0.0)}}}};
             for (std::size_t f = 0; f < kFields.size(); ++f) {
                 const Pyramid& pyramid = grid.fields[f];
                 if (pyramid.levels.empty()) continue;
                 const Level& all = pyramid.levels.back();
                 const Interval whole{static_cast<double>(all.low[0]), static_cast<double>(all.high[0])};
                 Interval found{0.0, 0.0};
-                if (copies.count == 0)  // too many: their weights add up to this at most
-                    found = times({0.0, copies.most}, whole);
-                for (int i = 0; i < copies.count; ++i) {
-                    const ShownCopy& copy = copies.of[static_cast<std::size_t>(i)];
+                if (tiling.count == 0)  // too many: their weights add up to this at most
+                    found = times({0.0, tiling.most}, whole);
+                for (int i = 0; i < tiling.count; ++i) {
+                    const BlendedTile& copy = tiling.of[static_cast<std::size_t>(i)];
                     const glm::dvec2 by_m = copy.offset * grid.size_m;
                     const Interval shown =
                         times(copy.weight, interval_of(grid, pyramid, from_m + by_m, to_m + by_m));
                     found.lo += shown.lo;
                     found.hi += shown.hi;
                 }
-                const double rounding = grid.copies_key ? 4.0 * kRounding<T> : kRounding<T>;
+                const double rounding = grid.tiling_key ? 4.0 * kRounding<T> : kRounding<T>;
                 widen(found, rounding * std::max(-whole.lo, whole.hi));
                 Interval& axis = sum.*axes()[f];
                 axis.lo += found.lo;
@@ -558,7 +558,7 @@ const FrameBounds<T>& BoundsByLevel<T>::from_level(double level_m) const {
 template <class T>
 const FrameBounds<T>& BoundsByLevel<T>::of_cell(double cell_m) const {
     const double from_m = std::max(cell_m, finest_cell_m());
-    return from_level(from_m > 0.0 ? rung_below_m(from_m) : 0.0);
+    return from_level(from_m > 0.0 ? level_below_m(from_m) : 0.0);
 }
 
 template class BoundsByLevel<float>;

@@ -12,8 +12,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/plan/copies.h"
 #include "core/plan/plan.h"
+#include "core/plan/random_tiling.h"
 #include "core/waves/frame.h"
 
 namespace pelagic {
@@ -82,7 +82,7 @@ class FrameBounds {
     struct GridBounds {
         double size_m = 1.0;
         int n = 1;                         // cells along an axis
-        std::optional<uint> copies_key{};  // with random tiling (core/plan/copies.h)
+        std::optional<uint> tiling_key{};  // with random tiling (core/plan/random_tiling.h)
         std::array<Pyramid, 3> fields;     // height, Dx, Dy
     };
     using Block = RestRegion;

@@ -28,7 +28,7 @@ struct Chunk {
     alignas(64) std::array<T, kPoints + kLongestVector> rest_x, rest_y;
     // Σ over the components so far, by field; only the wanted ones are set.
     alignas(64) std::array<Values, kFieldCount> sums;
-    alignas(64) Values turn;  // ∂Dy/∂x − ∂Dx/∂y: 0 except where tiles blend (core/plan/copies.h)
+    alignas(64) Values turn;  // ∂Dy/∂x − ∂Dx/∂y: 0 except where tiles blend (core/plan/random_tiling.h)
 };
 
 }  // namespace pelagic

@@ -45,7 +45,7 @@ struct Places {
 template <class T>
 using FieldValues = std::array<std::array<T, kRoom<T>>, kFieldCount>;
 
-// Values go to `own` at the points `in_own`, to `next` at others (CopyRange).
+// Values go to `own` at the points `in_own`, to `next` at others (TilingRange).
 template <class T>
 struct Targets {
     FieldValues<T>&own, &next;
@@ -670,10 +670,10 @@ void AddValues(const GridArgs<T>& args, const FieldValues<T>& values, Chunk<T>& 
     }
 }
 
-// The same for the tiles of one side along x, with their weights w and these weights' gradient (core/plan/copies.h).
+// The same for the tiles of one side along x, with their weights w and these weights' gradient (core/plan/random_tiling.h).
 template <class T>
-void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typename CopyArgs<T>::Side& side,
-               const FieldValues<T>& values, Chunk<T>& chunk) {
+void AddTiles(const GridArgs<T>& args, const TilingArgs<T>& tiling, const typename TilingArgs<T>::Side& side,
+              const FieldValues<T>& values, Chunk<T>& chunk) {
     const hn::ScalableTag<T> d;
     using N = Pack<decltype(d)>;
     const std::size_t lanes = hn::Lanes(d);
@@ -682,15 +682,15 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typenam
         if (const T* share = weight_of(args, f)) what = N(hn::LoadU(d, share + i)) * what;
         hn::Store(hn::Add(hn::Load(d, sums + i), what.v), d, sums + i);
     };
-    const auto wanted = [&](Field f) { return copies.wanted[index(f)] && args.samples[index(f)]; };
+    const auto wanted = [&](Field f) { return tiling.wanted[index(f)] && args.samples[index(f)]; };
     for (std::size_t r = 0, next = 0; r < side.count; ++r) {
         const PointRange range = side.points[r];
         for (std::size_t i = std::max(next, range.first / lanes * lanes); i < range.end; i += lanes) {
             next = i + lanes;
             const auto of = [&](const T* values_of) HWY_ATTR { return N(hn::LoadU(d, values_of + i)); };
-            const N x = of(side.x.weight), y = of(copies.y.weight), w = x * y;
+            const N x = of(side.x.weight), y = of(tiling.y.weight), w = x * y;
             const N wx = N(side.x.sign) * of(side.x.other) * of(side.x.rate) * y;
-            const N wy = N(copies.y.sign) * of(copies.y.other) * of(copies.y.rate) * x;
+            const N wy = N(tiling.y.sign) * of(tiling.y.other) * of(tiling.y.rate) * x;
             const auto none = hn::Zero(d);
             if (hn::AllTrue(d, hn::Eq(w.v, hn::Set(d, T(1)))) && hn::AllTrue(d, hn::Eq(wx.v, none)) &&
                 hn::AllTrue(d, hn::Eq(wy.v, none))) {  // nothing blends here
@@ -720,10 +720,10 @@ constexpr std::size_t kShortestRow = 8;
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     const PointRange whole{0, chunk.count};
-    const CopyRange all{whole, whole, args.origin_nodes_x, args.origin_nodes_y};
-    const CopyArgs<T>* copies = args.copies;
-    const CopyRange* ranges = copies ? copies->ranges : &all;
-    const std::size_t range_count = copies ? copies->range_count : 1;
+    const TilingRange all{whole, whole, args.origin_nodes_x, args.origin_nodes_y};
+    const TilingArgs<T>* tiling = args.tiling;
+    const TilingRange* ranges = tiling ? tiling->ranges : &all;
+    const std::size_t range_count = tiling ? tiling->range_count : 1;
     FieldValues<T> own, next;
     // Vectors compute with the values between the ranges and beyond the last point too: these must be numbers.
     const hn::ScalableTag<T> d;
@@ -734,18 +734,18 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
             for (std::size_t i = first; args.samples[f] && i < chunk.count; i += hn::Lanes(d))
                 hn::StoreU(hn::Zero(d), d, values[f].data() + i);
     };
-    const auto shown = [&](const typename CopyArgs<T>::Side& side) {
+    const auto shown = [&](const typename TilingArgs<T>::Side& side) {
         return side.count == 1 ? side.points[0] : PointRange{0, 0};
     };
-    clear(own, copies ? shown(copies->sides[0]) : whole);
-    if (copies && copies->sides[1].count > 0) clear(next, shown(copies->sides[1]));
+    clear(own, tiling ? shown(tiling->sides[0]) : whole);
+    if (tiling && tiling->sides[1].count > 0) clear(next, shown(tiling->sides[1]));
     Targets<T> targets{own, next, whole};
     Places<T> y;
     const T *rest_x = chunk.rest_x.data(), *rest_y = chunk.rest_y.data();
     // Of a row only the first point is placed along y.
     const auto read = [&](auto&& row, auto&& scattered) {
         for (std::size_t r = 0; r < range_count; ++r) {
-            const CopyRange& range = ranges[r];
+            const TilingRange& range = ranges[r];
             targets.in_own = range.own;
             for (PointRange part = range.points; part.first < part.end; part = {part.end, range.points.end}) {
                 const std::size_t end = EndOfLevel(rest_y, part.first, part.end);
@@ -763,8 +763,8 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     const auto by_splines = [&](auto taps, RowPlaces<T>& places) {
         SplineReader<taps, T> reader(args, rest_x, y, places, targets);
         ScatteredReader<taps, T> scattered(args, chunk);
-        read([&](PointRange part, const CopyRange& range) { reader.Read(part, range.nodes_x); },
-             [&](PointRange part, const CopyRange& range) {
+        read([&](PointRange part, const TilingRange& range) { reader.Read(part, range.nodes_x); },
+             [&](PointRange part, const TilingRange& range) {
                  if (range_count == 1)
                      scattered.Read(part, range.nodes_x, range.nodes_y, targets);
                  else
@@ -774,13 +774,13 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     };
     if (args.sampling == Sampling::Nodes) {
         Places<T> x;
-        const auto by_nodes = [&](PointRange part, const CopyRange& range, bool is_level) {
+        const auto by_nodes = [&](PointRange part, const TilingRange& range, bool is_level) {
             LocateAll(args, range.nodes_x, rest_x, part, x);
             if (!is_level) LocateAll(args, range.nodes_y, rest_y, part, y);
             ReadNodes(args, part, is_level, x, y, targets);
         };
-        read([&](PointRange part, const CopyRange& range) { by_nodes(part, range, true); },
-             [&](PointRange part, const CopyRange& range) { by_nodes(part, range, false); });
+        read([&](PointRange part, const TilingRange& range) { by_nodes(part, range, true); },
+             [&](PointRange part, const TilingRange& range) { by_nodes(part, range, false); });
     } else {
         RowPlaces<T> alone;
         RowPlaces<T>& places = args.places ? *args.places : alone;
@@ -789,9 +789,9 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
         else
             by_splines(std::integral_constant<int, 4>(), places);
     }
-    if (!copies) return AddValues(args, own, chunk);
-    AddCopies(args, *copies, copies->sides[0], own, chunk);
-    if (copies->sides[1].count > 0) AddCopies(args, *copies, copies->sides[1], next, chunk);
+    if (!tiling) return AddValues(args, own, chunk);
+    AddTiles(args, *tiling, tiling->sides[0], own, chunk);
+    if (tiling->sides[1].count > 0) AddTiles(args, *tiling, tiling->sides[1], next, chunk);
 }
 
 }  // namespace grids_detail

@@ -66,7 +66,7 @@ void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
             const N weight = footprint_weight(N(wave.shortest_m) / length, n_min, per_range);
             sum = with_gust(sum, N(wave.amplitude), cycles, weight);
         }
-        const N level = gust_level(sum.shown);
+        const N level = gust_level(sum.resolved);
         hn::Store((N(1) + N(args.gusts->plan.strength) * level).v, d, chunk.factor.data() + i);
         hn::Store((ValueOf(args.gusts->of_level, level) + ValueOf(args.gusts->of_kept, sum.kept)).v, d,
                   chunk.whitecap_threshold.data() + i);

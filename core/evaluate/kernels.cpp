@@ -11,7 +11,7 @@
 
 #include "core/base/pack-inl.h"
 #include "core/evaluate/grids-inl.h"
-#include "core/plan/copies.h"
+#include "core/plan/random_tiling.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pelagic {
@@ -25,11 +25,11 @@ namespace {  // names are this file's own
 #include "core/plan/filter.inl"
 #include "core/waves/whitecaps.inl"
 // After filter.inl, of which it is made.
-#include "core/plan/copies.inl"
+#include "core/plan/random_tiling.inl"
 
 // Along one axis, in double.
 template <class T>
-void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, CopyAxis<T>& axis) {
+void PlaceTiles(const TilingAxisArgs& args, const T* rest_m, std::size_t count, TilingAxis<T>& axis) {
     const hn::ScalableTag<double> dd;
     using Wide = decltype(dd);
     const hn::Rebind<T, Wide> narrow;
@@ -49,7 +49,7 @@ void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, C
     const auto per_m = hn::Set(d, static_cast<T>(args.cells_per_m)), none = hn::Zero(d);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         const auto from_middle = hn::LoadU(d, axis.rate.data() + i);
-        const CopyWeights<N> weights = copy_weights(N(hn::Abs(from_middle)));
+        const BlendWeights<N> weights = blend_weights(N(hn::Abs(from_middle)));
         const auto side =
             hn::IfThenElse(hn::RebindMask(di, hn::Lt(from_middle, none)), hn::Set(di, 3), hn::Set(di, 1));
         const auto shown = hn::IfThenElseZero(hn::RebindMask(di, hn::Gt(weights.next.v, none)), side);
@@ -122,27 +122,28 @@ HWY_INLINE void Put(D d, const Strided<T>& out, std::size_t i, std::size_t count
 
 // What a chunk's pixels leave unresolved, as vectors: by point, or the same for all.
 template <class T>
-class Hidden {
+class Unresolved {
   public:
     using D = hn::ScalableTag<T>;
     using N = Pack<D>;
-    HWY_INLINE explicit Hidden(const DeriveArgs<T>& args) : args_(args) {
-        if (args.hidden_of) return;
-        const HiddenStrain<N> strain = strain_at(0);
-        const StrainTraces<N> traces = strain_traces(strain);
+    HWY_INLINE explicit Unresolved(const DeriveArgs<T>& args) : args_(args) {
+        if (args.unresolved_of) return;
+        const UnresolvedGradients<N> gradient = gradients_at(0);
+        const GradientTraces<N> traces = gradient_traces(gradient);
         hn::Store(traces.second.v, D(), second_);
         hn::Store(traces.third.v, D(), third_);
     }
     HWY_INLINE N moment_at(std::size_t moment, std::size_t i) const {
-        return args_.hidden_of ? N(hn::LoadU(D(), args_.hidden_of->moments[moment].data() + i))
-                               : N(args_.hidden[moment]);
+        return args_.unresolved_of ? N(hn::LoadU(D(), args_.unresolved_of->moments[moment].data() + i))
+                                   : N(args_.unresolved[moment]);
     }
-    HWY_INLINE HiddenStrain<N> strain_at(std::size_t i) const {
-        return {moment_at(kHiddenSlopes, i), moment_at(kHiddenSlopes + 1, i), moment_at(kHiddenSlopes + 2, i),
-                moment_at(kHiddenSlopes + 3, i), moment_at(kHiddenSlopes + 4, i)};
+    HWY_INLINE UnresolvedGradients<N> gradients_at(std::size_t i) const {
+        return {moment_at(kUnresolvedSlopes, i), moment_at(kUnresolvedSlopes + 1, i),
+                moment_at(kUnresolvedSlopes + 2, i), moment_at(kUnresolvedSlopes + 3, i),
+                moment_at(kUnresolvedSlopes + 4, i)};
     }
-    HWY_INLINE StrainTraces<N> traces_of(const HiddenStrain<N>& strain) const {
-        if (args_.hidden_of) return strain_traces(strain);
+    HWY_INLINE GradientTraces<N> traces_of(const UnresolvedGradients<N>& gradient) const {
+        if (args_.unresolved_of) return gradient_traces(gradient);
         return {N(hn::Load(D(), second_)), N(hn::Load(D(), third_))};
     }
 
@@ -159,7 +160,7 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
     using N = Pack<D>;
     const D d;
     const Chunk<T>& chunk = *args.chunk;
-    const Hidden<T> hidden(args);
+    const Unresolved<T> unresolved(args);
     const auto moments = args.results.vectors(Product::JacobianMoments);
     const auto foam = args.results.numbers(Product::Breaking);
     alignas(64) typename Chunk<T>::Values mean, variance, third;
@@ -167,11 +168,11 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
         const auto at = [&](Field field) HWY_ATTR {
             return N(hn::LoadU(d, args.breaking->sums[index(field)].data() + i));
         };
-        const HiddenStrain<N> strain = hidden.strain_at(i);
+        const UnresolvedGradients<N> gradient = unresolved.gradients_at(i);
         const JacobianMoments<N> j =
             jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy),
-                             at(Field::Dxy) + N(hn::LoadU(d, args.breaking->turn.data() + i)), strain,
-                             hidden.traces_of(strain));
+                             at(Field::Dxy) + N(hn::LoadU(d, args.breaking->turn.data() + i)), gradient,
+                             unresolved.traces_of(gradient));
         if (moments) Put(d, moments, i, chunk.count, std::array<N, 3>{j.mean, j.variance, j.third});
         hn::StoreU(j.mean.v, d, mean.data() + i);
         hn::StoreU(j.variance.v, d, variance.data() + i);
@@ -253,9 +254,10 @@ void Derive(const DeriveArgs<T>& args) {
                                at(Field::Dyy, i), at(Field::Dxy, i), dyx(i));
             return Vector{normal.x, normal.y, normal.z};
         });
-    const Hidden<T> hidden(args);
+    const Unresolved<T> unresolved(args);
     const auto at_rest = [&](std::size_t i) HWY_ATTR {
-        return SlopeVariances<N>{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};
+        return SlopeVariances<N>{unresolved.moment_at(0, i), unresolved.moment_at(2, i),
+                                 unresolved.moment_at(1, i)};
     };
     each(results.vectors(Product::SlopeVariance), [&](std::size_t i) HWY_ATTR {
         const SlopeVariances<N> carried =
@@ -270,10 +272,10 @@ void Derive(const DeriveArgs<T>& args) {
 }
 
 EvaluateKernels<float> TableOfFloat() {
-    return {&grids_detail::AddGrid<float>, &Derive<float>, &SpanOf<float>, &PlaceCopies<float>};
+    return {&grids_detail::AddGrid<float>, &Derive<float>, &SpanOf<float>, &PlaceTiles<float>};
 }
 EvaluateKernels<double> TableOfDouble() {
-    return {&grids_detail::AddGrid<double>, &Derive<double>, &SpanOf<double>, &PlaceCopies<double>};
+    return {&grids_detail::AddGrid<double>, &Derive<double>, &SpanOf<double>, &PlaceTiles<double>};
 }
 
 }  // namespace

@@ -21,15 +21,15 @@ struct PointRange {
 
 // Successive points that read one shifted tile of a grid, and where the chunk's origin lies in it [nodes]. Those of
 // `own` lie in the tile's own cell, those before and behind in cells beside it along x.
-struct CopyRange {
+struct TilingRange {
     PointRange points, own;
     double nodes_x, nodes_y;
 };
 
 // The tiles that a chunk's points read: along y those of one cell, along x those of both, with their blending weights
-// (core/plan/copies.h). All arrays of T are by point, as long as a chunk's padded().
+// (core/plan/random_tiling.h). All arrays of T are by point, as long as a chunk's padded().
 template <class T>
-struct CopyArgs {
+struct TilingArgs {
     // Along an axis: the tile's weight, and that of the other one beside it; how they change with the place [1/m];
     // and the sign of this tile's change.
     struct Axis {
@@ -44,7 +44,7 @@ struct CopyArgs {
     };
     std::array<Side, 2> sides;  // own, next
     Axis y;
-    const CopyRange* ranges;
+    const TilingRange* ranges;
     std::size_t range_count;
     FieldSet wanted;  // fields that are added; samples hold what their gradients need as well
 };
@@ -94,7 +94,7 @@ struct GridArgs {
     std::array<const T*, kFieldCount> samples{};  // as Frame::samples(); null: not wanted
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
-    const CopyArgs<T>* copies = nullptr;                      // null: all points read the tile itself
+    const TilingArgs<T>* tiling = nullptr;                    // null: all points read the tile itself
     RowPlaces<T>* places =
         nullptr;  // where they are kept for chunks of the same x, which have the same `row`
     std::uint64_t row = 0;
@@ -113,9 +113,9 @@ struct ChunkSpan {
     bool is_finite = true;
 };
 
-// Along an axis, which cells' tiles a chunk's points read (core/plan/copies.h), and their CopyWeights.
+// Along an axis, which cells' tiles a chunk's points read (core/plan/random_tiling.h), and their BlendWeights.
 template <class T>
-struct CopyAxis {
+struct TilingAxis {
     using Code = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
     // Four times the cell in which each point lies, counted from the origin's, plus the side of the other tile that
     // it reads: 1, above; 3, below; 0, none.
@@ -127,7 +127,7 @@ struct CopyAxis {
     static int side_of(Code code) { return (code & 3) == 3 ? -1 : static_cast<int>(code & 3); }
 };
 // Where the points' origin lies in its cell, and how large cells are.
-struct CopyAxisArgs {
+struct TilingAxisArgs {
     double cells_per_m = 1.0, origin_from_middle = 0.0;
 };
 
@@ -137,8 +137,8 @@ struct DeriveArgs {
     const Chunk<T>* chunk = nullptr;
     const Chunk<T>* breaking = nullptr;  // whose displacement gradient is that of the waves that break
     Results<T> results;                  // beginning at the chunk's first point
-    HiddenMoments<T> hidden{};           // of all points' pixels, where there is no array
-    const HiddenChunk<T>* hidden_of = nullptr;
+    UnresolvedMoments<T> unresolved{};   // of all points' pixels, where there is no array
+    const UnresolvedChunk<T>* unresolved_of = nullptr;
     T whitecap_threshold = T(0);
     const T* whitecap_threshold_of = nullptr;  // by point, where gusts make them differ
     bool third_moment = true;
@@ -151,7 +151,7 @@ struct EvaluateKernels {
     void (*derive)(const DeriveArgs<T>&);
     ChunkSpan<T> (*span_of)(const Chunk<T>&);
     // Of `count` points that rest there [m], a multiple of every vector's length.
-    void (*place_copies)(const CopyAxisArgs&, const T* rest_m, std::size_t count, CopyAxis<T>&);
+    void (*place_tiles)(const TilingAxisArgs&, const T* rest_m, std::size_t count, TilingAxis<T>&);
 };
 
 // For the CPU that runs this.

@@ -18,28 +18,30 @@
 namespace pelagic {
 namespace {
 
-#include "core/evaluate/hidden.inl"
+#include "core/evaluate/unresolved.inl"
 
-constexpr std::array kStrain{Field::Dxx, Field::Dyy, Field::Dxy};
+constexpr std::array kDisplacementGradients{Field::Dxx, Field::Dyy, Field::Dxy};
 
 // What a pixel's level leaves unresolved of `whole`: what the cascades don't resolve, and `beside` on top of it.
 template <class T>
-HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
-                           const HiddenMoments<double>& whole, const HiddenMoments<double>& beside = {}) {
-    const double t = static_cast<double>(rung.t);
+UnresolvedMoments<T> unresolved_at(const QueryStatistics& statistics, const LevelBlend<T>& blend,
+                                   const UnresolvedMoments<double>& whole,
+                                   const UnresolvedMoments<double>& beside = {}) {
+    const double t = static_cast<double>(blend.t);
     const auto left = [&](std::size_t moment) {
-        const auto m = kHiddenMoments[moment];
-        const double here = statistics.resolved[rung.lower].*m;
+        const auto m = kUnresolvedMoments[moment];
+        const double here = statistics.resolved[blend.lower].*m;
         if (!(t > 0.0)) return whole[moment] - here + beside[moment];  // there may be no next level
         return beside[moment] + whole[moment] -
-               blended_moment(here, statistics.resolved_next[rung.lower].*m,
-                              statistics.resolved[rung.lower + 1].*m, t);
+               blended_moment(here, statistics.resolved_next[blend.lower].*m,
+                              statistics.resolved[blend.lower + 1].*m, t);
     };
-    const auto hidden = possible_moments(
+    const auto unresolved = possible_moments(
         PixelMoments<double>(left(0), left(1), left(2), left(3), left(4), left(5), left(6), left(7)));
     const auto narrow = [](double value) { return static_cast<T>(value); };
-    return {narrow(hidden.xx),   narrow(hidden.xy),   narrow(hidden.yy),   narrow(hidden.xxxx),
-            narrow(hidden.xxxy), narrow(hidden.xxyy), narrow(hidden.xyyy), narrow(hidden.yyyy)};
+    return {narrow(unresolved.xx),   narrow(unresolved.xy),   narrow(unresolved.yy),
+            narrow(unresolved.xxxx), narrow(unresolved.xxxy), narrow(unresolved.xxyy),
+            narrow(unresolved.xyyy), narrow(unresolved.yyyy)};
 }
 
 // A view beginning at a later point.
@@ -57,21 +59,21 @@ struct PreparedQuery<T>::Call {
     const Place& place;
     FieldSet needed;  // except those of the waves that break
     bool breaks;      // something of the waves that break is wanted
-    bool wants_hidden, on_ladder;
-    bool differ_in_hidden;  // where trains use each point's own pixel, or cascades have levels
+    bool wants_unresolved, has_levels;
+    bool differ_in_unresolved;  // where trains use each point's own pixel, or cascades have levels
 };
 
 // The state of one chunk.
 template <class T>
 struct PreparedQuery<T>::Work {
     Chunk<T> chunk, breaking;
-    HiddenChunk<T> hidden_of;
+    UnresolvedChunk<T> unresolved_of;
     ChunkFootprints<T> cells, pixels, breaking_pixels;
     GustChunk<T> gusts;
     FieldSet needed;
     bool apart;  // the displacement gradient of the waves that break is in `breaking`, not in `chunk`
-    std::array<CopyPlaces<T>, limits::kCascades> copies;  // of the chunk's points, by cascade
-    CopyReader<T> copy_reader;
+    std::array<TilingPlaces<T>, limits::kCascades> tiling;  // of the chunk's points, by cascade
+    TilingReader<T> tiling_reader;
     std::vector<std::vector<std::unique_ptr<RowPlaces<T>>>> places;  // of grids by level; empty: not kept
     std::uint64_t row = 0;  // that the chunk's x belong to; 0: x are not compared with those before
 };
@@ -101,7 +103,7 @@ typename PreparedQuery<T>::Cut PreparedQuery<T>::cut(const Call& call) const {
         return std::any_of(level.grids.begin(), level.grids.end(),
                            [](const GridArgs<T>& grid) { return grid.sampling == Sampling::Spline; });
     });
-    if (call.on_ladder || !has_splines) return all;
+    if (call.has_levels || !has_splines) return all;
     std::size_t row = 1;
     while (row < points.count && points.rest_m[row].y == points.rest_m[0].y) ++row;
     if (row == points.count || row < kPoints / 2 || points.count % row != 0) return all;
@@ -131,18 +133,19 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                                              ? "\" at one time alone: ask a SeaAtTime"
                                              : "\": ask for it when the plan is made"));
     has_trains_ = plan.trains && !query.only_cascade;
-    has_copies_ =
-        !query.only_cascade && std::any_of(plan.cascades.begin(), plan.cascades.end(),
-                                           [](const CascadePlan& cascade) { return cascade.has_copies; });
+    has_random_tiling_ = !query.only_cascade &&
+                         std::any_of(plan.cascades.begin(), plan.cascades.end(),
+                                     [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
     breaks_ = (wanted & breaking_products()).any();
     // A cascade's own tile is periodic and only a part of the sea: it has no gusts.
     if (whitecaps_->gusts && !query.only_cascade && (wanted & gusty_products()).any())
         gusts_ = &*whitecaps_->gusts;
-    if ((wanted & hidden_products()).any())
-        hidden_ = hidden_at<T>(*statistics_, {0, T(0)},
-                               hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan.filter,
-                                                                           query.pixel_m.front())
-                                                                  : statistics_->whole));
+    if ((wanted & unresolved_products()).any())
+        unresolved_ = unresolved_at<T>(
+            *statistics_, {0, T(0)},
+            unresolved_moments<double>(
+                has_trains_ ? unresolved(frame.sea().trains(), plan.filter, query.pixel_m.front())
+                            : statistics_->whole));
     for (const std::vector<int>* levels :
          {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels})
         for (const int level : *levels)
@@ -160,8 +163,8 @@ void PreparedQuery<T>::refresh() {
     if (!frame_->is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
     const Plan& plan = frame_->sea().plan();
     FieldSet needed = fields_of(wanted_) & ~plan.dropped;
-    if (breaks_) needed |= strain_fields();
-    if (has_copies_) needed |= gradient_fields(needed);
+    if (breaks_) needed |= displacement_gradient_fields();
+    if (has_random_tiling_) needed |= gradient_fields(needed);
     for (LevelGrids& of : levels_) {
         of.grids.clear();
         of.cascades.clear();
@@ -196,8 +199,8 @@ template <class T>
 typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m) const {
     Place place{origin_m, {}, {}, {}, {}};
     const Plan& plan = frame_->sea().plan();
-    for (std::size_t c = 0; has_copies_ && c < plan.cascades.size(); ++c)
-        place.copies.emplace_back(copies_key(plan.from->scene.shot.seed, static_cast<int>(c)),
+    for (std::size_t c = 0; has_random_tiling_ && c < plan.cascades.size(); ++c)
+        place.tiling.emplace_back(tiling_key(plan.from->scene.shot.seed, static_cast<int>(c)),
                                   plan.cascades[c].size_m, origin_m);
     for (const LevelGrids& of : levels_) {
         std::vector<glm::dvec2>& nodes = place.nodes.emplace_back();
@@ -227,9 +230,9 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
         .place = place,
         .needed = fields_of(given & ~breaking_products()) & ~frame_->sea().plan().dropped,
         .breaks = (given & breaking_products()).any(),
-        .wants_hidden = (given & hidden_products()).any(),
-        .on_ladder = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
-        .differ_in_hidden = points.pixel_m && (has_trains_ || many_pixels)};
+        .wants_unresolved = (given & unresolved_products()).any(),
+        .has_levels = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
+        .differ_in_unresolved = points.pixel_m && (has_trains_ || many_pixels)};
 }
 
 template <class T>
@@ -313,7 +316,7 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     // Fields that aren't needed, or are zero in this scene, are 0 for products that ask for them.
     for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
     std::fill(chunk.turn.begin(), chunk.turn.begin() + padded, T(0));
-    if (call.on_ladder) {
+    if (call.has_levels) {
         const Query& query = planned_->query;
         const double longest = frame_->sea().plan().knobs.longest_ellipse;
         work.cells.take(query.cell_m, call.points.cell_m, call.points.cell_axis_m, longest, first,
@@ -321,41 +324,42 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
         work.pixels.take(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, longest, first,
                          chunk.count);
     }
-    for (std::size_t c = 0; c < call.place.copies.size(); ++c) work.copies[c].forget(work.row);
+    for (std::size_t c = 0; c < call.place.tiling.size(); ++c) work.tiling[c].forget(work.row);
     work.apart = breaks_apart(call, work);
     work.needed = call.needed;
-    if (call.breaks && !work.apart) work.needed |= strain_fields();
+    if (call.breaks && !work.apart) work.needed |= displacement_gradient_fields();
     if (work.apart) {
         work.breaking.count = chunk.count;
         work.breaking.rest_x = chunk.rest_x;
         work.breaking.rest_y = chunk.rest_y;
-        for (const Field field : kStrain) {
+        for (const Field field : kDisplacementGradients) {
             auto& sum = work.breaking.sums[index(field)];
             std::fill(sum.begin(), sum.begin() + padded, T(0));
         }
         std::fill(work.breaking.turn.begin(), work.breaking.turn.begin() + padded, T(0));
     }
-    if (call.on_ladder) {
-        add_ladder(call, work);
+    if (call.has_levels) {
+        add_levels(call, work);
     } else {
         add_only_footprint(call, work);
     }
     add_own_footprints(call, first, work);
     const bool has_gusts = gusts_ && (call.results.given() & gusty_products()).any();
     if (has_gusts) take_gusts(call, first, work);
-    kernels_.derive({.chunk = &chunk,
-                     .breaking = work.apart ? &work.breaking : &chunk,
-                     .results = call.results.from_point(first),
-                     .hidden = hidden_,
-                     .hidden_of = call.wants_hidden && call.differ_in_hidden ? &work.hidden_of : nullptr,
-                     .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
-                     .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
-                     .third_moment = plan.knobs.third_moment,
-                     .rest_normal = call.points.rest_normal ? from_point(call.points.rest_normal, first)
-                                                            : call.points.rest_normal});
-    const auto hidden = call.results.vectors(Product::SlopeVariance);
-    if (has_gusts && hidden)
-        for (std::size_t i = 0; i < chunk.count; ++i) hidden[first + i] *= work.gusts.factor[i];
+    kernels_.derive(
+        {.chunk = &chunk,
+         .breaking = work.apart ? &work.breaking : &chunk,
+         .results = call.results.from_point(first),
+         .unresolved = unresolved_,
+         .unresolved_of = call.wants_unresolved && call.differ_in_unresolved ? &work.unresolved_of : nullptr,
+         .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
+         .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
+         .third_moment = plan.knobs.third_moment,
+         .rest_normal =
+             call.points.rest_normal ? from_point(call.points.rest_normal, first) : call.points.rest_normal});
+    const auto unresolved = call.results.vectors(Product::SlopeVariance);
+    if (has_gusts && unresolved)
+        for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
 }
 
 template <class T>
@@ -378,10 +382,10 @@ bool PreparedQuery<T>::breaks_apart(const Call& call, const Work& work) const {
     if (!call.breaks) return false;
     if (!plan.choppiness.moves() || (has_trains_ && plan.breaking.footprint_m > 0.0)) return true;
     const std::vector<int>&pixel = planned_->pixel_levels, &breaking = planned_->breaking_levels;
-    if (!call.on_ladder) return pixel.front() != breaking.front();
+    if (!call.has_levels) return pixel.front() != breaking.front();
     for (std::size_t i = 0; i < work.chunk.count; ++i) {
         const Footprint<T>& of = work.pixels.of[i];
-        if (pixel[of.rung.lower] != breaking[of.rung.lower]) return true;
+        if (pixel[of.blend.lower] != breaking[of.blend.lower]) return true;
     }
     return false;
 }
@@ -398,19 +402,22 @@ void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
         }
     };
     if (!work.apart) return add(Part::All);
-    const bool has_strain = (work.needed & strain_fields()) == strain_fields();
-    if (has_strain) {
+    const bool has_gradients =
+        (work.needed & displacement_gradient_fields()) == displacement_gradient_fields();
+    if (has_gradients) {
         add(Part::Alike);
-        for (const Field field : kStrain)
+        for (const Field field : kDisplacementGradients)
             std::copy_n(work.chunk.sums[index(field)].begin(), work.chunk.padded(),
                         work.breaking.sums[index(field)].begin());
         std::copy_n(work.chunk.turn.begin(), work.chunk.padded(), work.breaking.turn.begin());
     }
-    add(has_strain ? Part::Other : Part::All);
+    add(has_gradients ? Part::Other : Part::All);
     for (std::size_t l = 0; l < levels_.size(); ++l)
         if (levels_[l].level == planned_->breaking_levels.front())
-            add_grids(call, l, {.fields = strain_fields(), .part = has_strain ? Part::Other : Part::All},
-                      work, work.breaking);
+            add_grids(
+                call, l,
+                {.fields = displacement_gradient_fields(), .part = has_gradients ? Part::Other : Part::All},
+                work, work.breaking);
 }
 
 template <class T>
@@ -434,22 +441,22 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
         args.pixel_weight = share.pixel_weight;
         if (work.row != 0) args.places = work.places[level][g].get();
         args.row = work.row;
-        if (!has_copies_) {
+        if (!has_random_tiling_) {
             kernels_.add_grid(args, chunk);
             continue;
         }
         const auto c = static_cast<std::size_t>(levels_[level].cascades[g]);
-        add_copies(grids[g], args, share.fields, call.place.copies[c], work.copies[c], work.copy_reader,
-                   chunk, kernels_);
+        add_tiles(grids[g], args, share.fields, call.place.tiling[c], work.tiling[c], work.tiling_reader,
+                  chunk, kernels_);
     }
 }
 
 // Each point between two levels. Round footprints: the levels one after another, each with the points' shares in it.
 // Ellipses: see add_ellipses().
 template <class T>
-void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
-    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
-           copy_reader, places, row] = work;
+void PreparedQuery<T>::add_levels(const Call& call, Work& work) const {
+    auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, tiling,
+           tiling_reader, places, row] = work;
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
@@ -461,18 +468,18 @@ void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
         const std::vector<int>& levels = planned_->breaking_levels;
         breaking_pixels.take_breaking(pixels, frame_->sea().plan().breaking, chunk.count);
         if (breaking_pixels.any_round)
-            add_round(call, strain_fields(), cells, levels, breaking_pixels, work, breaking);
+            add_round(call, displacement_gradient_fields(), cells, levels, breaking_pixels, work, breaking);
         if (breaking_pixels.any_ellipse)
-            add_ellipses(call, levels, strain_fields(), breaking_pixels, breaking);
+            add_ellipses(call, levels, displacement_gradient_fields(), breaking_pixels, breaking);
     }
-    if (!call.wants_hidden || !call.differ_in_hidden || has_trains_) return;
-    const HiddenMoments<double> whole = hidden_moments<double>(statistics_->whole);
-    for (auto& moment : hidden_of.moments)
+    if (!call.wants_unresolved || !call.differ_in_unresolved || has_trains_) return;
+    const UnresolvedMoments<double> whole = unresolved_moments<double>(statistics_->whole);
+    for (auto& moment : unresolved_of.moments)
         std::fill(moment.begin() + chunk.count, moment.begin() + chunk.padded(), T(0));
     for (std::size_t i = 0; i < chunk.count; ++i) {
-        const HiddenMoments<T> left =
-            hidden_at<T>(*statistics_, pixels.of[i].rung, whole, beside_round(pixels.of[i]));
-        for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+        const UnresolvedMoments<T> left =
+            unresolved_at<T>(*statistics_, pixels.of[i].blend, whole, beside_round(pixels.of[i]));
+        for (std::size_t m = 0; m < left.size(); ++m) unresolved_of.moments[m][i] = left[m];
     }
 }
 
@@ -489,9 +496,9 @@ void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkF
         std::fill(weight.begin(), weight.begin() + padded, T(0));
         for (std::size_t i = 0; i < count; ++i) {
             if (footprints.of[i].is_ellipse) continue;
-            const Rung<T>& rung = footprints.of[i].rung;
-            if (of[rung.lower] == level) weight[i] += T(1) - rung.t;
-            if (rung.t > T(0) && of[rung.lower + 1] == level) weight[i] += rung.t;
+            const LevelBlend<T>& blend = footprints.of[i].blend;
+            if (of[blend.lower] == level) weight[i] += T(1) - blend.t;
+            if (blend.t > T(0) && of[blend.lower + 1] == level) weight[i] += blend.t;
             any = any || weight[i] > T(0);
         }
         return any;
@@ -507,11 +514,11 @@ void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkF
 }
 
 template <class T>
-HiddenMoments<double> PreparedQuery<T>::beside_round(const Footprint<T>& pixel) const {
+UnresolvedMoments<double> PreparedQuery<T>::beside_round(const Footprint<T>& pixel) const {
     if (!pixel.is_ellipse) return {};
-    return ellipses_->hidden(static_cast<double>(pixel.rung.lower) + static_cast<double>(pixel.rung.t),
-                             static_cast<double>(pixel.length_m / pixel.width_m),
-                             static_cast<double>(std::atan2(pixel.axis.y, pixel.axis.x)));
+    return ellipses_->unresolved(static_cast<double>(pixel.blend.lower) + static_cast<double>(pixel.blend.t),
+                                 static_cast<double>(pixel.length_m / pixel.width_m),
+                                 static_cast<double>(std::atan2(pixel.axis.y, pixel.axis.x)));
 }
 
 // Points whose footprints are ellipses: each of a cascade's grids is read at their taps (core/plan/taps.inl), which
@@ -523,31 +530,31 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
     std::size_t lowest = levels.size(), highest = 0;
     for (std::size_t i = 0; i < chunk.count; ++i) {
         if (!footprints.of[i].is_ellipse) continue;
-        lowest = std::min(lowest, footprints.of[i].rung.lower);
-        highest = std::max(highest, footprints.of[i].rung.lower);
+        lowest = std::min(lowest, footprints.of[i].blend.lower);
+        highest = std::max(highest, footprints.of[i].blend.lower);
     }
     highest = std::min(highest + 1, levels.size() - 1);
-    const auto level_of = [&](std::size_t rung) {
+    const auto level_of = [&](std::size_t level) {
         std::size_t l = 0;
-        while (levels_[l].level != levels[rung]) ++l;
+        while (levels_[l].level != levels[level]) ++l;
         return l;
     };
     const Plan& plan = frame_->sea().plan();
     TapChunk<T> taps;
     for (std::size_t c = 0; c < whole_m_.size(); ++c) {
-        const auto grid_of = [&](std::size_t rung) { return plan.cascades[c].grid_of_level[levels[rung]]; };
-        for (std::size_t rung = lowest; rung <= highest; ++rung) {
+        const auto grid_of = [&](std::size_t level) { return plan.cascades[c].grid_of_level[levels[level]]; };
+        for (std::size_t level = lowest; level <= highest; ++level) {
             // Levels that let everything through whole share a grid.
-            const int grid = grid_of(rung);
-            if (grid < 0 || (rung > lowest && grid == grid_of(rung - 1))) continue;
-            const std::size_t l = level_of(rung);
+            const int grid = grid_of(level);
+            if (grid < 0 || (level > lowest && grid == grid_of(level - 1))) continue;
+            const std::size_t l = level_of(level);
             const auto g = static_cast<std::size_t>(levels_[l].of_cascade[c]);
             taps.begin(levels_[l].grids[g], call.place.nodes[l][g], fields,
-                       has_copies_ ? &call.place.copies[c] : nullptr, kernels_);
+                       has_random_tiling_ ? &call.place.tiling[c] : nullptr, kernels_);
             for (std::size_t i = 0; i < chunk.count; ++i) {
                 const Footprint<T>& footprint = footprints.of[i];
                 if (!footprint.is_ellipse) continue;
-                const Rung<T>& at = footprint.rung;
+                const LevelBlend<T>& at = footprint.blend;
                 T share = grid_of(at.lower) == grid ? T(1) - at.t : T(0);
                 if (at.t > T(0) && grid_of(at.lower + 1) == grid) share += at.t;
                 if (share > T(0)) taps.add(i, footprint, share, whole_m_[c], chunk);
@@ -561,8 +568,8 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
 template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
-    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
-           copy_reader, places, row] = work;
+    auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, tiling,
+           tiling_reader, places, row] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {
@@ -594,9 +601,9 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
     if (points.pixel_m)
         pixel_stretch = own(points.pixel_m, points.pixel_axis_m, query.pixel_m.front(), pixel);
     const Plan& plan = frame_->sea().plan();
-    const bool varied = call.wants_hidden && call.differ_in_hidden;
+    const bool varied = call.wants_unresolved && call.differ_in_unresolved;
     if (varied)
-        for (auto& moment : hidden_of.moments)
+        for (auto& moment : unresolved_of.moments)
             std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
     add_trains<T>({.trains = &frame_->sea().trains(),
                    .start_cycles = call.place.start_cycles.data(),
@@ -608,18 +615,19 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
                    .pixel_of = points.pixel_m ? pixel.width.data() : nullptr,
                    .cell_stretch = cell_stretch,
                    .pixel_stretch = pixel_stretch,
-                   .hidden = varied ? &hidden_of : nullptr,
+                   .unresolved = varied ? &unresolved_of : nullptr,
                    .breaking = apart ? &breaking : nullptr},
                   chunk);
     if (!varied || plan.cascades.empty()) return;
     for (std::size_t i = 0; i < chunk.count; ++i) {
-        HiddenMoments<double> whole;
+        UnresolvedMoments<double> whole;
         for (std::size_t m = 0; m < whole.size(); ++m)
-            whole[m] = static_cast<double>(hidden_of.moments[m][i]);
-        const HiddenMoments<T> left =
-            call.on_ladder ? hidden_at<T>(*statistics_, pixels.of[i].rung, whole, beside_round(pixels.of[i]))
-                           : hidden_at<T>(*statistics_, {}, whole);
-        for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+            whole[m] = static_cast<double>(unresolved_of.moments[m][i]);
+        const UnresolvedMoments<T> left =
+            call.has_levels
+                ? unresolved_at<T>(*statistics_, pixels.of[i].blend, whole, beside_round(pixels.of[i]))
+                : unresolved_at<T>(*statistics_, {}, whole);
+        for (std::size_t m = 0; m < left.size(); ++m) unresolved_of.moments[m][i] = left[m];
     }
 }
 

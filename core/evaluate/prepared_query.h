@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/evaluate/copies.h"
 #include "core/evaluate/evaluate.h"
 #include "core/evaluate/footprints.h"
 #include "core/evaluate/gusts.h"
 #include "core/evaluate/kernels.h"
+#include "core/evaluate/random_tiling.h"
 
 namespace pelagic {
 
@@ -52,7 +52,7 @@ class PreparedQuery {
     struct Place {
         glm::dvec2 origin_m;
         std::vector<std::vector<glm::dvec2>> nodes;  // in each of a level's grids, 0 … n
-        std::vector<CopyOrigin> copies;              // in each cascade; empty: periodic tiling
+        std::vector<TilingOrigin> tiling;            // in each cascade; empty: periodic tiling
         std::vector<double> start_cycles;            // of each train
         GustPhases gusts{};
     };
@@ -80,7 +80,7 @@ class PreparedQuery {
     // Whether the displacement gradient of the waves that break isn't that of the chunk's normals.
     bool breaks_apart(const Call& call, const Work& work) const;
     void add_only_footprint(const Call& call, Work& work) const;
-    void add_ladder(const Call& call, Work& work) const;
+    void add_levels(const Call& call, Work& work) const;
     // Points whose footprints are round: those of `fields` that cells filter, and the others from `levels`.
     void add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
                    const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Work& work,
@@ -91,7 +91,7 @@ class PreparedQuery {
     // What gusts do to the chunk's points.
     void take_gusts(const Call& call, std::size_t first, Work& work) const;
     // What an ellipse leaves unresolved of the cascades' waves beyond a round footprint of its width.
-    HiddenMoments<double> beside_round(const Footprint<T>& pixel) const;
+    UnresolvedMoments<double> beside_round(const Footprint<T>& pixel) const;
 
     const Frame<T>* frame_;
     int query_;
@@ -101,10 +101,10 @@ class PreparedQuery {
     std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
-    bool has_trains_ = false, has_copies_ = false, breaks_ = false;
+    bool has_trains_ = false, has_random_tiling_ = false, breaks_ = false;
     const Whitecaps* whitecaps_;
-    const Gusts* gusts_ = nullptr;  // none, or nothing that they change is wanted
-    HiddenMoments<T> hidden_{};     // of pixels that are all the query's first
+    const Gusts* gusts_ = nullptr;       // none, or nothing that they change is wanted
+    UnresolvedMoments<T> unresolved_{};  // of pixels that are all the query's first
     std::vector<LevelGrids> levels_;
     Place place_;
     long times_set_ = -1;

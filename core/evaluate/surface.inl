@@ -8,7 +8,7 @@ struct SurfaceNormal {
 
 // T_x × T_y of T_x = (1 + Dxx, Dyx, ηx), T_y = (Dxy, 1 + Dyy, ηy), of length 1: its z has the sign of J, and
 // it is finite however J vanishes. Both tangents parallel: no normal exists; up is as good as any.
-// dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: equal for a sum of waves, but not where tiles blend (core/plan/copies.h).
+// dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: equal for a sum of waves, but not where tiles blend (core/plan/random_tiling.h).
 template <class T>
 inline SurfaceNormal<T> surface_normal(T slope_x, T slope_y, T dxx, T dyy, T dxy, T dyx) {
     const T x = dyx * slope_y - slope_x * (T(1) + dyy), y = slope_x * dxy - slope_y * (T(1) + dxx);

@@ -6,22 +6,22 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/evaluate/copies.h"
 #include "core/evaluate/footprints.h"
 #include "core/evaluate/kernels.h"
+#include "core/evaluate/random_tiling.h"
 
 namespace pelagic {
 
 template <class T>
 class TapChunk {
   public:
-    // origin_nodes: where the points' origin lies in the grid. `copies`: of a cascade with random tiling; otherwise
+    // origin_nodes: where the points' origin lies in the grid. `tiling`: of a cascade with random tiling; otherwise
     // null.
-    void begin(const GridArgs<T>& grid, glm::dvec2 origin_nodes, FieldSet fields, const CopyOrigin* copies,
+    void begin(const GridArgs<T>& grid, glm::dvec2 origin_nodes, FieldSet fields, const TilingOrigin* tiling,
                const EvaluateKernels<T>& kernels) {
         whole_ = args_ = grid;
         kernels_ = &kernels;
-        copies_ = copies;
+        tiling_ = tiling;
         fields_ = FieldSet();
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!fields[f]) args_.samples[f] = nullptr;
@@ -29,7 +29,7 @@ class TapChunk {
         }
         args_.origin_nodes_x = origin_nodes.x;
         args_.origin_nodes_y = origin_nodes.y;
-        turns_ = copies && fields_[index(Field::Dxy)];
+        turns_ = tiling && fields_[index(Field::Dxy)];
         taps_.count = 0;
     }
 
@@ -58,9 +58,9 @@ class TapChunk {
         for (std::size_t f = 0; f < kFieldCount; ++f)
             if (fields_[f]) std::fill(taps_.sums[f].begin(), taps_.sums[f].begin() + padded, T(0));
         if (turns_) std::fill(taps_.turn.begin(), taps_.turn.begin() + padded, T(0));
-        if (copies_) {
+        if (tiling_) {
             places_.forget(0);
-            add_copies(whole_, args_, fields_, *copies_, places_, copy_reader_, taps_, *kernels_);
+            add_tiles(whole_, args_, fields_, *tiling_, places_, tiling_reader_, taps_, *kernels_);
         } else {
             kernels_->add_grid(args_, taps_);
         }
@@ -77,10 +77,10 @@ class TapChunk {
   private:
     GridArgs<T> args_, whole_;  // the wanted samples, and all
     const EvaluateKernels<T>* kernels_ = nullptr;
-    const CopyOrigin* copies_ = nullptr;
+    const TilingOrigin* tiling_ = nullptr;
     bool turns_ = false;
-    CopyPlaces<T> places_;
-    CopyReader<T> copy_reader_;
+    TilingPlaces<T> places_;
+    TilingReader<T> tiling_reader_;
     FieldSet fields_;
     Chunk<T> taps_;
     typename Chunk<T>::Values weight_;

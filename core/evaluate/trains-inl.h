@@ -165,41 +165,42 @@ struct Ellipses {
 // What the footprints leave unresolved, for the points of one vector. Each point's trains beyond its own end come as
 // one sum, looked up, and those of the blend one by one.
 template <class T, class D, class V = hn::Vec<D>>
-HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, const Ellipses<D>& footprints,
-                         HiddenChunk<T>& hidden, std::size_t base) {
+HWY_INLINE void UnresolvedOf(D d, const Trains<T>& trains, const Zone<T>& zone, const Ellipses<D>& footprints,
+                             UnresolvedChunk<T>& unresolved, std::size_t base) {
     const V footprint_m = footprints.width_m;
-    V sum[kHiddenMoments.size()];
+    V sum[kUnresolvedMoments.size()];
     const std::size_t longest_end = zone.end_of(hn::GetLane(hn::MaxOfLanes(d, footprint_m)), zone.any());
     if (longest_end == zone.any()) {  // the usual case, and cheaper: all points end with the same train
-        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-            sum[m] = hn::Set(d, trains.hidden_from[zone.any()][m]);
+        for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m)
+            sum[m] = hn::Set(d, trains.unresolved_from[zone.any()][m]);
     } else {
         HWY_ALIGN T each_m[hn::MaxLanes(d)];
         hn::Store(footprint_m, d, each_m);
-        HWY_ALIGN T looked_up[kHiddenMoments.size()][hn::MaxLanes(d)];
+        HWY_ALIGN T looked_up[kUnresolvedMoments.size()][hn::MaxLanes(d)];
         std::size_t end = zone.any();
         for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
             end = zone.end_of(each_m[lane], end);
-            for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-                looked_up[m][lane] = trains.hidden_from[end][m];
+            for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m)
+                looked_up[m][lane] = trains.unresolved_from[end][m];
         }
-        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) sum[m] = hn::LoadU(d, looked_up[m]);
+        for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m) sum[m] = hn::LoadU(d, looked_up[m]);
     }
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
         const V w = zone.weight(d, i, footprints.along(d, trains, i));
         // The displacement gradient counts relative to what is resolved of it at best; the rest is in the sum of the
         // waves outside.
         const V most = hn::Set(d, trains.breaking[i]);
-        const V strain_weight = hn::IfThenElse(hn::Gt(most, w), hn::Div(w, most), hn::Set(d, T(1)));
+        const V gradient_weight = hn::IfThenElse(hn::Gt(most, w), hn::Div(w, most), hn::Set(d, T(1)));
         // Else it is in the looked-up sum.
         const auto blends = zone.passes(d, i, footprint_m);
-        const V part = hn::IfThenElseZero(blends, hidden_part(Pack<D>(w)).v),
-                strain_part = hn::IfThenElseZero(blends, hidden_part(Pack<D>(strain_weight)).v);
-        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-            sum[m] = hn::MulAdd(m < kHiddenSlopes ? part : strain_part, hn::Set(d, trains.hidden_alone[i][m]),
-                                sum[m]);
+        const V part = hn::IfThenElseZero(blends, unresolved_part(Pack<D>(w)).v),
+                gradient_part = hn::IfThenElseZero(blends, unresolved_part(Pack<D>(gradient_weight)).v);
+        for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m)
+            sum[m] = hn::MulAdd(m < kUnresolvedSlopes ? part : gradient_part,
+                                hn::Set(d, trains.unresolved_alone[i][m]), sum[m]);
     }
-    for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) hn::Store(sum[m], d, &hidden.moments[m][base]);
+    for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m)
+        hn::Store(sum[m], d, &unresolved.moments[m][base]);
 }
 
 }  // namespace trains_detail
@@ -218,9 +219,9 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
     const bool height = wants(Field::Height), horizontal = wants(Field::Dx, Field::Dy);
     const bool rise = wants(Field::VelocityZ), drift = wants(Field::VelocityX, Field::VelocityY);
     const bool slope = wants(Field::SlopeX, Field::SlopeY),
-               strain = wants(Field::Dxx, Field::Dyy, Field::Dxy);
+               gradient = wants(Field::Dxx, Field::Dyy, Field::Dxy);
     const bool cell_wanted = height || horizontal || rise || drift,
-               pixel_wanted = slope || strain || args.breaking;
+               pixel_wanted = slope || gradient || args.breaking;
 
     trains_detail::Zone<T> cell(trains, args.filter), pixel(trains, args.filter);
     std::size_t evaluated = 0;
@@ -240,8 +241,9 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
         const auto cells = ellipses(args.cell_of, args.cell_m, args.cell_stretch),
                    pixels = ellipses(args.pixel_of, args.pixel_m, args.pixel_stretch);
         if (cell_wanted) cell.move_to(smallest(cells.width_m), largest(cells.longest()));
-        if (pixel_wanted || args.hidden) pixel.move_to(smallest(pixels.width_m), largest(pixels.longest()));
-        if (args.hidden) trains_detail::HiddenOf(d, trains, pixel, pixels, *args.hidden, base);
+        if (pixel_wanted || args.unresolved)
+            pixel.move_to(smallest(pixels.width_m), largest(pixels.longest()));
+        if (args.unresolved) trains_detail::UnresolvedOf(d, trains, pixel, pixels, *args.unresolved, base);
 
         const std::size_t cell_end = cell_wanted ? cell.any() : 0, pixel_end = pixel_wanted ? pixel.any() : 0;
         const std::size_t end = std::max(cell_end, pixel_end);
@@ -297,7 +299,7 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                     add(Field::SlopeX, s);
                     add(Field::SlopeY, s);
                 }
-                if (strain) {
+                if (gradient) {
                     add(Field::Dxx, c);
                     add(Field::Dyy, c);
                     add(Field::Dxy, c);

@@ -9,10 +9,10 @@
 
 namespace pelagic {
 
-// What the points' pixels leave unresolved, by point; rows parallel to kHiddenMoments.
+// What the points' pixels leave unresolved, by point; rows parallel to kUnresolvedMoments.
 template <class T>
-struct HiddenChunk {
-    alignas(64) std::array<typename Chunk<T>::Values, kHiddenMoments.size()> moments;
+struct UnresolvedChunk {
+    alignas(64) std::array<typename Chunk<T>::Values, kUnresolvedMoments.size()> moments;
 };
 
 template <class T>
@@ -33,7 +33,7 @@ struct TrainArgs {
     };
     Stretch cell_stretch{}, pixel_stretch{};
     // Where given: what pixel_of (or pixel_m) leaves unresolved.
-    HiddenChunk<T>* hidden = nullptr;
+    UnresolvedChunk<T>* unresolved = nullptr;
     // Where given, it gets the displacement gradient of the waves that break. Its points at rest are the chunk's.
     Chunk<T>* breaking = nullptr;
 };

@@ -23,16 +23,16 @@ SpectralMoments moments_pressed(const DirectionalSpectrum& spectrum, double k_lo
                                 const Choppiness& choppiness) {
     SpectralMoments sum;
     choppiness.for_bands(k_lo, k_hi, [&](double from, double to, double share) {
-        sum += moments(spectrum, from, to).scale_strain(share * share);
+        sum += moments(spectrum, from, to).scale_gradients(share * share);
     });
-    return sum.scale_strain(choppiness.largest() * choppiness.largest());
+    return sum.scale_gradients(choppiness.largest() * choppiness.largest());
 }
 
 SpectralMoments moments_with_breaking(const DirectionalSpectrum& spectrum, double k_lo, double k_hi,
                                       const Breaking& breaking) {
     SpectralMoments all = moments_pressed(spectrum, k_lo, k_hi, breaking.choppiness);
     if (breaking.k_end() < k_hi)
-        all.take_strain(moments_pressed(spectrum, k_lo, breaking.k_end(), breaking.choppiness));
+        all.take_gradients(moments_pressed(spectrum, k_lo, breaking.k_end(), breaking.choppiness));
     return all;
 }
 

@@ -57,7 +57,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
              std::erase(scene.output.volumes, VolumeKind::Spray);
          },
      .products = foam_products() | products(Product::JacobianMoments),
-     .feeds = feeds(Feed::Foam),
+     .key_parts = key_parts(KeyPart::Foam),
      .shapes = [](const Query& query) { return (query.products & breaking_products()).any(); },
      .about = about_whitecaps},
     {.effect = Effect::LivingFoam,
@@ -104,7 +104,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .why_not = "sea.gust_strength is 0, or there is no wind",
      .turn_off = [](Scene& scene) { scene.sea.gust_strength = 0.0; },
      .plan = [](Plan& plan) { plan.gusts = plan_gusts(plan.from->scene); },
-     .feeds = feeds(Feed::Gusts),
+     .key_parts = key_parts(KeyPart::Gusts),
      .shapes =
          [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); }},
 });

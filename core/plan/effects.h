@@ -37,7 +37,7 @@ struct EffectRow {
         const char* remedy;  // what to change so that they become fewer
     } state{};
 
-    FeedSet feeds{};                              // the parts of the keys on which those outputs depend
+    KeyPartSet key_parts{};                       // the parts of the keys on which those outputs depend
     bool (*shapes)(const Query&) = nullptr;       // that it changes
     std::string (*about)(const Plan&) = nullptr;  // where it is on, for explain()
 

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "core/base/constants.h"
-#include "core/plan/copies.h"
 #include "core/plan/effects.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/grid_layout.h"
-#include "core/plan/hidden_slopes.h"
 #include "core/plan/memory.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
 #include "core/plan/products.h"
+#include "core/plan/random_tiling.h"
+#include "core/plan/unresolved_slopes.h"
 #include "core/scene/names.h"
 #include "core/spectrum/viscous_cutoff.h"
 
@@ -131,9 +131,9 @@ std::string explain(const Plan& plan) {
             const FieldSet needed = row.is_of_breaking ? row.needs : row.needs & ~plan.dropped;
             page += format("    %-18s ← %s (%s)\n", row.name, field_list(needed).c_str(), row.why);
             if (row.product == Product::SlopeVariance)
-                page += format(
-                    "    %-18s   %.3g times that at rest, by area of sea\n", "",
-                    hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
+                page += format("    %-18s   %.3g times that at rest, by area of sea\n", "",
+                               unresolved_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(),
+                                                     plan.choppiness));
         }
     }
     if (plan.queries.empty()) page += "  none: no mesh, no maps and no volumes are asked for\n";
@@ -165,7 +165,7 @@ std::string explain(const Plan& plan) {
     else if (scene.waves.tiling == Tiling::Random)
         page += format(
             "  each of copies at random offsets, blended: %.2f reads a point on average, 1 within a copy\n",
-            (1.0 + kCopyRamp) * (1.0 + kCopyRamp));
+            (1.0 + kBlendRamp) * (1.0 + kBlendRamp));
     else
         page += format("  periodic tiles: the largest repeats after %.4g m\n", plan.cascades.front().size_m);
     std::size_t cascade_number = 0;
@@ -186,9 +186,10 @@ std::string explain(const Plan& plan) {
             continue;
         }
         const std::size_t modes = lattice_modes(cascade.grid_radius());
-        page += format(
-            "     %zu modes, %s\n", modes,
-            bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.has_strain())).c_str());
+        page +=
+            format("     %zu modes, %s\n", modes,
+                   bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.has_gradients()))
+                       .c_str());
         for (const Grid& grid : cascade.grids) {
             const std::size_t bytes =
                 grid.fields.count() * grid_bytes(grid.resolution, plan.knobs.double_precision);

@@ -14,7 +14,7 @@ Extent expected_extent(const DirectionalSpectrum& spectrum, const Choppiness& ch
     const auto& rule = GaussLegendre<8>::rule();
     const FootprintFilter filter;
     double reach_m2 = 0.0;
-    std::array<double, HiddenHeight::kCells> hidden_m2{};
+    std::array<double, UnresolvedHeight::kCells> unresolved_m2{};
     const auto add = [&](double from, double to, double share) {
         for (std::size_t node = 0; node < rule.node.size(); ++node) {
             const double half = 0.5 * (to - from);
@@ -24,10 +24,10 @@ Extent expected_extent(const DirectionalSpectrum& spectrum, const Choppiness& ch
             const double ratio = share * spectrum.dispersion().horizontal_ratio(k);
             reach_m2 += energy_m2 * ratio * ratio;
             // ∫ S (1 − w)² dk: what a footprint w takes from each wave.
-            for (std::size_t cell = HiddenHeight::kCells; cell-- > 0;) {
-                const double lost = 1.0 - filter.weight(k, HiddenHeight::cell_m(cell));
+            for (std::size_t cell = UnresolvedHeight::kCells; cell-- > 0;) {
+                const double lost = 1.0 - filter.weight(k, UnresolvedHeight::cell_m(cell));
                 if (lost == 0.0) break;  // nor do shorter cells
-                hidden_m2[cell] += energy_m2 * lost * lost;
+                unresolved_m2[cell] += energy_m2 * lost * lost;
             }
         }
     };
@@ -35,8 +35,8 @@ Extent expected_extent(const DirectionalSpectrum& spectrum, const Choppiness& ch
     Extent extent{.height_m = kExtentDeviations * std::sqrt(spectrum.m0()),
                   .reach_m = kExtentDeviations * choppiness.largest() * std::sqrt(reach_m2),
                   .significant_height_m = 4.0 * std::sqrt(spectrum.m0())};
-    for (std::size_t cell = 0; cell < HiddenHeight::kCells; ++cell)
-        extent.hidden.deviation_m[cell] = std::sqrt(hidden_m2[cell]);
+    for (std::size_t cell = 0; cell < UnresolvedHeight::kCells; ++cell)
+        extent.unresolved.deviation_m[cell] = std::sqrt(unresolved_m2[cell]);
     return extent;
 }
 

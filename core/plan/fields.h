@@ -31,7 +31,7 @@ constexpr FieldSet velocity_fields() {
 }
 
 // The gradient of the horizontal displacement. The waves that break have one of their own (Plan::breaking).
-constexpr FieldSet strain_fields() {
+constexpr FieldSet displacement_gradient_fields() {
     return fields(Field::Dxx, Field::Dyy, Field::Dxy);
 }
 
@@ -41,7 +41,7 @@ constexpr FieldSet horizontal_fields() {
                   Field::VelocityY);
 }
 
-// Where tiles blend, the weights' gradient times this field belongs to the derivative (core/plan/copies.h). Height,
+// Where tiles blend, the weights' gradient times this field belongs to the derivative (core/plan/random_tiling.h). Height,
 // Dx and Dy themselves have no such term.
 struct Gradient {
     Field derivative, of;

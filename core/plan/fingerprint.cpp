@@ -84,7 +84,7 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
     return Fingerprint()
         .add(plan.queries[output.query].query.name)
         .add("revision " + std::to_string(output.row->revision))
-        .add(canonical(plan.from->scene, output.feeds))
+        .add(canonical(plan.from->scene, output.key_parts))
         .add(plan_text(plan, output.query))
         .text();
 }

@@ -9,7 +9,7 @@
 #include "core/base/constants.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/dispersion.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 
@@ -65,7 +65,7 @@ float foam_footprint_m(float width_m, float length_m) {
     return length_m > width_m ? std::sqrt(width_m * length_m) : width_m;
 }
 
-FoamRung foam_rung(const FoamPlan& foam, float footprint_m) {
+FoamLevelBlend foam_level_blend(const FoamPlan& foam, float footprint_m) {
     const float cells = 2.0f * footprint_m / static_cast<float>(foam.cell_m);
     if (!(cells > 1.0f)) return {};
     const int level = std::ilogb(cells);
@@ -178,13 +178,13 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, doub
 // two squares, round the one within them.
 double tiles_near_to_far(const FoamPlan& foam, int level, const Surface& surface, double finest_m) {
     const double tile_m = FoamPlan::kTileCells * foam.cell_of(level);
-    const double rung_m = first_rung_m(surface.size_m / surface.resolution);
-    const double side = surface.size_m / rung_m;  // of the first, in footprints
-    if (!(finest_m > 0.0)) finest_m = rung_m;     // trains have no levels: each point's own counts
+    const double level_m = first_level_m(surface.size_m / surface.resolution);
+    const double side = surface.size_m / level_m;  // of the first, in footprints
+    if (!(finest_m > 0.0)) finest_m = level_m;     // trains have no levels: each point's own counts
     double tiles = 0.0;
     for (double footprint_m = finest_m; footprint_m < foam.cell_of(level); footprint_m *= 2.0) {
-        const FoamRung rung = foam_rung(foam, static_cast<float>(footprint_m));
-        if (rung.level != level && rung.level + 1 != level) continue;
+        const FoamLevelBlend blend = foam_level_blend(foam, static_cast<float>(footprint_m));
+        if (blend.level != level && blend.level + 1 != level) continue;
         const double within =
             level > 0 && footprint_m > 2.0 * finest_m ? 0.25 * side * footprint_m / tile_m : 0.0;
         tiles = tiles_over(foam, level, side * footprint_m) - within * within;
@@ -215,7 +215,7 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Sce
         const bool is_near_to_far = !are_pictures && scene.surface.kind == SurfaceKind::NearFar;
         const double points = static_cast<double>(query.points);
         const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
-        const FoamRung rung = foam_rung(foam, static_cast<float>(query.pixel_m.front()));
+        const FoamLevelBlend blend = foam_level_blend(foam, static_cast<float>(query.pixel_m.front()));
         for (int level = 0; level < FoamPlan::kLevels; ++level) {
             double& here = tiles[static_cast<std::size_t>(level)];
             if (is_view && is_near_to_far)
@@ -224,7 +224,7 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Sce
             else if (is_view)
                 here += tiles_in_view(foam, level, scene.camera, are_pictures ? 1.0 : scene.surface.cell_px,
                                       kind);
-            else if (level == rung.level || (level == rung.level + 1 && rung.t > 0.0f))
+            else if (level == blend.level || (level == blend.level + 1 && blend.t > 0.0f))
                 here += tiles_over(foam, level, std::sqrt(points) * spacing_m);
         }
     }

@@ -54,11 +54,11 @@ struct FoamPlan {
 FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period);
 
 // Which level's cells serve a footprint, two cells a footprint: (1 − t) of `level` and t of the next.
-struct FoamRung {
+struct FoamLevelBlend {
     int level = 0;
     float t = 0.0f;
 };
-FoamRung foam_rung(const FoamPlan& foam, float footprint_m);
+FoamLevelBlend foam_level_blend(const FoamPlan& foam, float footprint_m);
 // An ellipse counts as the circle of its area.
 float foam_footprint_m(float width_m, float length_m);
 

@@ -71,15 +71,15 @@ double MeshErrorModel::error(double cell_m, double pixel_m, Drawn drawn) const {
     const FootprintFilter filter;
     double sum = 0.0;
     for (const Wave& wave : waves_) {
-        const double shown = filter.weight(wave.k, cell_m), seen = filter.weight(wave.k, pixel_m);
-        if (shown == 0.0) {
+        const double resolved = filter.weight(wave.k, cell_m), seen = filter.weight(wave.k, pixel_m);
+        if (resolved == 0.0) {
             sum += wave.energy * seen * seen;
             continue;
         }
         const double a = wave.kx * cell_m, b = wave.ky * cell_m;
         const Response response = drawn == Drawn::Triangles ? of_triangles(a, b) : of_limit_surface(a, b);
-        sum += wave.energy *
-               (seen * seen - 2.0 * seen * shown * response.overlap + shown * shown * response.power);
+        sum += wave.energy * (seen * seen - 2.0 * seen * resolved * response.overlap +
+                              resolved * resolved * response.power);
     }
     return std::sqrt(std::max(sum, 0.0));
 }

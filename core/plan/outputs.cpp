@@ -111,9 +111,9 @@ void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<O
 }
 
 const std::array kVolumeTable = std::to_array<VolumeRow>({
-    {VolumeKind::Spray, [] { return products(Product::Displacement, Product::Breaking); }, feeds(Feed::Spray),
-     true},
-    {VolumeKind::LevelSet, [] { return products(Product::Displacement); }, FeedSet(), false},
+    {VolumeKind::Spray, [] { return products(Product::Displacement, Product::Breaking); },
+     key_parts(KeyPart::Spray), true},
+    {VolumeKind::LevelSet, [] { return products(Product::Displacement); }, KeyPartSet(), false},
 });
 
 // Over the patch's square in the world, whatever the mesh is: waves shorter than two voxels are left out.
@@ -134,10 +134,10 @@ void add_volumes(const OutputRow& row, const OutputContext& context, std::vector
 }
 
 const std::array kOutputTable = std::to_array<OutputRow>({
-    {OutputKind::Mesh, feeds(Feed::Clock, Feed::Waves, Feed::Mesh), 9, add_mesh},
-    {OutputKind::Map, feeds(Feed::Clock, Feed::Waves, Feed::Maps), 7, add_patch_maps},
-    {OutputKind::Tile, feeds(Feed::Clock, Feed::Waves), 8, add_tiles},
-    {OutputKind::Volume, feeds(Feed::Clock, Feed::Waves, Feed::Volumes), 1, add_volumes},
+    {OutputKind::Mesh, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Mesh), 9, add_mesh},
+    {OutputKind::Map, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Maps), 7, add_patch_maps},
+    {OutputKind::Tile, key_parts(KeyPart::Clock, KeyPart::Waves), 8, add_tiles},
+    {OutputKind::Volume, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Volumes), 1, add_volumes},
 });
 
 }  // namespace

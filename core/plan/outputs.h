@@ -43,7 +43,7 @@ struct OutputRow {
     OutputKind kind;
     // Keys whose values are in the files or change them, besides what the resolved plan says: points,
     // footprints, products, cascades, trains and knobs follow from many keys together.
-    FeedSet feeds;
+    KeyPartSet key_parts;
     // Raised by hand when the same plan and keys give other bits; then no file that is there counts as whole.
     // tests/plugin/bake/golden_test.cpp notices bits that change without it.
     int revision;
@@ -70,7 +70,7 @@ std::span<const MapRow> map_table();
 struct VolumeRow {
     VolumeKind volume;
     ProductSet (*needs)();
-    FeedSet feeds;  // besides those of all volumes
+    KeyPartSet key_parts;  // besides those of all volumes
     bool
         is_of_columns;  // points above the middles of columns of voxels, or above the corners of as many cells
 };
@@ -85,7 +85,7 @@ struct PlannedOutput {
     std::optional<VolumeKind> volume{};
     int query = 0;             // into Plan::queries, whose name is the output's: "mesh", "map normal", …
     bool has_surface = false;  // its points are Plan::surface's
-    FeedSet feeds;             // the row's, the surface's, and the foam's where it holds coverage
+    KeyPartSet key_parts;      // the row's, the surface's, and the foam's where it holds coverage
 };
 
 }  // namespace pelagic

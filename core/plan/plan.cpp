@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/plan/copies.h"
 #include "core/plan/effects.h"
 #include "core/plan/extent.h"
 #include "core/plan/foam_tiles.h"
@@ -16,10 +15,11 @@
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
+#include "core/plan/random_tiling.h"
 #include "core/plan/taps.h"
 #include "core/scene/cascade_bands.h"
 #include "core/surface/earth.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -116,7 +116,7 @@ FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool
         const FieldSet needed = fields_of(planned.query.products & ~breaking_products()) & ~plan.dropped;
         if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
         if (uses(planned.pixel_levels)) wanted |= derivatives(needed & ~cell_fields());
-        if (uses(planned.breaking_levels)) wanted |= derivatives(strain_fields());
+        if (uses(planned.breaking_levels)) wanted |= derivatives(displacement_gradient_fields());
     }
     return wanted & ~zero;
 }
@@ -128,7 +128,7 @@ bool hides(const Plan& plan, int level) {
     };
     return std::any_of(plan.queries.begin(), plan.queries.end(), [&](const PlannedQuery& planned) {
         return has(planned.breaking_levels) ||
-               ((planned.query.products & hidden_products()).any() && has(planned.pixel_levels));
+               ((planned.query.products & unresolved_products()).any() && has(planned.pixel_levels));
     });
 }
 
@@ -152,8 +152,8 @@ void add_grids(Plan& plan, int cascade_index) {
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
-        const bool is_copied = cascade.has_copies && !at.only_cascade;
-        const bool blends = is_copied && !(at.lattice && shows_one_copy(*at.lattice, cascade.size_m));
+        const bool is_blended = cascade.has_random_tiling && !at.only_cascade;
+        const bool blends = is_blended && !(at.lattice && shows_one_copy(*at.lattice, cascade.size_m));
         const FieldSet wanted = fields_at(plan, cascade, level, blends);
         // A tile shows the modes that its own nodes can hold; the cascade may have more, for a nearby camera.
         const double resolution =
@@ -260,7 +260,7 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     }
     query.points = options.points;
     const FootprintFilter& filter = options.filter;
-    const double finest_m = options.finest_pixel_m > 0.0 ? first_rung_m(options.finest_pixel_m) : 0.0;
+    const double finest_m = options.finest_pixel_m > 0.0 ? first_level_m(options.finest_pixel_m) : 0.0;
     const auto cascades = resolve_cascades(prepared, finest_m, filter);
     // Trains use each point's own footprints, whatever the levels.
     query.cell_m = query.pixel_m = {0.0};
@@ -271,16 +271,16 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     const CascadeSize& finest = cascades.back();
     const double shortest_m = finest.size_m / (0.5 * finest.resolution);
     const double whole_m =
-        finest_m > 0.0 ? first_rung_m(shortest_m / filter.n_max) : rung_below_m(shortest_m / filter.n_max);
+        finest_m > 0.0 ? first_level_m(shortest_m / filter.n_max) : level_below_m(shortest_m / filter.n_max);
     const double none_m = cascades.front().size_m / filter.n_min;
     if (finest_m > 0.0) query.pixel_m.clear();
-    for (double rung_m = std::max(finest_m, whole_m);; rung_m *= 2.0) {
-        query.pixel_m.push_back(rung_m);
-        if (rung_m >= none_m) break;
+    for (double level_m = std::max(finest_m, whole_m);; level_m *= 2.0) {
+        query.pixel_m.push_back(level_m);
+        if (level_m >= none_m) break;
     }
     const double finest_cell_m = std::max(options.finest_cell_m, options.finest_pixel_m);
     const auto coarser = std::upper_bound(query.pixel_m.begin() + 1, query.pixel_m.end(),
-                                          finest_cell_m > 0.0 ? first_rung_m(finest_cell_m) : 0.0);
+                                          finest_cell_m > 0.0 ? first_level_m(finest_cell_m) : 0.0);
     query.cell_m.assign(coarser - 1, query.pixel_m.end());
     return query;
 }
@@ -290,7 +290,7 @@ ProjectedGridOptions projected_grid_options(const PreparedScene& prepared) {
     return {.cell_px = prepared.scene.surface.cell_px,
             .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
             .significant_height_m = extent.significant_height_m,
-            .hidden = extent.hidden,
+            .unresolved = extent.unresolved,
             .curvature_per_m = prepared.scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0};
 }
 
@@ -367,7 +367,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
         cascade.size_m = sizes[i].size_m;
         cascade.resolution = sizes[i].resolution;
         cascade.choppiness = plan.breaking.choppiness.at(edges[i]);
-        cascade.has_copies = scene.waves.tiling == Tiling::Random;
+        cascade.has_random_tiling = scene.waves.tiling == Tiling::Random;
         cascade.k_lower = plan.trains ? std::max(edges[i], kTwoPi / plan.trains->shortest_m) : edges[i];
         cascade.k_upper = i + 1 < sizes.size() ? edges[i + 1] : std::numeric_limits<double>::infinity();
         cascade.grid_of_level.assign(plan.levels.size(), -1);
@@ -416,12 +416,12 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
                              .volume = request.volume,
                              .query = static_cast<int>(queries.size()),
                              .has_surface = request.surface != nullptr,
-                             .feeds = request.row->feeds};
-        if (output.has_surface) output.feeds |= surface->feeds();
+                             .key_parts = request.row->key_parts};
+        if (output.has_surface) output.key_parts |= surface->key_parts();
         for (const VolumeRow& row : volume_table())
-            if (output.volume == row.volume) output.feeds |= row.feeds;
+            if (output.volume == row.volume) output.key_parts |= row.key_parts;
         for (const EffectRow& row : effect_table())
-            if (row.shapes && row.shapes(query)) output.feeds |= row.feeds;
+            if (row.shapes && row.shapes(query)) output.key_parts |= row.key_parts;
         outputs.push_back(std::move(output));
         queries.push_back(query);
     }
@@ -459,7 +459,7 @@ int CascadePlan::grid_radius() const {
     return radius;
 }
 
-bool Plan::has_strain() const {
+bool Plan::has_gradients() const {
     return choppiness.moves() || std::any_of(queries.begin(), queries.end(), [](const PlannedQuery& planned) {
                return !planned.breaking_levels.empty();
            });
@@ -483,8 +483,8 @@ long Plan::lines_per_frame() const {
 std::size_t Plan::sea_bytes() const {
     std::size_t bytes = trains ? trains->sea_bytes(knobs.double_precision) : 0;
     for (const CascadePlan& cascade : cascades)
-        bytes +=
-            lattice_modes(cascade.grid_radius()) * sea_bytes_per_mode(knobs.double_precision, has_strain());
+        bytes += lattice_modes(cascade.grid_radius()) *
+                 sea_bytes_per_mode(knobs.double_precision, has_gradients());
     for (const PlannedQuery& planned : queries)
         if (has_ellipse_table(*this, planned.query))
             bytes += EllipseTable::nodes(planned.query.pixel_m.size()) * EllipseTable::kBytesANode;

@@ -64,8 +64,8 @@ struct CascadePlan {
 
     // λ of its modes, as Breaking has it. 0: none of horizontal_fields().
     double choppiness = 1.0;
-    // Whether it has random tiling (core/plan/copies.h), except for queries of a cascade's own tile.
-    bool has_copies = false;
+    // Whether it has random tiling (core/plan/random_tiling.h), except for queries of a cascade's own tile.
+    bool has_random_tiling = false;
 
     bool moves() const;       // whether somebody asks for velocities
     int grid_radius() const;  // the largest of its grids': modes within it have amplitudes; 0 without grids
@@ -117,7 +117,7 @@ struct Plan {
     std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are
 
     // Whether modes have horizontal displacements, or a displacement gradient that decides about breaking.
-    bool has_strain() const;
+    bool has_gradients() const;
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
     std::size_t sea_bytes() const;     // held once, shared
@@ -143,7 +143,7 @@ struct ViewQueryOptions {
 };
 
 // A query for points at all distances from a camera: levels of footprints, each twice as large as the one before.
-// They are powers of two in metres, whatever the scene (core/surface/rungs.h), from the nearest to the finest
+// They are powers of two in metres, whatever the scene (core/surface/footprint_levels.h), from the nearest to the finest
 // footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave to resolve. A
 // point's answer depends on the two levels beside its own footprints, and never on how fine other points are. The
 // cells' levels are among those of the pixels, so that they share what they can.

@@ -51,21 +51,24 @@ inline constexpr auto kProductTable = std::to_array<ProductRow>({
     {Product::Velocity, "velocity", "velocity", "velocities", 3,
      fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ), false, false, "the sums' time derivative",
      "of the water that rests at the point [m/s]"},
-    {Product::SlopeVariance, "slope_variance", "slope variance", "primvars:slopeVariance", 3, strain_fields(),
-     true, false, "a remainder of the spectrum, carried by the waves that are shown",
+    {Product::SlopeVariance, "slope_variance", "slope variance", "primvars:slopeVariance", 3,
+     displacement_gradient_fields(), true, false,
+     "a remainder of the spectrum, carried by the waves that are shown",
      "xx, yy, xy of the slopes that the pixel footprint hides: larger on crests, smaller in troughs"},
     {Product::SlopeVarianceAtRest, "slope_variance_at_rest", "slope variance at rest", nullptr, 3, FieldSet(),
      true, false, "a remainder of the spectrum: no transform",
-     "the same before the waves that are shown compress and stretch it: shown and hidden add up to the spectrum's"},
-    {Product::JacobianMoments, "jacobian", "Jacobian moments", nullptr, 3, strain_fields(), true, true,
-     "J of the waves that break, and the variance that the footprint hides",
+     "the same before the waves that are shown compress and stretch it: shown and unresolved add up to the spectrum's"},
+    {Product::JacobianMoments, "jacobian", "Jacobian moments", nullptr, 3, displacement_gradient_fields(),
+     true, true, "J of the waves that break, and the variance that the footprint hides",
      "mean, variance (not negative) and third cumulant of J in the pixel footprint, of the waves that break"},
-    {Product::Coverage, "coverage", "whitecap coverage", "primvars:whitecapCoverage", 1, strain_fields(),
-     true, true, "where J falls below the threshold of breaking", "whitecaps, 0 … 1"},
-    {Product::Breaking, "foam_active", "breaking", "primvars:foamActive", 1, strain_fields(), true, true,
-     "where J falls below the threshold of breaking", "what of the coverage breaks now, 0 … 1"},
-    {Product::FoamAge, "foam_age", "foam age", "primvars:foamAge", 1, strain_fields(), true, true,
-     "what breaks now is new", "the mean age of the foam that is there, what breaks now counting as 0 [s]"},
+    {Product::Coverage, "coverage", "whitecap coverage", "primvars:whitecapCoverage", 1,
+     displacement_gradient_fields(), true, true, "where J falls below the threshold of breaking",
+     "whitecaps, 0 … 1"},
+    {Product::Breaking, "foam_active", "breaking", "primvars:foamActive", 1, displacement_gradient_fields(),
+     true, true, "where J falls below the threshold of breaking", "what of the coverage breaks now, 0 … 1"},
+    {Product::FoamAge, "foam_age", "foam age", "primvars:foamAge", 1, displacement_gradient_fields(), true,
+     true, "what breaks now is new",
+     "the mean age of the foam that is there, what breaks now counting as 0 [s]"},
 });
 
 inline constexpr std::size_t kProductCount = kProductTable.size();
@@ -107,10 +110,10 @@ inline ProductSet breaking_products() {
 }
 
 // The products that count what a footprint leaves unresolved.
-inline ProductSet hidden_products() {
-    ProductSet hidden;
-    for (const ProductRow& row : kProductTable) hidden[index(row.product)] = row.counts_what_hides;
-    return hidden;
+inline ProductSet unresolved_products() {
+    ProductSet unresolved;
+    for (const ProductRow& row : kProductTable) unresolved[index(row.product)] = row.counts_what_hides;
+    return unresolved;
 }
 
 // The products of foam: what breaks now, and what counts as well what earlier breaking has left. A frame alone has

@@ -20,18 +20,18 @@ inline constexpr double kLongestEllipse = 8.0;
 // from a level of footprints to the next and for an octave of length over width, and so many directions over half a
 // turn.
 struct EllipseTable {
-    static constexpr int kNodesARung = 2, kNodesAnOctave = 3, kRatios = 3 * kNodesAnOctave + 1,
+    static constexpr int kNodesALevel = 2, kNodesAnOctave = 3, kRatios = 3 * kNodesAnOctave + 1,
                          kDirections = 24;
 
-    static std::size_t nodes(std::size_t rungs) {
-        return (kNodesARung * (rungs - 1) + 1) * kRatios * kDirections;
+    static std::size_t nodes(std::size_t levels) {
+        return (kNodesALevel * (levels - 1) + 1) * kRatios * kDirections;
     }
     static constexpr std::size_t kBytesANode = 8 * sizeof(float);
 };
 
 // Whether points of a query may have ellipses, and ask what those leave unresolved.
 inline bool has_ellipse_table(const Plan& plan, const Query& query) {
-    return (query.products & hidden_products()).any() && query.pixel_m.size() > 1 && !query.lattice &&
+    return (query.products & unresolved_products()).any() && query.pixel_m.size() > 1 && !query.lattice &&
            !plan.cascades.empty();
 }
 

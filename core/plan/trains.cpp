@@ -65,10 +65,10 @@ std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
     // Of each: wavevector, frequency, phase, two amplitudes, wavelength; a factor a field, the wavelength
     // and the weight in breaking; its moments alone and in both running sums, and the eight that a pixel hides, alone and in
     // one sum. A sum has one entry more than there are trains.
-    constexpr std::size_t kHidden = 8;
+    constexpr std::size_t kUnresolved = 8;
     const auto trains = static_cast<std::size_t>(count);
     return trains * (7 * sizeof(double) + (kFieldCount + 2) * scalar) +
-           (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kHidden * scalar;
+           (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kUnresolved * scalar;
 }
 
 TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint_m) {

@@ -24,10 +24,10 @@ std::string content_text(const MeasuredSpectrum& measured) {
 
 }  // namespace
 
-std::string canonical(const Scene& scene, FeedSet parts) {
+std::string canonical(const Scene& scene, KeyPartSet parts) {
     std::string text;
     for (const Key& key : keys()) {
-        if ((key.feeds & parts).none()) continue;
+        if ((key.key_parts & parts).none()) continue;
         std::string value;
         if (key.type == KeyType::DataFile) {
             if (scene.sea.measured && key.path == kSpectrumFile) value = content_text(*scene.sea.measured);
@@ -41,7 +41,7 @@ std::string canonical(const Scene& scene, FeedSet parts) {
 }
 
 std::string canonical(const Scene& scene) {
-    return canonical(scene, ~feeds(Feed::Range));
+    return canonical(scene, ~key_parts(KeyPart::Range));
 }
 
 }  // namespace pelagic

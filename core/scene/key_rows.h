@@ -199,7 +199,7 @@ struct About {
     std::optional<SoftRange> soft = {};
     const char* form = "";      // of texts and pairs: "a string, of letters"
     const char* accepted = "";  // instead of what type and range say
-    FeedSet feeds = {};
+    KeyPartSet key_parts = {};
     bool may_be_infinite = false;
     const char* other_word = "";
     std::size_t most_entries = ~std::size_t{0};

@@ -10,7 +10,7 @@ namespace pelagic {
 
 namespace {
 
-constexpr std::array<std::string_view, kFeeds> kFeedWords{
+constexpr std::array<std::string_view, kKeyParts> kKeyPartWords{
     "name", "range", "clock", "waves",   "foam", "gusts", "surface", "cage",  "grid",
     "view", "light", "water", "quality", "mesh", "maps",  "volumes", "spray", "choice"};
 
@@ -75,10 +75,10 @@ std::string_view word_of(KeyType type) {
     return kTypeWords.at(static_cast<std::size_t>(type));
 }
 
-std::string text_of(FeedSet set) {
+std::string text_of(KeyPartSet set) {
     std::string out;
-    for (std::size_t part = 0; part < kFeeds; ++part)
-        if (set[part]) out += (out.empty() ? "" : ", ") + std::string(kFeedWords[part]);
+    for (std::size_t part = 0; part < kKeyParts; ++part)
+        if (set[part]) out += (out.empty() ? "" : ", ") + std::string(kKeyPartWords[part]);
     return out;
 }
 
@@ -149,7 +149,7 @@ Key key_about(const About& about, KeyType type) {
     key.are_entries_independent = about.are_entries_independent;
     key.other_word = about.other_word;
     key.entry_name = about.entry_name;
-    key.feeds = about.feeds;
+    key.key_parts = about.key_parts;
     key.accepted = about.accepted;
     return key;
 }
@@ -233,10 +233,10 @@ std::variant<double, std::string> DescribedKey::number_or_text() const {
     return text;
 }
 
-std::vector<DescribedKey> described(const Scene& scene, FeedSet parts) {
+std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts) {
     std::vector<DescribedKey> out;
     for (const Key& key : keys()) {
-        if ((key.feeds & parts).none()) continue;
+        if ((key.key_parts & parts).none()) continue;
         if (key.type == KeyType::DataFile) {
             if (const auto& cage = scene.surface.cage; cage && key.path == kCageFile)
                 out.push_back({"surface.cage", cage->content(), quoted_text(cage->content())});

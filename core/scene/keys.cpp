@@ -33,54 +33,54 @@ void add_shot(Built& out) {
                      "whatever the range, in a loop t of its first round",
              .range = limits::kFrame,
              .form = "[first, last], two integers of ",
-             .feeds = feeds(Feed::Range)}),
+             .key_parts = key_parts(KeyPart::Range)}),
         frames_of, set_frames};
     add_table<&Scene::shot>(
         out.tables, out.keys, {"shot", "what is made", {}, {}},
         row<&Shot::name>({.name = "name",
                           .help = "names the files and the stage's root prim",
                           .accepted = "a string, of letters, digits, _ and -, at most 200",
-                          .feeds = feeds(Feed::Name)}),
+                          .key_parts = key_parts(KeyPart::Name)}),
         frames,
         row<&Shot::fps>({.name = "fps",
                          .help = "frames a second",
                          .unit = "1/s",
                          .range = limits::kFps,
                          .soft = SoftRange{1.0, 120.0},
-                         .feeds = feeds(Feed::Clock)}),
+                         .key_parts = key_parts(KeyPart::Clock)}),
         row<&Shot::seed>({.name = "seed",
                           .help = "another seed, another sea of the same weather",
                           .accepted = "an integer, 0 … 9223372036854775807",
-                          .feeds = feeds(Feed::Waves)}),
+                          .key_parts = key_parts(KeyPart::Waves)}),
         row<&Shot::loop_s>(
             {.name = "loop_s",
              .help = "above 0: the sea repeats exactly after this long, a whole number of frames",
              .unit = "s",
              .range = limits::kLoop_s,
              .soft = SoftRange{0.0, 60.0},
-             .feeds = feeds(Feed::Waves)}),
+             .key_parts = key_parts(KeyPart::Waves)}),
         row<&Shot::time_scale>(
             {.name = "time_scale",
              .help = "seconds of the sea in a second on the screen: 0.5 is slow motion, 0 stands still",
              .range = limits::kTimeScale,
              .soft = SoftRange{0.0, 4.0},
-             .feeds = feeds(Feed::Clock)}),
+             .key_parts = key_parts(KeyPart::Clock)}),
         row<&Shot::time_offset_s>({.name = "time_offset_s",
                                    .help = "the sea's time at frame 1",
                                    .unit = "s",
                                    .range = limits::kTimeOffset_s,
                                    .soft = SoftRange{0.0, 600.0},
-                                   .feeds = feeds(Feed::Clock)}));
+                                   .key_parts = key_parts(KeyPart::Clock)}));
 }
 
 void add_sea(Built& out) {
-    constexpr FeedSet kWaves = feeds(Feed::Waves);
+    constexpr KeyPartSet kWaves = key_parts(KeyPart::Waves);
     // A measured spectrum is one member and two keys. The host that reads the file sets it.
     Row<SeaState, 1> file{
         key_about({.name = "spectrum_file",
                    .help = "with spectrum = \"file\": the densities; the files d, i, j and k lie beside it",
                    .accepted = "a string, the path of NDBC's w file, from the shot file's folder",
-                   .feeds = kWaves},
+                   .key_parts = kWaves},
                   KeyType::DataFile),
         [](const SeaState& sea) { return sea.measured ? KeyValue(sea.measured->file) : KeyValue(); },
         {}};
@@ -90,7 +90,7 @@ void add_sea(Built& out) {
         key_about({.name = "spectrum_time",
                    .help = "with spectrum = \"file\": one of the file's times, which are UTC",
                    .accepted = "a date and time with its zone, such as 2019-02-06T00:40:00Z",
-                   .feeds = kWaves},
+                   .key_parts = kWaves},
                   KeyType::DataTime),
         [](const SeaState& sea) { return sea.measured ? KeyValue(sea.measured->time) : KeyValue(); },
         {}};
@@ -102,35 +102,36 @@ void add_sea(Built& out) {
                                         .unit = "m/s",
                                         .range = limits::kWindSpeed_mps,
                                         .soft = SoftRange{0.0, 40.0},
-                                        .feeds = kWaves}),
+                                        .key_parts = kWaves}),
         row<&SeaState::wind_direction_deg>({.name = "wind_direction_deg",
                                             .help = "blowing towards, counter-clockwise from +x (east)",
                                             .unit = "degrees",
                                             .range = limits::kAngle_deg,
                                             .soft = kTurn,
-                                            .feeds = kWaves}),
+                                            .key_parts = kWaves}),
         row<&SeaState::fetch_m>(
             {.name = "fetch_m",
              .help = "how far the wind has blown over water: little gives a short, steep sea",
              .unit = "m",
              .range = limits::kFetch_m,
              .soft = SoftRange{1e3, 3e6, true},
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         row<&SeaState::depth_m>({.name = "depth_m",
                                  .help = "of the water",
                                  .unit = "m",
                                  .range = limits::kDepth_m,
                                  .soft = SoftRange{1.0, 1e4, true},
-                                 .feeds = kWaves,
+                                 .key_parts = kWaves,
                                  .may_be_infinite = true}),
-        row<&SeaState::spectrum>(
-            {.name = "spectrum", .help = "how the energy is shared among the wavelengths", .feeds = kWaves}),
+        row<&SeaState::spectrum>({.name = "spectrum",
+                                  .help = "how the energy is shared among the wavelengths",
+                                  .key_parts = kWaves}),
         row<&SeaState::short_waves>(
             {.name = "short_waves",
              .help =
                  "beyond a few peak wavenumbers: elfouhaily, the tail and the spreading that have the slopes of "
                  "sun glitter; none, the spectrum's own",
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         row<&SeaState::significant_height_m>(
             {.name = "significant_height_m",
              .help =
@@ -138,9 +139,9 @@ void add_sea(Built& out) {
              .unit = "m",
              .range = limits::kSignificantHeight_m,
              .soft = SoftRange{0.0, 15.0},
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         row<&SeaState::spreading>(
-            {.name = "spreading", .help = "how it is shared among the directions", .feeds = kWaves}),
+            {.name = "spreading", .help = "how it is shared among the directions", .key_parts = kWaves}),
         row<&SeaState::directionality>(
             {.name = "directionality",
              .help =
@@ -148,24 +149,24 @@ void add_sea(Built& out) {
                  "each, and the rest from all directions alike",
              .range = limits::kDirectionality,
              .soft = SoftRange{0.1, 10.0, true},
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         row<&SeaState::gust_strength>(
             {.name = "gust_strength",
              .help =
                  "how much the wind varies over the surface, in patches that drift with it: 0, not at all; 1, from calm "
                  "to twice its speed. Ripples too small to be shown and foam follow; over area both stay as much",
              .range = limits::kGustStrength,
-             .feeds = feeds(Feed::Gusts)}),
+             .key_parts = key_parts(KeyPart::Gusts)}),
         row<&SeaState::gust_size_m>({.name = "gust_size_m",
                                      .help = "of those patches; along the wind they are longer",
                                      .unit = "m",
                                      .range = limits::kGustSize_m,
                                      .soft = SoftRange{10.0, 3000.0, true},
-                                     .feeds = feeds(Feed::Gusts)}),
+                                     .key_parts = key_parts(KeyPart::Gusts)}),
         entries<&SeaState::swell>(
             {.name = "swell",
              .help = "waves of far storms, each a narrow spectrum of its own",
-             .feeds = kWaves,
+             .key_parts = kWaves,
              .most_entries = limits::kSwells,
              .entry_name = "Swell"},
             required<&Swell::height_m>({.name = "height_m",
@@ -187,24 +188,24 @@ void add_sea(Built& out) {
 }
 
 void add_waves(Built& out) {
-    constexpr FeedSet kWaves = feeds(Feed::Waves);
+    constexpr KeyPartSet kWaves = key_parts(KeyPart::Waves);
     add_table<&Scene::waves>(
         out.tables, out.keys, {"waves", "how waves are made from it", {}, {}},
         row<&Waves::model>({.name = "model",
                             .help = "fft: tiles of waves; trochoid: a sum of wave trains",
-                            .feeds = kWaves}),
+                            .key_parts = kWaves}),
         row<&Waves::choppiness>(
             {.name = "choppiness",
              .help =
                  "sharpness of the crests; 1 is the trochoid's own, 0 leaves them round, as does less than 0.0001",
              .range = limits::kChoppiness,
              .soft = SoftRange{0.0, 2.0},
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         entries<&Waves::cascades>(
             {.name = "cascades",
              .help = "the tiles; auto: four, from the spectrum's peak down, and none with trochoid. "
                      "Their bands depend on the sizes alone; a resolution that leaves a gap is refused",
-             .feeds = kWaves,
+             .key_parts = kWaves,
              .other_word = "auto",
              .most_entries = limits::kCascades,
              .are_entries_independent = false,
@@ -230,13 +231,13 @@ void add_waves(Built& out) {
              .help =
                  "of the cascades: random, copies of each tile at random offsets, blended, so that no pattern is "
                  "seen from the air; periodic, each tile repeats after its size",
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         entries<&Waves::band_gains>(
             {.name = "band_gains",
              .help =
                  "amplitudes by wavelength, on top of all else: heights, slopes and foam follow. Edges are smooth, a third "
                  "of an octave wide; where bands overlap, their gains multiply",
-             .feeds = kWaves,
+             .key_parts = kWaves,
              .most_entries = limits::kBandGains,
              .entry_name = "BandGain"},
             required<&BandGain::from_m>({.name = "from_m",
@@ -258,7 +259,7 @@ void add_waves(Built& out) {
              .help = "with trochoid: how many, one from each bin of a geometric progression of wavelengths",
              .range = limits::kTrains,
              .soft = SoftRange{1.0, 1000.0, true},
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         row<&Waves::shortest_m>(
             {.name = "shortest_m",
              .help =
@@ -268,7 +269,7 @@ void add_waves(Built& out) {
              .unit = "m",
              .range = limits::kTrain_m,
              .soft = SoftRange{1e-3, 10.0, true},
-             .feeds = kWaves}),
+             .key_parts = kWaves}),
         row<&Waves::longest_m>(
             {.name = "longest_m",
              .help = "with trochoid: the longest train; what is longer is not on the surface and counts as "
@@ -277,18 +278,18 @@ void add_waves(Built& out) {
              .unit = "m",
              .range = limits::kTrain_m,
              .soft = SoftRange{1.0, 2000.0, true},
-             .feeds = kWaves}));
+             .key_parts = kWaves}));
 }
 
 void add_surface(Built& out) {
-    constexpr FeedSet kSurface = feeds(Feed::Surface);
+    constexpr KeyPartSet kSurface = key_parts(KeyPart::Surface);
     // A cage is two members and one key. The host that reads the file sets them.
     Row<Surface, 2> cage_file{
         key_about(
             {.name = "cage_file",
              .help = "with kind = \"cage\": the mesh whose limit surface (Catmull–Clark) the sea lies on",
              .accepted = "a string, the path of a Wavefront OBJ, from the shot file's folder",
-             .feeds = feeds(Feed::Cage)},
+             .key_parts = key_parts(KeyPart::Cage)},
             KeyType::DataFile),
         [](const Surface& surface) { return surface.cage ? KeyValue(surface.cage_file) : KeyValue(); },
         {}};
@@ -302,7 +303,7 @@ void add_surface(Built& out) {
                  "fine below it and goes to the horizon with faces that stay, or the projected grid "
                  "on a sphere that touches z = 0 at the origin, or the limit surface of a cage. Pictures show the open sea to the horizon, whatever stands here; "
                  "of a planet, with the camera's z as its height",
-             .feeds = feeds(Feed::Surface, Feed::Mesh)}),
+             .key_parts = key_parts(KeyPart::Surface, KeyPart::Mesh)}),
         row<&Surface::size_m>(
             {.name = "size_m",
              .help = "side of the patch, centred on the origin, and of maps and volumes; with near-far of "
@@ -310,48 +311,48 @@ void add_surface(Built& out) {
              .unit = "m",
              .range = limits::kSurfaceSize_m,
              .soft = SoftRange{10.0, 5000.0, true},
-             .feeds = feeds(Feed::Surface, Feed::Maps, Feed::Volumes)}),
+             .key_parts = key_parts(KeyPart::Surface, KeyPart::Maps, KeyPart::Volumes)}),
         row<&Surface::resolution>({.name = "resolution",
                                    .help = "quads a side; with near-far of the finest part, at most 4096",
                                    .range = limits::kSurfaceResolution,
                                    .soft = SoftRange{1.0, 2048.0, true},
-                                   .feeds = kSurface}),
+                                   .key_parts = kSurface}),
         row<&Surface::cell_px>({.name = "cell_px",
                                 .help = "side of the projected grid's cells, in pictures and bakes: smaller "
                                         "shows finer silhouettes, and is slower",
                                 .unit = "pixels",
                                 .range = limits::kCell_px,
                                 .soft = SoftRange{2.0, 32.0},
-                                .feeds = feeds(Feed::Grid)}),
+                                .key_parts = key_parts(KeyPart::Grid)}),
         row<&Surface::earth_curvature>(
             {.name = "earth_curvature",
              .help = "whether the projected grid, or near-far, lies on the earth's sphere: the far "
                      "sea bends away, and the horizon has its dip",
-             .feeds = feeds(Feed::Grid, Feed::Surface)}),
+             .key_parts = key_parts(KeyPart::Grid, KeyPart::Surface)}),
         cage_file,
         row<&Surface::cage_level>(
             {.name = "cage_level",
              .help = "of a cage: how often each of its edges is halved, or adaptive: as finely as the camera "
                      "sees it, in cells of cell_px",
              .range = limits::kCageLevel,
-             .feeds = feeds(Feed::Cage)}));
+             .key_parts = key_parts(KeyPart::Cage)}));
 }
 
 void add_camera(Built& out) {
-    constexpr FeedSet kView = feeds(Feed::View);
+    constexpr KeyPartSet kView = key_parts(KeyPart::View);
     add_table<&Scene::camera>(
         out.tables, out.keys, {"camera", "from where", {}, {}},
         row<&Camera::position_m>(
-            {.name = "position_m", .help = "z is up", .unit = "m", .range = kEach_m, .feeds = kView}),
+            {.name = "position_m", .help = "z is up", .unit = "m", .range = kEach_m, .key_parts = kView}),
         row<&Camera::look_at_m>({.name = "look_at_m",
                                  .help = "up is z; looking along z, +y",
                                  .unit = "m",
                                  .range = kEach_m,
-                                 .feeds = kView}),
+                                 .key_parts = kView}),
         entries<&Camera::keys>(
             {.name = "keys",
              .help = "for a moving camera: between them as interpolation says, still outside",
-             .feeds = kView,
+             .key_parts = kView,
              .are_entries_independent = false,
              .entry_name = "CameraKey"},
             required<&CameraKey::frame>(
@@ -373,23 +374,23 @@ void add_camera(Built& out) {
         row<&Camera::interpolation>({.name = "interpolation",
                                      .help = "between keys: straight from one to the next, or a smooth curve "
                                              "through all of them",
-                                     .feeds = kView}),
+                                     .key_parts = kView}),
         row<&Camera::fov_deg>({.name = "fov_deg",
                                .help = "horizontal angle of view",
                                .unit = "degrees",
                                .range = limits::kFov_deg,
                                .soft = SoftRange{5.0, 120.0},
-                               .feeds = kView}),
+                               .key_parts = kView}),
         row<&Camera::resolution>({.name = "resolution",
                                   .help = "of the picture",
                                   .unit = "pixels",
                                   .range = limits::kImageResolution,
                                   .form = "[width, height], two integers, each ",
-                                  .feeds = kView}));
+                                  .key_parts = kView}));
 }
 
 void add_light_and_water(Built& out) {
-    constexpr FeedSet kLight = feeds(Feed::Light), kWater = feeds(Feed::Water);
+    constexpr KeyPartSet kLight = key_parts(KeyPart::Light), kWater = key_parts(KeyPart::Water);
     add_table<&Scene::light>(
         out.tables, out.keys, {"light", "sun and sky", {}, {}},
         row<&Light::sun_elevation_deg>({.name = "sun_elevation_deg",
@@ -397,23 +398,23 @@ void add_light_and_water(Built& out) {
                                         .unit = "degrees",
                                         .range = limits::kSunElevation_deg,
                                         .soft = SoftRange{-10.0, 90.0},
-                                        .feeds = kLight}),
+                                        .key_parts = kLight}),
         row<&Light::sun_azimuth_deg>({.name = "sun_azimuth_deg",
                                       .help = "towards the sun, counter-clockwise from +x (east)",
                                       .unit = "degrees",
                                       .range = limits::kAngle_deg,
                                       .soft = kTurn,
-                                      .feeds = kLight}),
+                                      .key_parts = kLight}),
         row<&Light::sky>({.name = "sky",
                           .help =
                               "clear daylight, or a picture of a sky: lat-long, middle column +x, azimuth "
                               "growing to the left, top row the zenith; its sun is found in it",
                           .accepted = "\"daylight\", or the path of an .exr, from the shot file's folder",
-                          .feeds = kLight}),
+                          .key_parts = kLight}),
         row<&Light::turbidity>({.name = "turbidity",
                                 .help = "haze of the daylight's air; 2 is very clear, 6 is hazy",
                                 .range = limits::kTurbidity,
-                                .feeds = kLight}),
+                                .key_parts = kLight}),
         row<&Light::visibility_km>(
             {.name = "visibility_km",
              .help = "with a picture of a sky: how far one sees through its air; without it "
@@ -421,53 +422,53 @@ void add_light_and_water(Built& out) {
              .unit = "km",
              .range = limits::kVisibility_km,
              .soft = SoftRange{1.0, 200.0, true},
-             .feeds = kLight}));
+             .key_parts = kLight}));
     add_table<&Scene::water>(
         out.tables, out.keys, {"water", "the water body", {}, {}},
         row<&Water::type>({.name = "type",
                            .help = "what the water holds besides plankton: nothing, some silt, much of it",
-                           .feeds = kWater}),
+                           .key_parts = kWater}),
         row<&Water::chlorophyll_mg_m3>({.name = "chlorophyll_mg_m3",
                                         .help = "plankton: greens the water",
                                         .unit = "mg/m³",
                                         .range = limits::kChlorophyll_mg_m3,
                                         .soft = SoftRange{0.01, 30.0, true},
-                                        .feeds = kWater}));
+                                        .key_parts = kWater}));
 }
 
 void add_effects_and_quality(Built& out) {
-    constexpr FeedSet kQuality = feeds(Feed::Quality);
+    constexpr KeyPartSet kQuality = key_parts(KeyPart::Quality);
     add_table<&Scene::effects>(
         out.tables, out.keys, {"effects", "what comes on top of the waves; off costs nothing", {}, {}},
         row<&Effects::whitecaps>(
             {.name = "whitecaps",
              .help = "foam where waves break; off, no output has coverage and none is computed",
-             .feeds = feeds(Feed::Foam)}),
+             .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::whitecap_law>(
             {.name = "whitecap_law",
              .help =
                  "how much foam a wind makes: monahan-1980, much in storms; monahan-1986, with sea_minus_air_c; "
                  "callaghan-2008, which stays at 8 % beyond 23 m/s",
-             .feeds = feeds(Feed::Foam)}),
+             .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::sea_minus_air_c>(
             {.name = "sea_minus_air_c",
              .help = "with monahan-1986: how much warmer the sea is than the air; a warm one foams more",
              .unit = "°C",
              .range = limits::kSeaMinusAir_c,
              .soft = SoftRange{-10.0, 10.0},
-             .feeds = feeds(Feed::Foam)}),
+             .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::whitecap_amount>({.name = "whitecap_amount",
                                         .help = "times the law's foam; 0: none",
                                         .range = limits::kWhitecapAmount,
                                         .soft = SoftRange{0.0, 4.0},
-                                        .feeds = feeds(Feed::Foam)}),
+                                        .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::breaking_from_m>(
             {.name = "breaking_from_m",
              .help = "the shortest waves that break; 0: ripples break as well, and foam is a veil",
              .unit = "m",
              .range = limits::kBreakingFrom_m,
              .soft = SoftRange{0.1, 20.0, true},
-             .feeds = feeds(Feed::Foam)}),
+             .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::foam_decay_s>(
             {.name = "foam_decay_s",
              .help =
@@ -475,34 +476,35 @@ void add_effects_and_quality(Built& out) {
              .unit = "s",
              .range = limits::kFoamDecay_s,
              .soft = SoftRange{0.0, 10.0},
-             .feeds = feeds(Feed::Foam)}),
+             .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::foam_drift>(
             {.name = "foam_drift",
              .help = "how fast the wind carries that foam along, as a share of its speed",
              .range = limits::kFoamDrift,
              .soft = SoftRange{0.0, 0.05},
-             .feeds = feeds(Feed::Foam)}),
+             .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::foam_structure>(
             {.name = "foam_structure",
              .help =
                  "in pictures: 0 shows foam as smooth coverage, 1 as holes and lace; its mean is the same",
              .range = limits::kFoamStructure,
-             .feeds = feeds(Feed::Water)}),
+             .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_streaks>({.name = "foam_streaks",
                                      .help = "how far that lace is drawn out along the wind",
                                      .range = limits::kFoamStreaks,
-                                     .feeds = feeds(Feed::Water)}),
+                                     .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::spray>({.name = "spray",
                               .help = "droplets over breaking crests; none without whitecaps",
-                              .feeds = feeds(Feed::Spray)}),
+                              .key_parts = key_parts(KeyPart::Spray)}),
         row<&Effects::spray_gain>({.name = "spray_gain",
                                    .help = "how much spray there is; 1 is nature's, too thin to be seen",
                                    .range = limits::kSprayGain,
                                    .soft = SoftRange{1.0, 100.0, true},
-                                   .feeds = feeds(Feed::Spray)}));
+                                   .key_parts = key_parts(KeyPart::Spray)}));
     add_table<&Scene::quality>(
         out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
-        row<&Quality::level>({.name = "level", .help = "how much time accuracy may take", .feeds = kQuality}),
+        row<&Quality::level>(
+            {.name = "level", .help = "how much time accuracy may take", .key_parts = kQuality}),
         row<&Quality::max_error>(
             {.name = "max_error",
              .help =
@@ -511,7 +513,7 @@ void add_effects_and_quality(Built& out) {
                  "don't exceed",
              .range = limits::kMaxError,
              .soft = SoftRange{1e-3, 0.3, true},
-             .feeds = kQuality}),
+             .key_parts = kQuality}),
         row<&Quality::frame_ms>(
             {.name = "frame_ms",
              .help =
@@ -520,42 +522,43 @@ void add_effects_and_quality(Built& out) {
              .unit = "ms",
              .range = limits::kFrame_ms,
              .soft = SoftRange{1.0, 1e4, true},
-             .feeds = kQuality}));
+             .key_parts = kQuality}));
 }
 
 void add_output(Built& out) {
-    constexpr FeedSet kMesh = feeds(Feed::Mesh), kChoice = feeds(Feed::Choice);
+    constexpr KeyPartSet kMesh = key_parts(KeyPart::Mesh), kChoice = key_parts(KeyPart::Choice);
     add_table<&Scene::output>(
         out.tables, out.keys, {"output", "what a bake writes", {}, {}},
         row<&Output::mesh>({.name = "mesh",
                             .help = "how the mesh is written: as binary crates, as text, or not",
-                            .feeds = kMesh}),
+                            .key_parts = kMesh}),
         row<&Output::attributes>(
-            {.name = "attributes", .help = "what the mesh carries per vertex", .feeds = kMesh}),
+            {.name = "attributes", .help = "what the mesh carries per vertex", .key_parts = kMesh}),
         row<&Output::maps>(
-            {.name = "maps", .help = "images over the patch, a file a frame", .feeds = kChoice}),
+            {.name = "maps", .help = "images over the patch, a file a frame", .key_parts = kChoice}),
         row<&Output::map_resolution>({.name = "map_resolution",
                                       .help = "of the maps, a side",
                                       .unit = "pixels",
                                       .range = limits::kMapResolution,
                                       .soft = SoftRange{16.0, 4096.0, true},
-                                      .feeds = feeds(Feed::Maps)}),
-        row<&Output::cascade_tiles>(
-            {.name = "cascade_tiles", .help = "each cascade's own periodic tile as well", .feeds = kChoice}),
+                                      .key_parts = key_parts(KeyPart::Maps)}),
+        row<&Output::cascade_tiles>({.name = "cascade_tiles",
+                                     .help = "each cascade's own periodic tile as well",
+                                     .key_parts = kChoice}),
         row<&Output::mesh_scheme>({.name = "mesh_scheme",
                                    .help = "none: every vertex lies on the sea; catmullClark, of a patch: a "
                                            "cage whose limit surface is the sea, without normals",
-                                   .feeds = kMesh}),
+                                   .key_parts = kMesh}),
         row<&Output::volumes>(
             {.name = "volumes",
              .help = "OpenVDB files over the patch's square, one a frame: spray, and the sea as a level set",
-             .feeds = kChoice}),
+             .key_parts = kChoice}),
         row<&Output::voxel_m>({.name = "voxel_m",
                                .help = "side of the volumes' voxels",
                                .unit = "m",
                                .range = limits::kVoxel_m,
                                .soft = SoftRange{0.05, 10.0, true},
-                               .feeds = feeds(Feed::Volumes)}));
+                               .key_parts = key_parts(KeyPart::Volumes)}));
 }
 
 Built build() {

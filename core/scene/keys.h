@@ -27,7 +27,7 @@ namespace pelagic {
 // ---- What depends on a key
 
 // The parts of the work that a key can change. An output's fingerprint is made of the keys that it depends on.
-enum class Feed {
+enum class KeyPart {
     Name,     // the names of files and of the stage's root prim
     Range,    // which frames are made; no frame's content depends on it
     Clock,    // the time that a frame shows
@@ -47,20 +47,20 @@ enum class Feed {
     Spray,    // the droplets over breaking crests
     Choice,   // whether an output exists; what is in it does not depend on the key
 };
-inline constexpr std::size_t kFeeds = 18;
-using FeedSet = std::bitset<kFeeds>;
+inline constexpr std::size_t kKeyParts = 18;
+using KeyPartSet = std::bitset<kKeyParts>;
 
-template <class... Feeds>
-constexpr FeedSet feeds(Feeds... parts) {
-    return FeedSet((0ull | ... | (1ull << static_cast<unsigned>(parts))));
+template <class... Parts>
+constexpr KeyPartSet key_parts(Parts... parts) {
+    return KeyPartSet((0ull | ... | (1ull << static_cast<unsigned>(parts))));
 }
 
-inline FeedSet all_feeds() {
-    return FeedSet().set();
+inline KeyPartSet all_key_parts() {
+    return KeyPartSet().set();
 }
 
 // "waves, clock"
-std::string text_of(FeedSet set);
+std::string text_of(KeyPartSet set);
 
 // ---- Values of any type
 
@@ -127,7 +127,7 @@ struct Key {
                                           // integer: a word that may stand in its place, "adaptive"
 
     KeyValue fallback;  // the value that a Scene begins with
-    FeedSet feeds;
+    KeyPartSet key_parts;
 
     std::function<KeyValue(const Scene&)> get;         // empty: a key of an entry
     std::function<bool(Scene&, const KeyValue&)> set;  // empty: likewise, and for data, which hosts load
@@ -184,6 +184,6 @@ struct DescribedKey {
 
 // The keys that these parts depend on and that have a value. A measured spectrum is described by its station and
 // time, a cage by its content (Cage::content), not by their files.
-std::vector<DescribedKey> described(const Scene& scene, FeedSet parts);
+std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts);
 
 }  // namespace pelagic

@@ -1,5 +1,5 @@
 // Whether the values of a Scene make sense, each alone and together. Knows no file: who read the values from
-// one adds the place (plugin/shot).
+// one adds the place (plugin/format/shot).
 #pragma once
 
 #include <vector>

@@ -25,18 +25,18 @@ double SpectralMoments::mean_direction() const {
 SpectralMoments moments_of(const Wave& wave) {
     const auto [kx, ky] = std::array{wave.k.x, wave.k.y};
     const double length = std::hypot(kx, ky);
-    const double strain = wave.chop * wave.chop * wave.energy;
+    const double gradient = wave.chop * wave.chop * wave.energy;
     SpectralMoments out;
     out.m0 = wave.energy;
     out.m_minus1 = wave.energy / wave.omega;
     out.xx = kx * kx * wave.energy;
     out.xy = kx * ky * wave.energy;
     out.yy = ky * ky * wave.energy;
-    out.xxxx = strain * kx * kx * kx * kx;
-    out.xxxy = strain * kx * kx * kx * ky;
-    out.xxyy = strain * kx * kx * ky * ky;
-    out.xyyy = strain * kx * ky * ky * ky;
-    out.yyyy = strain * ky * ky * ky * ky;
+    out.xxxx = gradient * kx * kx * kx * kx;
+    out.xxxy = gradient * kx * kx * kx * ky;
+    out.xxyy = gradient * kx * kx * ky * ky;
+    out.xyyy = gradient * kx * ky * ky * ky;
+    out.yyyy = gradient * ky * ky * ky * ky;
     out.east = wave.energy * kx / length;
     out.north = wave.energy * ky / length;
     return out;

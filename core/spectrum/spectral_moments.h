@@ -35,9 +35,9 @@ struct SpectralMoments {
     // All moments of waves whose energy is `factor` times as large.
     SpectralMoments& operator*=(double factor);
     // Multiplies the moments of the displacement gradient alone; choppiness λ is a factor of λ².
-    SpectralMoments& scale_strain(double factor);
+    SpectralMoments& scale_gradients(double factor);
     // Replaces the moments of the displacement gradient by those of other waves.
-    SpectralMoments& take_strain(const SpectralMoments& other);
+    SpectralMoments& take_gradients(const SpectralMoments& other);
 };
 
 // Every moment, for loops that treat all alike.
@@ -54,12 +54,12 @@ inline SpectralMoments& SpectralMoments::operator*=(double factor) {
     for (double SpectralMoments::*m : kSpectralMoments) this->*m *= factor;
     return *this;
 }
-inline SpectralMoments& SpectralMoments::scale_strain(double factor) {
+inline SpectralMoments& SpectralMoments::scale_gradients(double factor) {
     for (double* m : {&xxxx, &xxxy, &xxyy, &xyyy, &yyyy}) *m *= factor;
     return *this;
 }
 
-inline SpectralMoments& SpectralMoments::take_strain(const SpectralMoments& other) {
+inline SpectralMoments& SpectralMoments::take_gradients(const SpectralMoments& other) {
     for (const auto m : {&SpectralMoments::xxxx, &SpectralMoments::xxxy, &SpectralMoments::xxyy,
                          &SpectralMoments::xyyy, &SpectralMoments::yyyy})
         this->*m = other.*m;

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/scene/text.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -184,8 +184,9 @@ std::optional<View> CageSurface::shaped_by(int frame) const {
     return view_at(camera_, frame);
 }
 
-FeedSet CageSurface::feeds() const {
-    return level_.is_adaptive ? pelagic::feeds(Feed::Cage, Feed::Grid) : pelagic::feeds(Feed::Cage);
+KeyPartSet CageSurface::key_parts() const {
+    return level_.is_adaptive ? pelagic::key_parts(KeyPart::Cage, KeyPart::Grid)
+                              : pelagic::key_parts(KeyPart::Cage);
 }
 
 CageSurface::Fineness CageSurface::made_fineness(int frame) const {
@@ -267,7 +268,7 @@ std::shared_ptr<const CageSurface::Laid> CageSurface::laid_at(int frame) const {
     tbb::this_task_arena::isolate(
         [&] { limit_.place(meshing, cage_->mesh().points_m, laid->places_m, laid->normals); });
     laid->faces = std::move(meshing.faces);
-    laid->cell_m = cells_of(laid->faces, laid->places_m, first_rung_m(fineness->rates.finest_m));
+    laid->cell_m = cells_of(laid->faces, laid->places_m, first_level_m(fineness->rates.finest_m));
     return laid_ = std::move(laid);
 }
 

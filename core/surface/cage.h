@@ -57,7 +57,7 @@ class CageSurface final : public RestSurface {
     bool has_st_of_corners() const override { return limit_.has_seams(); }
     bool is_even() const override { return false; }
     std::optional<View> shaped_by(int frame) const override;
-    FeedSet feeds() const override;
+    KeyPartSet key_parts() const override;
     SurfaceNeeds needs(std::span<const int> frames) const override;
     void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
     void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }

@@ -1,7 +1,7 @@
 // How far the sea's surface moves from rest, in expectation [m]: a view must look so far beyond its border.
 #pragma once
 
-#include "core/surface/hidden_height.h"
+#include "core/surface/unresolved_height.h"
 
 namespace pelagic {
 
@@ -10,7 +10,7 @@ struct Extent {
     double height_m = 0.0;              // |z|
     double reach_m = 0.0;               // of the horizontal displacement, choppiness included
     double significant_height_m = 0.0;  // Hs = 4 √m0
-    HiddenHeight hidden{};              // by the length of a mesh's cells
+    UnresolvedHeight unresolved{};      // by the length of a mesh's cells
 };
 
 }  // namespace pelagic

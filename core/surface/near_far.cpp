@@ -11,7 +11,7 @@
 #include "core/scene/text.h"
 #include "core/surface/earth.h"
 #include "core/surface/earth_view.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -98,7 +98,7 @@ std::optional<View> NearFar::shaped_by(int frame) const {
 
 SurfaceNeeds NearFar::needs(std::span<const int> frames) const {
     double finest_m = frames.empty() ? 0.0 : std::numeric_limits<double>::infinity();
-    for (const int frame : frames) finest_m = std::min(finest_m, first_rung_m(place_at(frame).cell_m));
+    for (const int frame : frames) finest_m = std::min(finest_m, first_level_m(place_at(frame).cell_m));
     return {.finest_cell_m = finest_m,
             .finest_pixel_m = finest_m,
             .own_footprints = true,
@@ -116,7 +116,7 @@ template <class T>
 void NearFar::lay_out(const NearFarPlace& place, RestPoints<T>& points) const {
     // Near the nadir, so that floats hold every place, and in steps as long as they allow.
     const double first_row_m = begin_m_ * (place.cell_m / cell_m_);
-    const double origin_step_m = std::min(rung_below_m(place.cell_m) * 0x1p12, rung_below_m(first_row_m));
+    const double origin_step_m = std::min(level_below_m(place.cell_m) * 0x1p12, level_below_m(first_row_m));
     points.origin_m = glm::round(place.nadir_m / origin_step_m) * origin_step_m + 0.0;  // −0 is 0
     points.curvature_per_m = curvature_per_m_;
     const double touch_m = touch_step_m(place.cell_m);
@@ -127,7 +127,7 @@ void NearFar::lay_out(const NearFarPlace& place, RestPoints<T>& points) const {
         places->resize(mesh_.points());
 
     // Footprints are levels themselves: each depends on its cell alone, and reads a single level of a plan.
-    double cell_m = place.cell_m, footprint_m = first_rung_m(cell_m);
+    double cell_m = place.cell_m, footprint_m = first_level_m(cell_m);
     glm::dvec2 lowest_m{0.0};
     std::size_t i = 0;
     for (const NearFarMesh::Level& level : mesh_.levels()) {
@@ -160,7 +160,7 @@ void NearFar::lay_out_far(const NearFarPlace& place, glm::dvec2 middle_m, RestPo
     const double border_cell_m = std::ldexp(place.cell_m, mesh_.rings());
     // The distance's logarithm is a cubic of the row, which begins with the last ring's cells.
     const double share = std::min(border_cell_m / first_m * (rows - 1) / octaves, 1.0);
-    const double finest_m = first_rung_m(place.cell_m);
+    const double finest_m = first_level_m(place.cell_m);
 
     std::vector<glm::dvec2> away(static_cast<std::size_t>(columns));
     for (int column = 0; column < columns; ++column) {
@@ -186,7 +186,7 @@ void NearFar::lay_out_far(const NearFarPlace& place, glm::dvec2 middle_m, RestPo
     fill(here, 0);
     for (int row = 0; row < rows; ++row) {
         if (row + 1 < rows) fill(next, row + 1);
-        const double digit_m = rung_below_m(first_m * std::exp(logarithm(row))) * kFarDigits;
+        const double digit_m = level_below_m(first_m * std::exp(logarithm(row))) * kFarDigits;
         for (int column = 0; column < columns; ++column) {
             const int left = column == 0 ? columns - 1 : column - 1, right = (column + 1) % columns;
             const glm::dvec2 at = here[column];

@@ -56,7 +56,7 @@ class NearFar final : public RestSurface {
     bool is_even() const override { return false; }
     // The place alone, in steps: where the camera looks, and through what lens, shapes nothing.
     std::optional<View> shaped_by(int frame) const override;
-    FeedSet feeds() const override { return pelagic::feeds(Feed::Surface); }
+    KeyPartSet key_parts() const override { return pelagic::key_parts(KeyPart::Surface); }
     SurfaceNeeds needs(std::span<const int> frames) const override;
     void points_at(int frame, RestPoints<float>& points) const override;
     void points_at(int frame, RestPoints<double>& points) const override;

@@ -258,7 +258,7 @@ class RowSpacing {
         const double height_angle =
             kHeight_px / options.cell_px * cell_angle * std::max(options.cell_px / kHeightCell_px, 1.0);
         const auto part = [&](double last_m, Group group, double cell) {
-            add_steps(last_m, group, cell * cell_angle, options.hidden, height_angle);
+            add_steps(last_m, group, cell * cell_angle, options.unresolved, height_angle);
         };
         // A narrow lens begins to have small cells here.
         double fine_m = radii.first;
@@ -336,7 +336,7 @@ class RowSpacing {
     }
 
     // Up to last_m, even in asinh(r/h): in r below the camera, in log r far away.
-    void add_steps(double last_m, Group group, double cell_angle, const HiddenHeight& hidden,
+    void add_steps(double last_m, Group group, double cell_angle, const UnresolvedHeight& unresolved,
                    double height_angle) {
         constexpr int kSteps = 256;
         double from_m = steps_.empty() ? first_m_ : steps_.back().last_m;
@@ -351,7 +351,7 @@ class RowSpacing {
             steps_.push_back({.last_m = to_m,
                               .group = group,
                               .by_angle = angle_between(from_m, to_m) / cell_angle,
-                              .by_height = (to_m - from_m) / hidden.longest_cell_m(height_m)});
+                              .by_height = (to_m - from_m) / unresolved.longest_cell_m(height_m)});
             from_m = to_m;
         }
     }

@@ -20,8 +20,8 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "core/surface/hidden_height.h"
 #include "core/surface/pixel_footprint.h"
+#include "core/surface/unresolved_height.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
@@ -50,7 +50,7 @@ struct ProjectedGridOptions {
     double cell_px = 8.0;
     SurfaceBounds bounds;
     double significant_height_m = 0.0;  // Hs
-    HiddenHeight hidden{};              // of the waves; without, rows are even in angle
+    UnresolvedHeight unresolved{};      // of the waves; without, rows are even in angle
     double curvature_per_m = 0.0;       // of the earth on which the sea lies (earth.h); 0: flat
     // 0: as many as this pose needs (projected_grid_needs). Others, for poses that are to share a topology.
     ProjectedGridSize size{};

@@ -11,10 +11,10 @@
 
 #include "core/scene/text.h"
 #include "core/surface/earth.h"
+#include "core/surface/footprint_levels.h"
 #include "core/surface/near_far.h"
 #include "core/surface/patch.h"
 #include "core/surface/projected_grid.h"
-#include "core/surface/rungs.h"
 
 namespace pelagic {
 
@@ -42,7 +42,7 @@ class SquareLattice : public RestSurface {
     bool has_constant_faces() const override { return true; }
     bool is_even() const override { return true; }
     std::optional<View> shaped_by(int) const override { return {}; }
-    FeedSet feeds() const override { return {}; }
+    KeyPartSet key_parts() const override { return {}; }
     SurfaceNeeds needs(std::span<const int>) const override {
         const auto side = static_cast<std::size_t>(lattice_.per_side);
         return {.finest_cell_m = lattice_.spacing_m,
@@ -101,12 +101,12 @@ class CameraGrid : public RestSurface {
   public:
     CameraGrid(const Scene& scene, const Extent& extent)
         : camera_(scene.camera),
-          has_ladder_(scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty()),
+          has_levels_(scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty()),
           first_frame_(scene.shot.first_frame),
           options_{.cell_px = scene.surface.cell_px,
                    .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
                    .significant_height_m = extent.significant_height_m,
-                   .hidden = extent.hidden,
+                   .unresolved = extent.unresolved,
                    .curvature_per_m = scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0} {}
 
     std::string describe() const override {
@@ -122,7 +122,7 @@ class CameraGrid : public RestSurface {
     bool has_constant_faces() const override { return false; }
     bool is_even() const override { return false; }
     std::optional<View> shaped_by(int frame) const override { return view_at(camera_, frame); }
-    FeedSet feeds() const override { return pelagic::feeds(Feed::Grid); }
+    KeyPartSet key_parts() const override { return pelagic::key_parts(KeyPart::Grid); }
 
     SurfaceNeeds needs(std::span<const int> frames) const override {
         if (frames.empty()) return {.own_footprints = true};
@@ -162,7 +162,7 @@ class CameraGrid : public RestSurface {
     void lay_out(int frame, RestPoints<T>& points) const {
         const View view = seen(frame);
         ProjectedGrid grid = projected_grid(view, options_);
-        if (has_ladder_) keep_to_rungs(grid, projected_grid_needs(view, options_));
+        if (has_levels_) keep_to_levels(grid, projected_grid_needs(view, options_));
         points.origin_m = grid.origin_m;
         points.curvature_per_m = grid.curvature_per_m;
         points.touches_at_m = grid.origin_m;
@@ -176,7 +176,7 @@ class CameraGrid : public RestSurface {
     Camera camera_;
 
   private:
-    bool has_ladder_;  // wave trains alone need no levels: they use each point's own footprints
+    bool has_levels_;  // wave trains alone need no levels: they use each point's own footprints
     int first_frame_;
 
   protected:
@@ -245,7 +245,7 @@ glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m) {
     // A place is at most half a step away from the origin along each axis. Floats err by 2^−26 steps there, or by 2^−25
     // just beyond: by 2^−7 cells where a step is 2^18 of them.
     constexpr double kCells = 1 << 18;
-    const double step_m = std::min(rung_below_m(finest_cell_m) * kCells, kLongest_m);
+    const double step_m = std::min(level_below_m(finest_cell_m) * kCells, kLongest_m);
     return glm::round(place_m / step_m) * step_m + 0.0;  // −0 is 0
 }
 

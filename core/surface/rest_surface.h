@@ -97,7 +97,7 @@ class RestSurface {
     // The camera's pose, where it shapes the frame's points: a frame depends on nothing else of the camera.
     virtual std::optional<View> shaped_by(int frame) const = 0;
     // The keys on which the points depend beyond what needs() says.
-    virtual FeedSet feeds() const = 0;
+    virtual KeyPartSet key_parts() const = 0;
     // Of these frames together. Asked for one frame it looks at no other.
     virtual SurfaceNeeds needs(std::span<const int> frames) const = 0;
     // The memory of `points` is used again.

@@ -14,8 +14,8 @@ double breaking_rate(const DirectionalSpectrum& spectrum, const Breaking& breaki
         const double half = 0.5 * (to - from);
         for (std::size_t node = 0; node < rule.node.size(); ++node) {
             const double k = from + half * (1.0 + rule.node[node]);
-            const double strain = share * k * dispersion.horizontal_ratio(k);
-            const double part = rule.weight[node] * half * strain * strain * spectrum.omnidirectional(k);
+            const double gradient = share * k * dispersion.horizontal_ratio(k);
+            const double part = rule.weight[node] * half * gradient * gradient * spectrum.omnidirectional(k);
             variance += part;
             of_rate += part * dispersion.omega(k) * dispersion.omega(k);
         }

@@ -21,17 +21,17 @@ class EllipseMoments {
     EllipseMoments(const Plan& plan, const Query& query);
 
     bool empty() const { return values_.empty(); }
-    // Linear between the table's nodes (EllipseTable). rung: the lower level's number plus the share of the next.
+    // Linear between the table's nodes (EllipseTable). level: the lower level's number plus the share of the next.
     // ratio: 1 … kLongestEllipse. direction [rad].
-    HiddenMoments<double> hidden(double rung, double ratio, double direction) const;
+    UnresolvedMoments<double> unresolved(double level, double ratio, double direction) const;
 
     // Ordered by width, ratio and direction, which varies fastest.
-    const std::vector<HiddenMoments<float>>& values() const { return values_; }
+    const std::vector<UnresolvedMoments<float>>& values() const { return values_; }
     int widths() const { return widths_; }
 
   private:
     int widths_ = 0;
-    std::vector<HiddenMoments<float>> values_;
+    std::vector<UnresolvedMoments<float>> values_;
 };
 
 }  // namespace pelagic

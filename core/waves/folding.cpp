@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/plan/breaking.h"
-#include "core/plan/copies.h"
+#include "core/plan/random_tiling.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
@@ -95,7 +95,7 @@ std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
 
 // What the gradient of the blending weights adds to the slopes of a cascade's waves, as a share of their own. A tile
 // has no modes longer than itself; their cells begin at waves of two tiles.
-double gained_by_copies(const DirectionalSpectrum& spectrum, double size_m, double k_end) {
+double gained_by_blending(const DirectionalSpectrum& spectrum, double size_m, double k_end) {
     const SpectralMoments own = moments(spectrum, kPi / size_m, k_end);
     const double mss = std::max(own.mss(), own.m0 * std::pow(kTwoPi / size_m, 2.0));
     return mss > 0.0 ? 2.0 * kCopySlopes * own.m0 / (size_m * size_m * mss) : 0.0;
@@ -103,7 +103,7 @@ double gained_by_copies(const DirectionalSpectrum& spectrum, double size_m, doub
 
 // The largest cascade alone: at least kBandModes of the others' waves fit into their tiles, which gain 1.6 % at most. Sizes
 // chosen for the scene hold enough waves.
-std::vector<std::string> copies_warning(const PreparedScene& prepared) {
+std::vector<std::string> blending_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const Waves& waves = prepared.scene.waves;
     if (waves.tiling != Tiling::Random || waves.model != WaveModel::Fft || waves.cascades.empty()) return {};
@@ -123,7 +123,7 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
         if (waves.cascades.size() > 1)
             k_end = std::min(kPi * resolution_of(size_m) / size_m,
                              lower_edges(std::array{size_m, waves.cascades[1].size_m})[1]);
-        return gained_by_copies(prepared.spectrum, size_m, k_end);
+        return gained_by_blending(prepared.spectrum, size_m, k_end);
     };
     const double share = share_with(given_m);
     if (!(share > kMuch)) return {};
@@ -166,7 +166,7 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more : {&trough_warning, &unpressed_warning, &repeats_warning, &copies_warning})
+    for (auto* more : {&trough_warning, &unpressed_warning, &repeats_warning, &blending_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene); !thin.empty()) warnings.push_back(std::move(thin));
     return warnings;

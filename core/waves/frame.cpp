@@ -151,7 +151,7 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
             for (Buffer<T>* buffer : buffers) *buffer = Buffer<T>(count);
         };
         want({&scratch.height_re, &scratch.height_im, &scratch.through}, block_modes_);
-        if (plan.has_strain()) want({&scratch.chop_through}, block_modes_);
+        if (plan.has_gradients()) want({&scratch.chop_through}, block_modes_);
         if (std::any_of(plan.cascades.begin(), plan.cascades.end(),
                         [](const CascadePlan& cascade) { return cascade.moves(); }))
             want({&scratch.rate_re, &scratch.rate_im}, block_modes_);

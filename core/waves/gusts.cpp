@@ -14,12 +14,12 @@ namespace pelagic {
 namespace {
 
 // What a round footprint resolves of each wave's amplitude.
-std::array<double, GustsPlan::kWaves> shown_amplitudes(const GustsPlan& plan, double footprint_m) {
+std::array<double, GustsPlan::kWaves> resolved_amplitudes(const GustsPlan& plan, double footprint_m) {
     const FootprintFilter filter;
-    std::array<double, GustsPlan::kWaves> shown{};
-    for (std::size_t i = 0; i < shown.size(); ++i)
-        shown[i] = plan.waves[i].amplitude * filter.weight(kTwoPi / plan.waves[i].shortest_m, footprint_m);
-    return shown;
+    std::array<double, GustsPlan::kWaves> resolved{};
+    for (std::size_t i = 0; i < resolved.size(); ++i)
+        resolved[i] = plan.waves[i].amplitude * filter.weight(kTwoPi / plan.waves[i].shortest_m, footprint_m);
+    return resolved;
 }
 
 // Equally likely values of a sum of waves with independent phases: the means of equal parts of its distribution.
@@ -94,7 +94,7 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     const double highest = balance.highest_threshold(), most = std::min(kMostCoverage, coverage_at(highest));
     // Scaled so that the mean over the whole pattern is the sea's. The coverage is nowhere above `most`.
     const auto share = [&](double level) { return std::pow(1.0 + plan.strength * level, exponent); };
-    const auto whole = likely_values(shown_amplitudes(plan, 0.0));
+    const auto whole = likely_values(resolved_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;
     const double scale = solve(0.0, kMostScale, mean, [&](double by) {
         return mean_of(whole, [&](double value) { return std::min(by * share(level_of(value)), most); });
@@ -112,10 +112,11 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
         kept[i] = static_cast<double>(i) / (Gusts::kKeptTerms - 1);
         const double octave = solve(-40.0, 40.0, -kept[i], [&](double at) {
             double variance = 0.0;
-            for (const double shown : shown_amplitudes(plan, std::exp2(at))) variance += 0.5 * shown * shown;
+            for (const double resolved : resolved_amplitudes(plan, std::exp2(at)))
+                variance += 0.5 * resolved * resolved;
             return -variance;
         });
-        const auto values = likely_values(shown_amplitudes(plan, std::exp2(octave)));
+        const auto values = likely_values(resolved_amplitudes(plan, std::exp2(octave)));
         at_kept[i] = solve(-0.5, 0.5, mean, [&](double more) {
             return mean_of(values, [&](double value) {
                 return coverage_at(value_of(gusts.of_level, level_of(value)) + more);

@@ -8,16 +8,17 @@ inline constexpr double kGustShift = 0.238732414637843;
 // and the resolved variance.
 template <class T>
 struct GustSum {
-    T shown, shift, kept;
+    T resolved, shift, kept;
 };
 
 // cycles: of this wave at the point; weight: of it in the footprint.
 template <class T>
 inline GustSum<T> with_gust(GustSum<T> sum, T amplitude, T cycles, T weight) {
     T shifted = cycles + T(kGustShift) * sum.shift;
-    T shown = weight * amplitude;
-    return GustSum<T>(sum.shown + shown * cosine_of_cycles(shifted),
-                      sum.shift + amplitude * sine_of_cycles(shifted), sum.kept + T(0.5) * shown * shown);
+    T resolved = weight * amplitude;
+    return GustSum<T>(sum.resolved + resolved * cosine_of_cycles(shifted),
+                      sum.shift + amplitude * sine_of_cycles(shifted),
+                      sum.kept + T(0.5) * resolved * resolved);
 }
 
 // The square of a footprint's length along a direction: its width, and its long axis [m] or nothing.
@@ -31,6 +32,6 @@ inline T length2_along(T width, T axis_x, T axis_y, T unit_x, T unit_y) {
 
 // The level of gusts, −1 … 1. Its mean over area is 0, however much of the pattern a footprint resolves.
 template <class T>
-inline T gust_level(T shown) {
-    return shown / square_root(T(1) + shown * shown);
+inline T gust_level(T resolved) {
+    return resolved / square_root(T(1) + resolved * resolved);
 }

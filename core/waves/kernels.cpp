@@ -273,10 +273,10 @@ void Realise(const RealiseArgs<T>& args) {
         const auto re = Wide(d, args.height_re + i), im = Wide(d, args.height_im + i);
         const auto twice = hn::Set(d, 2.0);  // the mode and its conjugate at −k
         const auto height2 = hn::Mul(twice, hn::MulAdd(re, re, hn::Mul(im, im)));
-        const auto shown = hn::Mul(cell, height2);
-        m0 = hn::Add(m0, shown);
+        const auto resolved = hn::Mul(cell, height2);
+        m0 = hn::Add(m0, resolved);
         const auto omega = hn::Mul(two_pi, hn::LoadU(d, args.cycles_per_s + i));
-        m_minus1 = hn::Add(m_minus1, hn::IfThenElseZero(held, hn::Div(shown, omega)));
+        m_minus1 = hn::Add(m_minus1, hn::IfThenElseZero(held, hn::Div(resolved, omega)));
         mss = hn::MulAdd(hn::Mul(pixel, k2), height2, mss);
         // forward is h0(k) and travels along +k; backward is conj(h0(−k)) and travels along −k.
         const auto fr = Wide(d, args.forward_re + i), fi = Wide(d, args.forward_im + i);

@@ -26,15 +26,16 @@ LevelSums::LevelSums(double size_m, int radius, const FootprintFilter& filter,
                                               : std::numeric_limits<double>::infinity();
         const double none =
             coarsest_m > 0.0 ? size_m / (filter.n_min * coarsest_m) : std::numeric_limits<double>::infinity();
-        const double shown = static_cast<double>(pair.radius) * pair.radius;
+        const double resolved = static_cast<double>(pair.radius) * pair.radius;
         const auto rings = static_cast<std::size_t>(
-            std::upper_bound(rings_.begin(), rings_.end(), std::min(whole * whole, shown)) - rings_.begin());
+            std::upper_bound(rings_.begin(), rings_.end(), std::min(whole * whole, resolved)) -
+            rings_.begin());
         const Slot slot{.a_m = pair.a_m,
                         .b_m = pair.b_m,
                         .radius = pair.radius,
                         .whole_rings = rings,
                         .from = rings > 0 ? rings_[rings - 1] : 0.0,
-                        .end = std::min(none * none, shown)};
+                        .end = std::min(none * none, resolved)};
         const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& other) {
             return other.a_m == slot.a_m && other.b_m == slot.b_m && other.radius == slot.radius;
         });

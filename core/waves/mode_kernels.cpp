@@ -163,17 +163,17 @@ void Moments(const MomentArgs& args) {
         const V even = hn::Mul(w, hn::LoadU(d, args.column.even + my));
         const V odd_y = hn::Mul(hn::Mul(w, hn::LoadU(d, args.column.odd + my)), ky);
         const V chop2 = hn::LoadU(d, args.column.chop2 + my);
-        const V ky2 = hn::Mul(ky, ky), strain = hn::Mul(chop2, even), strain_y = hn::Mul(chop2, odd_y);
-        const V strain_y2 = hn::Mul(strain, ky2);
+        const V ky2 = hn::Mul(ky, ky), gradient = hn::Mul(chop2, even), gradient_y = hn::Mul(chop2, odd_y);
+        const V gradient_y2 = hn::Mul(gradient, ky2);
         m0 = hn::Add(m0, even);
         m_minus1 = hn::MulAdd(even, hn::LoadU(d, args.column.per_omega + my), m_minus1);
         y1 = hn::Add(y1, odd_y);
         y2 = hn::MulAdd(even, ky2, y2);
-        s0 = hn::Add(s0, strain);
-        s1 = hn::Add(s1, strain_y);
-        s2 = hn::Add(s2, strain_y2);
-        s3 = hn::MulAdd(strain_y, ky2, s3);
-        s4 = hn::MulAdd(strain_y2, ky2, s4);
+        s0 = hn::Add(s0, gradient);
+        s1 = hn::Add(s1, gradient_y);
+        s2 = hn::Add(s2, gradient_y2);
+        s3 = hn::MulAdd(gradient_y, ky2, s3);
+        s4 = hn::MulAdd(gradient_y2, ky2, s4);
         east = hn::MulAdd(w, hn::LoadU(d, args.column.east + my), east);
         north = hn::MulAdd(hn::Mul(w, ky), hn::LoadU(d, args.column.north + my), north);
     }

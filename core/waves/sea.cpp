@@ -112,9 +112,9 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
         if (plan_.queries[q].breaking_levels.empty()) continue;
         QueryStatistics& to = statistics_[q];
         for (std::size_t i = 0; i < to.resolved.size(); ++i)
-            to.resolved[i].take_strain(breaking[q].resolved[i]);
+            to.resolved[i].take_gradients(breaking[q].resolved[i]);
         for (std::size_t i = 0; i < to.resolved_next.size(); ++i)
-            to.resolved_next[i].take_strain(breaking[q].resolved_next[i]);
+            to.resolved_next[i].take_gradients(breaking[q].resolved_next[i]);
     }
 }
 
@@ -158,17 +158,17 @@ Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress
          {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
         *values = Buffer<T>::uncleared(count);
     cascade.cycles_per_s = Buffer<double>::uncleared(count);
-    if (plan_.has_strain()) cascade.chop = Buffer<T>::uncleared(count);
+    if (plan_.has_gradients()) cascade.chop = Buffer<T>::uncleared(count);
 
     std::vector<FootprintPair> pairs;
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
         const Query& query = plan_.queries[q].query;
         if (query.only_cascade && *query.only_cascade != c) continue;
         const auto add = [&](const std::vector<int>& through, QueryStatistics& sums) {
-            const auto footprint_m = [&](std::size_t rung) {
-                return plan_.levels[through[rung]].footprint_m;
+            const auto footprint_m = [&](std::size_t level) {
+                return plan_.levels[through[level]].footprint_m;
             };
-            const auto radius = [&](std::size_t rung) { return planned.radius_of_level[through[rung]]; };
+            const auto radius = [&](std::size_t level) { return planned.radius_of_level[through[level]]; };
             for (std::size_t i = 0; i < through.size(); ++i) {
                 pairs.push_back({footprint_m(i), footprint_m(i), radius(i), &sums.resolved[i]});
                 if (i + 1 < through.size())
@@ -254,7 +254,7 @@ Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress
 }
 
 template <class T>
-SpectralMoments Sea<T>::shown(int query) const {
+SpectralMoments Sea<T>::resolved_moments(int query) const {
     const Query& asked = plan_.queries.at(query).query;
     SpectralMoments moments = statistics(query).resolved.front();
     if (plan_.trains && !asked.only_cascade)

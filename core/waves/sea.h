@@ -86,7 +86,7 @@ class Sea {
     // How far the surface moves from rest, in expectation (core/plan/extent.h).
     const Extent& extent() const { return plan_.from->extent; }
     // What a query's finest pixels resolve of total(), cascades and trains.
-    SpectralMoments shown(int query) const;
+    SpectralMoments resolved_moments(int query) const;
     const Whitecaps& whitecaps() const { return whitecaps_; }
     // As they were if foam came and went like this; {}: if none were persistent.
     Whitecaps whitecaps(const FoamLife& life) const;

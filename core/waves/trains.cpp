@@ -83,17 +83,17 @@ double direction_share(int i, std::uint64_t seed) {
 
 // The part of a train's resolved displacement gradient that a footprint of this weight resolves.
 template <class T>
-double strain_weight(const Trains<T>& trains, std::size_t i, double weight) {
+double gradient_weight(const Trains<T>& trains, std::size_t i, double weight) {
     const double most = static_cast<double>(trains.breaking[i]);
     return most > weight ? weight / most : 1.0;
 }
 
-// A train's moments times `part`, those of its displacement gradient times `strain_part`.
+// A train's moments times `part`, those of its displacement gradient times `gradient_part`.
 template <class T>
-SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, double strain_part) {
-    SpectralMoments moments = trains.alone[i], strains = moments;
+SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, double gradient_part) {
+    SpectralMoments moments = trains.alone[i], gradients = moments;
     moments *= part;
-    moments.take_strain(strains.scale_strain(strain_part));
+    moments.take_gradients(gradients.scale_gradients(gradient_part));
     return moments;
 }
 
@@ -107,14 +107,14 @@ SpectralMoments beyond_train(const SpectralMoments& bin, double k, double horizo
     rest.xx = slopes * bin.xx;
     rest.xy = slopes * bin.xy;
     rest.yy = slopes * bin.yy;
-    const double strains = breaks ? lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy,
-                                            horizontal_ratio * horizontal_ratio * k * k * bin.m0)
-                                  : 1.0;
-    rest.xxxx = strains * bin.xxxx;
-    rest.xxxy = strains * bin.xxxy;
-    rest.xxyy = strains * bin.xxyy;
-    rest.xyyy = strains * bin.xyyy;
-    rest.yyyy = strains * bin.yyyy;
+    const double gradients = breaks ? lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy,
+                                              horizontal_ratio * horizontal_ratio * k * k * bin.m0)
+                                    : 1.0;
+    rest.xxxx = gradients * bin.xxxx;
+    rest.xxxy = gradients * bin.xxxy;
+    rest.xxyy = gradients * bin.xxyy;
+    rest.xyyy = gradients * bin.xyyy;
+    rest.yyyy = gradients * bin.yyyy;
     return rest;
 }
 
@@ -164,7 +164,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
             return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
         };
         const double horizontal_m = horizontal(choppiness),
-                     strained_m = horizontal(breaking.choppiness.largest());
+                     displaced_m = horizontal(breaking.choppiness.largest());
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
@@ -185,9 +185,9 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         factor(Field::Dy, y * horizontal_m);
         factor(Field::SlopeX, k * x * height_m);
         factor(Field::SlopeY, k * y * height_m);
-        factor(Field::Dxx, -k * strained_m * x * x);
-        factor(Field::Dyy, -k * strained_m * y * y);
-        factor(Field::Dxy, -k * strained_m * x * y);
+        factor(Field::Dxx, -k * displaced_m * x * x);
+        factor(Field::Dyy, -k * displaced_m * y * y);
+        factor(Field::Dxy, -k * displaced_m * x * y);
         factor(Field::VelocityX, omega * x * horizontal_m);
         factor(Field::VelocityY, omega * y * horizontal_m);
         factor(Field::VelocityZ, -omega * height_m);
@@ -195,22 +195,23 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         SpectralMoments alone = moments_of({.k = {k * x, k * y},
                                             .energy = bin.energy(),
                                             .omega = dispersion.omega(k),
-                                            .chop = height_m > 0.0 ? strained_m / (k * height_m) : 0.0});
+                                            .chop = height_m > 0.0 ? displaced_m / (k * height_m) : 0.0});
         // Of the displacement gradient, the part that is resolved at best; the rest counts with the waves outside.
         const bool breaks = wavelength_m > breaking.from_m;
         trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));
         const double most = static_cast<double>(trains.breaking.back());
         SpectralMoments unseen, seen = alone;
-        unseen.take_strain(alone);
-        trains.outside += unseen.scale_strain(breaks ? hidden_part(most) : 0.0);
-        alone.take_strain(seen.scale_strain(most * most));
+        unseen.take_gradients(alone);
+        trains.outside += unseen.scale_gradients(breaks ? unresolved_part(most) : 0.0);
+        alone.take_gradients(seen.scale_gradients(most * most));
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
-        trains.hidden_alone.push_back(hidden_moments<T>(alone));
+        trains.unresolved_alone.push_back(unresolved_moments<T>(alone));
         SpectralMoments beyond = beyond_train(
             moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
             k, dispersion.horizontal_ratio(k), breaks);
-        trains.outside += beyond.scale_strain(breaking.choppiness.largest() * breaking.choppiness.largest());
+        trains.outside +=
+            beyond.scale_gradients(breaking.choppiness.largest() * breaking.choppiness.largest());
     }
 
     trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);
@@ -223,7 +224,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
     trains.from.back() = trains.outside;
     for (std::size_t i = trains.count(); i-- > 0;) (trains.from[i] = trains.from[i + 1]) += trains.alone[i];
     for (const SpectralMoments& moments : trains.from)
-        trains.hidden_from.push_back(hidden_moments<T>(moments));
+        trains.unresolved_from.push_back(unresolved_moments<T>(moments));
     return trains;
 }
 
@@ -238,19 +239,19 @@ SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter,
     SpectralMoments sum = trains.before[pass.full];
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
-        const double strain = strain_weight(trains, i, w);
-        sum += part_of(trains, i, w * w, strain * strain);
+        const double gradient = gradient_weight(trains, i, w);
+        sum += part_of(trains, i, w * w, gradient * gradient);
     }
     return sum;
 }
 
 template <class T>
-SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
+SpectralMoments unresolved(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
     const Passing pass = passing(trains, filter, footprint_m);
     SpectralMoments sum = trains.from[pass.any];
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
-        sum += part_of(trains, i, hidden_part(w), hidden_part(strain_weight(trains, i, w)));
+        sum += part_of(trains, i, unresolved_part(w), unresolved_part(gradient_weight(trains, i, w)));
     }
     return sum;
 }
@@ -293,8 +294,8 @@ template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);
 template SpectralMoments resolved(const Trains<double>&, const FootprintFilter&, double);
-template SpectralMoments hidden(const Trains<float>&, const FootprintFilter&, double);
-template SpectralMoments hidden(const Trains<double>&, const FootprintFilter&, double);
+template SpectralMoments unresolved(const Trains<float>&, const FootprintFilter&, double);
+template SpectralMoments unresolved(const Trains<double>&, const FootprintFilter&, double);
 template Realisation realisation(const Trains<float>&, const FootprintFilter&, const Footprints&);
 template Realisation realisation(const Trains<double>&, const FootprintFilter&, const Footprints&);
 template std::vector<double> phases_at(const Trains<float>&, glm::dvec2, double);

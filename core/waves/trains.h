@@ -24,17 +24,17 @@
 namespace pelagic {
 
 // The moments of the waves that a pixel leaves unresolved: slopes first, then those of the Jacobian.
-inline constexpr std::size_t kHiddenSlopes = 3;
-inline constexpr std::array<double SpectralMoments::*, 8> kHiddenMoments{
+inline constexpr std::size_t kUnresolvedSlopes = 3;
+inline constexpr std::array<double SpectralMoments::*, 8> kUnresolvedMoments{
     &SpectralMoments::xx,   &SpectralMoments::xy,   &SpectralMoments::yy,   &SpectralMoments::xxxx,
     &SpectralMoments::xxxy, &SpectralMoments::xxyy, &SpectralMoments::xyyy, &SpectralMoments::yyyy};
 template <class T>
-using HiddenMoments = std::array<T, kHiddenMoments.size()>;  // parallel to kHiddenMoments
+using UnresolvedMoments = std::array<T, kUnresolvedMoments.size()>;  // parallel to kUnresolvedMoments
 
 template <class T>
-HiddenMoments<T> hidden_moments(const SpectralMoments& moments) {
-    HiddenMoments<T> out;
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<T>(moments.*kHiddenMoments[i]);
+UnresolvedMoments<T> unresolved_moments(const SpectralMoments& moments) {
+    UnresolvedMoments<T> out;
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<T>(moments.*kUnresolvedMoments[i]);
     return out;
 }
 
@@ -61,7 +61,7 @@ struct Trains {
     std::vector<T> breaking;
 
     // `alone` and `from` again, as the vectorised query reads them.
-    std::vector<HiddenMoments<T>> hidden_alone, hidden_from;
+    std::vector<UnresolvedMoments<T>> unresolved_alone, unresolved_from;
     std::vector<T> wavelength;  // λ [m]
 
     std::size_t count() const { return height_m.size(); }
@@ -89,7 +89,7 @@ SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter,
 // every variance is ≥ 0 and exactly 0 where everything is resolved. (Eq. 4 as printed sums (1 − w)h and loses
 // variance where trains fade.)
 template <class T>
-SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m);
+SpectralMoments unresolved(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m);
 
 // The trains as filtered for a cell (positions) and a pixel (slopes), at any time.
 struct Footprints {

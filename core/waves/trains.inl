@@ -4,6 +4,6 @@
 // The unresolved part of a trochoid train's variances of height, slope and displacement gradient where its weight is
 // w: 1 − w² without cancellation.
 template <class T>
-inline T hidden_part(T w) {
+inline T unresolved_part(T w) {
     return (T(1) - w) * (T(1) + w);
 }

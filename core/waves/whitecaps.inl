@@ -9,18 +9,18 @@ struct JacobianMoments {
 
 // Covariance of (sxx, syy, sxy): fourth moments of the unresolved waves, times choppiness².
 template <class T>
-struct HiddenStrain {
+struct UnresolvedGradients {
     T xxxx, xxxy, xxyy, xyyy, yyyy;
 };
 
 // tr(AVAV) and tr(AVAVAV): the terms of J's cumulants that depend on V alone.
 template <class T>
-struct StrainTraces {
+struct GradientTraces {
     T second, third;
 };
 
 template <class T>
-inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
+inline GradientTraces<T> gradient_traces(UnresolvedGradients<T> v) {
     // AV by rows. A is ½ at (xx, yy) and (yy, xx), −1 at (xy, xy), 0 elsewhere.
     const T h = T(0.5);
     T m[9];
@@ -39,14 +39,14 @@ inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
             second += m[3 * i + j] * m[3 * j + i];
             for (int k = 0; k < 3; ++k) third += m[3 * i + j] * m[3 * j + k] * m[3 * k + i];
         }
-    return StrainTraces<T>(second, third);
+    return GradientTraces<T>(second, third);
 }
 
 // J's cumulants, given the resolved derivatives of the displacement, dxy = ∂Dx/∂y and dyx = ∂Dy/∂x. The variance is ≥
 // 0, and exactly 0 where all waves are resolved.
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, HiddenStrain<T> v,
-                                           StrainTraces<T> traces) {
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, UnresolvedGradients<T> v,
+                                           GradientTraces<T> traces) {
     const T gx = T(1) + dyy, gy = T(1) + dxx, gs = -(dxy + dyx);
     const T vg_x = v.xxxx * gx + v.xxyy * gy + v.xxxy * gs;
     const T vg_y = v.xxyy * gx + v.yyyy * gy + v.xyyy * gs;
@@ -56,8 +56,8 @@ inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, HiddenStr
                               T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * traces.third);
 }
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, HiddenStrain<T> v) {
-    return jacobian_moments(dxx, dyy, dxy, dyx, v, strain_traces(v));
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, UnresolvedGradients<T> v) {
+    return jacobian_moments(dxx, dyy, dxy, dyx, v, gradient_traces(v));
 }
 
 namespace whitecaps_detail {

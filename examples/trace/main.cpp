@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "plugin/files/files.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
-#include "plugin/shot/shot.h"
 #include "tracer.h"
 
 namespace pelagic::trace {

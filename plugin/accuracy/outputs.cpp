@@ -15,7 +15,7 @@
 #include "core/surface/patch.h"
 #include "plugin/accuracy/rows.h"
 #include "plugin/accuracy/sea_answers.h"
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
 #include "plugin/light/light.h"
 
 namespace pelagic::rows {

@@ -12,8 +12,8 @@
 #include "core/scene/text.h"
 #include "plugin/accuracy/rows.h"
 #include "plugin/accuracy/sea_answers.h"
-#include "plugin/procedural/procedural_frame.h"
-#include "plugin/procedural/rays.h"
+#include "plugin/host/procedural/procedural_frame.h"
+#include "plugin/host/procedural/rays.h"
 
 namespace pelagic::rows {
 namespace {

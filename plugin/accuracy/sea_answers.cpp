@@ -48,7 +48,7 @@ struct SeaAnswers::Of final : SeaAnswers::Precision {
         return {own.begin(), own.end()};
     }
     const Plan& plan() const override { return frame.sea().plan(); }
-    SpectralMoments shown() const override { return frame.sea().shown(0); }
+    SpectralMoments resolved_moments() const override { return frame.sea().resolved_moments(0); }
     double significant_height_m() const override { return frame.sea().total().significant_height_m(); }
 
     Frame<T> frame;

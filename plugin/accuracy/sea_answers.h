@@ -40,7 +40,7 @@ class SeaAnswers {
     std::vector<glm::dvec3> vectors(VectorProduct product) const { return sea_->vectors(product); }
     std::vector<double> numbers(NumberProduct product) const { return sea_->numbers(product); }
     const Plan& plan() const { return sea_->plan(); }
-    SpectralMoments shown() const { return sea_->shown(); }
+    SpectralMoments resolved_moments() const { return sea_->resolved_moments(); }
     double significant_height_m() const { return sea_->significant_height_m(); }
     std::size_t bytes() const { return plan().sea_bytes() + plan().frame_bytes(); }
 
@@ -51,7 +51,7 @@ class SeaAnswers {
         virtual std::vector<glm::dvec3> vectors(VectorProduct) const = 0;
         virtual std::vector<double> numbers(NumberProduct) const = 0;
         virtual const Plan& plan() const = 0;
-        virtual SpectralMoments shown() const = 0;
+        virtual SpectralMoments resolved_moments() const = 0;
         virtual double significant_height_m() const = 0;
     };
     template <class T>

@@ -100,11 +100,12 @@ std::vector<glm::dvec3> positions_at(const Scene& scene, const SweepPoints& at, 
 }
 
 // Relative errors of the mean square slope and of the significant height.
-std::vector<double> moment_errors(const SpectralMoments& shown, const SpectralMoments& whole) {
+std::vector<double> moment_errors(const SpectralMoments& resolved, const SpectralMoments& whole) {
     const auto off = [](double is, double should_be) {
         return should_be > 0.0 ? std::abs(1.0 - is / should_be) : 0.0;
     };
-    return {off(shown.mss(), whole.mss()), off(shown.significant_height_m(), whole.significant_height_m())};
+    return {off(resolved.mss(), whole.mss()),
+            off(resolved.significant_height_m(), whole.significant_height_m())};
 }
 
 // Of a frame of the grid of points: positions, against a reference at some of them.
@@ -141,10 +142,10 @@ Trials cascade_resolution(const Scene& shot) {
              .errors =
                  [=] {
                      const double rms_m = rms(positions_at(scene, at->some, {}), at->exact);
-                     const SpectralMoments shown = sea->shown();
+                     const SpectralMoments resolved = sea->resolved_moments();
                      return std::vector<double>{rms_m / at->height_m,
-                                                1.0 - shown.significant_height_m() / at->height_m,
-                                                whole.mss() > 0.0 ? 1.0 - shown.mss() / whole.mss() : 0.0};
+                                                1.0 - resolved.significant_height_m() / at->height_m,
+                                                whole.mss() > 0.0 ? 1.0 - resolved.mss() / whole.mss() : 0.0};
                  },
              .bytes = sea->bytes()});
     }
@@ -182,7 +183,7 @@ Trials cascade_number(const Scene& shot) {
         trials.trials.push_back({.setting = std::to_string(count) + (count == 1 ? " cascade" : " cascades"),
                                  .is_shots = count == static_cast<int>(own.waves.cascades.size()),
                                  .run = [sea] { sea->run(); },
-                                 .errors = [=] { return moment_errors(sea->shown(), whole); },
+                                 .errors = [=] { return moment_errors(sea->resolved_moments(), whole); },
                                  .bytes = sea->bytes()});
     }
     return trials;
@@ -258,7 +259,7 @@ Trials train_number(const Scene& shot) {
             {.setting = std::to_string(count) + " trains",
              .is_shots = shot.waves.model == WaveModel::Trochoid && shot.waves.trains == count,
              .run = [sea] { sea->run(); },
-             .errors = [=] { return moment_errors(sea->shown(), whole); },
+             .errors = [=] { return moment_errors(sea->resolved_moments(), whole); },
              .bytes = sea->bytes()});
     }
     return trials;

@@ -15,10 +15,10 @@
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/bake/stage.h"
+#include "plugin/format/usd/layers.h"
+#include "plugin/format/vdb/vdb.h"
 #include "plugin/machine/memory.h"
 #include "plugin/run/work.h"
-#include "plugin/usd/layers.h"
-#include "plugin/vdb/vdb.h"
 
 namespace pelagic {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include <glm/vec3.hpp>
-#include "plugin/vdb/vdb.h"
+#include "plugin/format/vdb/vdb.h"
 
 namespace pelagic {
 

@@ -12,19 +12,19 @@
 #include <utility>
 
 #include "core/evaluate/gusts.h"
-#include "core/plan/copies.h"
+#include "core/plan/random_tiling.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "pelagic/version.h"
 #include "plugin/bake/output_part.h"
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
 
 namespace pelagic {
 namespace {
 
 struct MapSlot final : OutputSlot {
     // Of slope variance: the mip levels below the map; of a tile, where a level is alike everywhere, one value each.
-    std::vector<std::vector<glm::vec3>> hidden;
+    std::vector<std::vector<glm::vec3>> unresolved;
     // Of whitecaps: what the moments of J are compared with, one value, or by mip level and texel where gusts make it differ.
     float whitecap_threshold = 0.0f;
     std::vector<std::vector<float>> whitecap_thresholds;
@@ -127,14 +127,14 @@ class MapPart final : public OutputPart {
         const Points<T> points{.count = state.rest->size(), .rest_m = {state.rest->data()}};
         state.runner.run(sea, output_.query, points, slot.values, watch);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
-        if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea.frame(), slot);
+        if (kind_ == MapKind::SlopeVariance) find_unresolved(state, sea.frame(), slot);
         if (has_gusts()) find_thresholds(state, sea.frame(), slot);
     }
 
     bool has_gusts() const { return plan_.gusts && !output_.cascade && kind_ == MapKind::Whitecaps; }
 
     // A tile's slopes are at rest: what carries them is the whole sea.
-    VectorProduct hidden_product() const {
+    VectorProduct unresolved_product() const {
         return VectorProduct::checked(output_.cascade ? Product::SlopeVarianceAtRest
                                                       : Product::SlopeVariance);
     }
@@ -173,17 +173,17 @@ class MapPart final : public OutputPart {
     // Each level leaves unresolved what its own texels are too coarse for, and resolves the waves that carry it: the
     // query's levels, asked at those of the map's texels that lie nearest to the level's.
     template <class T>
-    void find_hidden(State<T>& state, const Frame<T>& sea, MapSlot& slot) {
+    void find_unresolved(State<T>& state, const Frame<T>& sea, MapSlot& slot) {
         const std::vector<double>& footprints_m = query().pixel_m;
-        slot.hidden.resize(footprints_m.size() - 1);
+        slot.unresolved.resize(footprints_m.size() - 1);
         for (std::size_t level = 1; level < footprints_m.size(); ++level) {
             take_level(state, static_cast<int>(level));
             if (output_.cascade) state.level_rest.resize(1);
             const T footprint = static_cast<T>(footprints_m[level]);
             Points<T> points{.count = state.level_rest.size(), .rest_m = {state.level_rest.data()}};
             points.pixel_m = {&footprint, 0};
-            state.runner.run(sea, output_.query, points, products(hidden_product()), state.level);
-            slot.hidden[level - 1] = state.level.vectors(hidden_product());
+            state.runner.run(sea, output_.query, points, products(unresolved_product()), state.level);
+            slot.unresolved[level - 1] = state.level.vectors(unresolved_product());
         }
     }
 
@@ -237,7 +237,7 @@ class MapPart final : public OutputPart {
                 return encode_levels(header, levels, red_green_blue(exr::PixelType::Half));
             }
             case MapKind::SlopeVariance: {
-                const std::vector<glm::vec3>& full = slot.values.vectors(hidden_product());
+                const std::vector<glm::vec3>& full = slot.values.vectors(unresolved_product());
                 exr::Header header = header_of(
                     made_of, frame,
                     {output_.cascade ? "xx, yy and xy of the slope variance that a texel hides, at rest"
@@ -247,10 +247,11 @@ class MapPart final : public OutputPart {
                 if (output_.cascade) header.compression = exr::Compression::Zip;
                 std::vector<std::vector<glm::vec3>> alike;
                 std::vector<Level> levels{{n_, full}};
-                for (const std::vector<glm::vec3>& hidden : slot.hidden) {
+                for (const std::vector<glm::vec3>& unresolved : slot.unresolved) {
                     const int n = exr::mip_level_size(n_, n_, static_cast<int>(levels.size())).first;
-                    if (output_.cascade) alike.emplace_back(static_cast<std::size_t>(n) * n, hidden.front());
-                    levels.push_back({n, output_.cascade ? alike.back() : hidden});
+                    if (output_.cascade)
+                        alike.emplace_back(static_cast<std::size_t>(n) * n, unresolved.front());
+                    levels.push_back({n, output_.cascade ? alike.back() : unresolved});
                 }
                 return encode_levels(header, levels, red_green_blue(exr::PixelType::Float));
             }
@@ -396,14 +397,14 @@ class MapPart final : public OutputPart {
             {"fingerprint", made_of},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
         if (periodic_) header.attributes.push_back({"period", size_m_});  // absent: it does not repeat
-        // With these, tiles add up to the sea (core/plan/copies.h).
+        // With these, tiles add up to the sea (core/plan/random_tiling.h).
         if (output_.cascade && scene().waves.tiling == Tiling::Random) {
-            header.attributes.push_back({"copiesRamp", kCopyRamp});
+            header.attributes.push_back({"copiesRamp", kBlendRamp});
             header.attributes.push_back(
-                {"copiesKey", static_cast<int>(copies_key(scene().shot.seed, *output_.cascade))});
+                {"copiesKey", static_cast<int>(tiling_key(scene().shot.seed, *output_.cascade))});
         }
         if (scene().shot.loop_s > 0.0) header.attributes.push_back({"loop", scene().shot.exact_loop_s()});
-        for (const DescribedKey& key : described(scene(), output_.feeds))
+        for (const DescribedKey& key : described(scene(), output_.key_parts))
             std::visit(
                 [&](const auto& value) {
                     header.attributes.push_back({"pelagic." + key.path, value});

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/waves/whitecaps.h"
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
 
 namespace pelagic {
 

@@ -8,7 +8,7 @@
 #include "core/plan/products.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/output_part.h"
-#include "plugin/vdb/vdb.h"
+#include "plugin/format/vdb/vdb.h"
 
 namespace pelagic {
 namespace {

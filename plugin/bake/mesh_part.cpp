@@ -7,9 +7,9 @@
 #include "core/scene/names.h"
 #include "core/surface/earth.h"
 #include "plugin/bake/output_part.h"
-#include "plugin/usd/crate.h"
-#include "plugin/usd/layers.h"
-#include "plugin/usd/text.h"
+#include "plugin/format/usd/crate.h"
+#include "plugin/format/usd/layers.h"
+#include "plugin/format/usd/text.h"
 
 namespace pelagic {
 namespace {

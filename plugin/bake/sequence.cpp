@@ -11,8 +11,8 @@
 
 #include "core/base/constants.h"
 #include "core/base/precision.h"
-#include "core/plan/hidden_slopes.h"
-#include "core/surface/rungs.h"
+#include "core/plan/unresolved_slopes.h"
+#include "core/surface/footprint_levels.h"
 #include "plugin/bake/stage.h"
 
 namespace pelagic {
@@ -103,11 +103,11 @@ class SequenceOf final : public Sequence {
         if (first.is_view) {
             const std::array alone{frame};
             const SurfaceNeeds needs = plan.surface->needs(alone);
-            at = {first_rung_m(needs.finest_cell_m), first_rung_m(needs.finest_pixel_m)};
+            at = {first_level_m(needs.finest_cell_m), first_level_m(needs.finest_pixel_m)};
         }
         record.mss_residual = first.is_view
-                                  ? hidden_mean_square_slope(plan.from->spectrum, plan.filter, at.pixel_m)
-                                  : std::max(sea_->total().mss() - sea_->shown(0).mss(), 0.0);
+                                  ? unresolved_mean_square_slope(plan.from->spectrum, plan.filter, at.pixel_m)
+                                  : std::max(sea_->total().mss() - sea_->resolved_moments(0).mss(), 0.0);
         const bool calm = !(sea_->total().m0 > 0.0);
         if (plan.transforms_per_frame() == 0 && !plan.trains && !calm) return;  // no wave was computed
         const Realisation sum = state_.frame().realisation(0, at);

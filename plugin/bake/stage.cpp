@@ -14,18 +14,18 @@
 
 #include "core/base/constants.h"
 #include "core/lighting/lighting.h"
-#include "core/plan/hidden_slopes.h"
+#include "core/plan/unresolved_slopes.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/surface/view.h"
 #include "pelagic/version.h"
 #include "plugin/bake/volumes.h"
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
+#include "plugin/format/usd/camera.h"
+#include "plugin/format/usd/text.h"
+#include "plugin/format/usd/volumes.h"
 #include "plugin/light/light.h"
-#include "plugin/usd/camera.h"
-#include "plugin/usd/text.h"
-#include "plugin/usd/volumes.h"
 
 namespace pelagic {
 namespace {
@@ -39,8 +39,8 @@ double preview_roughness(double mss) {
 // frames, which must not depend on which of them are baked.
 double roughness(const Plan& plan) {
     const std::array first{plan.from->scene.shot.first_frame};
-    return preview_roughness(hidden_mean_square_slope(plan.from->spectrum, plan.filter,
-                                                      plan.surface->needs(first).finest_pixel_m));
+    return preview_roughness(unresolved_mean_square_slope(plan.from->spectrum, plan.filter,
+                                                          plan.surface->needs(first).finest_pixel_m));
 }
 
 // A key in the stage's metadata: truths, integers, numbers and points as such, the rest as a shot file writes
@@ -106,7 +106,7 @@ std::string dome_file(const Scene& scene, const Sky& sky) {
         .compression = exr::Compression::Zip};
     for (exr::Attribute& attribute : radiance_attributes(scene))
         header.attributes.push_back(std::move(attribute));
-    for (const DescribedKey& key : described(portable(scene), feeds(Feed::Light)))
+    for (const DescribedKey& key : described(portable(scene), key_parts(KeyPart::Light)))
         std::visit(
             [&](const auto& value) {
                 header.attributes.push_back({"pelagic." + key.path, value});
@@ -142,7 +142,7 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::string last_source;
     static std::shared_ptr<const StageLight> last;
-    const std::string source = canonical(scene, feeds(Feed::Light)) + sky_content(scene);
+    const std::string source = canonical(scene, key_parts(KeyPart::Light)) + sky_content(scene);
     {
         const std::lock_guard lock(mutex);
         if (last && last_source == source) return last;
@@ -209,7 +209,8 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
         {"sky_unit", radiance_unit(scene)},
         {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
-    for (const DescribedKey& key : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts)))
+    for (const DescribedKey& key :
+         described(scene, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts)))
         stage.custom_data.push_back({key.identifier(), custom_value(key)});
     return stage;
 }

@@ -12,7 +12,7 @@
 #include "core/waves/whitecaps.h"
 #include "plugin/bake/level_set.h"
 #include "plugin/bake/volumes.h"
-#include "plugin/vdb/vdb.h"
+#include "plugin/format/vdb/vdb.h"
 
 namespace pelagic {
 namespace {
@@ -31,40 +31,41 @@ double blocks_of_row(double voxels) {
 }
 
 // First-order variances of J: of the trace of the displacement gradient.
-struct StrainVariance {
+struct GradientVariance {
     double whole = 0.0,
-           shown = 0.0;            // of all waves that break, and of what the voxels' footprint shows of them
+           resolved = 0.0;         // of all waves that break, and of what the voxels' footprint shows of them
     double gradient_per_m2 = 0.0;  // of the resolved J's gradient, both components together
 };
 
-StrainVariance strain_variance(const Plan& plan, double footprint_m) {
+GradientVariance gradient_variance(const Plan& plan, double footprint_m) {
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
     const Breaking& breaking = plan.breaking;
-    StrainVariance of;
+    GradientVariance of;
     const auto add = [&](double from, double to, double share) {
         const auto moment = [&](const auto& factor) {
             return GaussLegendre<8>::rule().integrate(from, to, [&](double k) {
-                const double strain =
+                const double gradient =
                     share * breaking.choppiness.largest() * k * spectrum.dispersion().horizontal_ratio(k);
-                return factor(k) * strain * strain * spectrum.omnidirectional(k);
+                return factor(k) * gradient * gradient * spectrum.omnidirectional(k);
             });
         };
-        const auto shown = [&](double k) {
+        const auto resolved = [&](double k) {
             const double weight = plan.filter.weight(k, footprint_m);
             return weight * weight;
         };
         of.whole += moment([](double) { return 1.0; });
-        of.shown += moment(shown);
-        of.gradient_per_m2 += moment([&](double k) { return k * k * shown(k); });
+        of.resolved += moment(resolved);
+        of.gradient_per_m2 += moment([&](double k) { return k * k * resolved(k); });
     };
     breaking.choppiness.for_panels(spectrum, 0.0, breaking.k_end(), add);
     return of;
 }
 
-JacobianMoments<double> jacobian_of(const SpectralMoments& strain, double pressed, double direction) {
+JacobianMoments<double> jacobian_of(const SpectralMoments& gradient, double pressed, double direction) {
     const double c = std::cos(direction), s = std::sin(direction);
-    return jacobian_moments<double>(-pressed * c * c, -pressed * s * s, -pressed * c * s, -pressed * c * s,
-                                    {strain.xxxx, strain.xxxy, strain.xxyy, strain.xyyy, strain.yyyy});
+    return jacobian_moments<double>(
+        -pressed * c * c, -pressed * s * s, -pressed * c * s, -pressed * c * s,
+        {gradient.xxxx, gradient.xxxy, gradient.xxyy, gradient.xyyy, gradient.yyyy});
 }
 
 }  // namespace
@@ -77,31 +78,33 @@ ExpectedSpray expected_spray(const Plan& plan) {
     const SpectralMoments total = moments_with_breaking(spectrum, 0.0, kInfinity, plan.breaking);
     const double threshold = calibrated_threshold(
         total, law_coverage(scene), mean_choppiness(spectrum, plan.breaking), third, foam_life(plan));
-    const StrainVariance variance = strain_variance(plan, plan.breaking.footprint_of(voxel_m));
-    if (!std::isfinite(threshold) || !(variance.shown > 0.0)) return {};
+    const GradientVariance variance = gradient_variance(plan, plan.breaking.footprint_of(voxel_m));
+    if (!std::isfinite(threshold) || !(variance.resolved > 0.0)) return {};
 
     // How far a voxel's sea must be compressed for spray: there what its footprint leaves unresolved breaks now and
     // then.
     const double direction = total.mean_direction();
-    SpectralMoments hidden = total;
-    hidden.scale_strain(std::max(1.0 - variance.shown / variance.whole, 0.0));
+    SpectralMoments unresolved = total;
+    unresolved.scale_gradients(std::max(1.0 - variance.resolved / variance.whole, 0.0));
     const auto whole = jacobian_of(total, 0.0, direction);
     const double least = kNegligibleSpray * coverage(whole, threshold, third);
     if (!(least > 0.0)) return {};
     double pressed = 0.0;
     for (double low = -1.0, high = 1.0; high - low > 1e-6;) {
         pressed = 0.5 * (low + high);
-        (coverage(jacobian_of(hidden, pressed, direction), threshold, third) > least ? high : low) = pressed;
+        (coverage(jacobian_of(unresolved, pressed, direction), threshold, third) > least ? high : low) =
+            pressed;
     }
     const double deviate =
         breaking_deviate({.mean = 0.0,
-                          .variance = variance.shown,
-                          .third = whole.third * std::pow(variance.shown / whole.variance, 1.5)},
+                          .variance = variance.resolved,
+                          .third = whole.third * std::pow(variance.resolved / whole.variance, 1.5)},
                          -pressed, third);
 
     // Of the world's columns: water that is compressed covers less of it.
     const double share = std::clamp(1.0 - pressed, 0.0, 1.0) * normal_share(deviate);
-    const double side = (kBlock - 1.0) * voxel_m * std::sqrt(0.5 * variance.gradient_per_m2 / variance.shown);
+    const double side =
+        (kBlock - 1.0) * voxel_m * std::sqrt(0.5 * variance.gradient_per_m2 / variance.resolved);
     const double edge = std::exp(-0.5 * deviate * deviate);
     // Of excursions that begin beside a voxel and reach it. They come in groups, along crests: a fifth fewer were found alone.
     constexpr double kAlone = 0.8;

@@ -14,7 +14,7 @@
 #include "plugin/bake/level_set.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/volumes.h"
-#include "plugin/vdb/vdb.h"
+#include "plugin/format/vdb/vdb.h"
 
 namespace pelagic {
 
@@ -90,7 +90,7 @@ class VolumePart : public OutputPart {
             {"frame", std::int64_t{frame}},
             {"fingerprint", fingerprint(frame)},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
-        for (const DescribedKey& key : described(scene(), output_.feeds))
+        for (const DescribedKey& key : described(scene(), output_.key_parts))
             std::visit(
                 [&](const auto& value) {
                     all.push_back({"pelagic." + key.path, value});

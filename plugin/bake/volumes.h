@@ -3,7 +3,7 @@
 
 #include "core/plan/plan.h"
 #include "plugin/bake/output_part.h"
-#include "plugin/usd/volumes.h"
+#include "plugin/format/usd/volumes.h"
 
 namespace pelagic {
 

@@ -14,7 +14,7 @@
 #include "core/scene/validate.h"
 #include "core/spectrum/possible.h"
 #include "core/waves/whitecaps.h"
-#include "plugin/exr/read.h"
+#include "plugin/format/exr/read.h"
 
 namespace pelagic {
 namespace {
@@ -125,7 +125,7 @@ WaterBody make_water(const Scene& scene) {
 std::string light_content(const Scene& scene) {
     Scene light = scene;
     light.effects.foam_structure = light.effects.foam_streaks = 0.0;
-    return canonical(light, feeds(Feed::Light, Feed::Water));
+    return canonical(light, key_parts(KeyPart::Light, KeyPart::Water));
 }
 
 double active_foam(const Scene& scene, double residual_coverage) {

@@ -9,7 +9,7 @@
 #include "core/lighting/water.h"
 #include "core/scene/problem.h"
 #include "core/scene/scene.h"
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
 
 namespace pelagic {
 

@@ -18,10 +18,10 @@
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "pelagic/version.h"
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
+#include "plugin/format/png/png.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
-#include "plugin/png/png.h"
 #include "plugin/run/part.h"
 #include "plugin/run/seals.h"
 
@@ -69,10 +69,10 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
 }
 
 // What a picture depends on, besides the camera at its frame.
-FeedSet feeds_beside_the_view(const RenderOptions& options) {
-    FeedSet fed = feeds(Feed::Clock, Feed::Waves, Feed::Grid, Feed::Light, Feed::Water);
-    for (const EffectRow& row : effect_table()) fed |= row.feeds;
-    if (options.lighting.spray) fed |= feeds(Feed::Spray);
+KeyPartSet parts_beside_the_view(const RenderOptions& options) {
+    KeyPartSet fed = key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Grid, KeyPart::Light, KeyPart::Water);
+    for (const EffectRow& row : effect_table()) fed |= row.key_parts;
+    if (options.lighting.spray) fed |= key_parts(KeyPart::Spray);
     return fed;
 }
 
@@ -117,7 +117,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
-    for (const DescribedKey& key : described(scene, feeds_beside_the_view(context.options)))
+    for (const DescribedKey& key : described(scene, parts_beside_the_view(context.options)))
         std::visit(
             [&](const auto& value) {
                 attributes.push_back({"pelagic." + key.path, value});
@@ -142,7 +142,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
     hash.add(source.drawn_by_gpu ? "drawn picture" : "picture")
         .add("revision " + std::to_string(kPictureRevision))
         .add(source.scene.shot.name)  // a picture says its own file's name
-        .add(canonical(portable(source.scene), feeds_beside_the_view(options_)))
+        .add(canonical(portable(source.scene), parts_beside_the_view(options_)))
         .add(plan_text(plan, 0))
         .add(source.sky_content)
         .add("samples " + std::to_string(options_.samples) + " terms " + digit(lighting.sun) +

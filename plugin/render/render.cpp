@@ -15,9 +15,9 @@
 #include "core/base/precision.h"
 #include "core/lighting/background.h"
 #include "core/surface/earth.h"
+#include "core/surface/footprint_levels.h"
 #include "core/surface/pixel_footprint.h"
 #include "core/surface/projected_grid.h"
-#include "core/surface/rungs.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/motion.h"
@@ -172,8 +172,8 @@ class RendererOf final : public Impl {
         first_pixel_m_ = T(0);
         if (plan().queries[kQuery].query.pixel_m.size() > 1) {
             const ProjectedGridNeeds own = projected_grid_needs(view_, grid_options_);
-            keep_to_rungs(grid_, own);
-            first_pixel_m_ = static_cast<T>(first_rung_m(own.finest_pixel_m));
+            keep_to_levels(grid_, own);
+            first_pixel_m_ = static_cast<T>(first_level_m(own.finest_pixel_m));
         }
         const std::size_t count = grid_.rest_m.size();
         rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());

@@ -13,7 +13,7 @@
 #include "core/evaluate/places.h"
 #include "core/plan/spray.h"
 #include "core/surface/earth.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -150,7 +150,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     if (frame.sea().plan().queries[kQuery].query.cell_m.size() > 1) {
         // The same levels whichever other frames the plan is for.
         const ProjectedGridNeeds own = projected_grid_needs(view, options);
-        finest_m = first_rung_m(std::max(own.finest_cell_m, own.finest_pixel_m));
+        finest_m = first_level_m(std::max(own.finest_cell_m, own.finest_pixel_m));
     }
     for (int row = 0; row < size.rows; ++row) {
         const double radius_m = radii.first_m * std::exp(step * row);

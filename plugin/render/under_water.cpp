@@ -6,7 +6,7 @@
 
 #include "core/evaluate/surface_above.h"
 #include "core/scene/text.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 
@@ -19,8 +19,8 @@ std::optional<double> surface_above_camera(const Frame<T>& frame, const View& vi
                                            const ProjectedGridOptions& options) {
     if (!is_among_waves(view, options)) return std::nullopt;
     const double finest_m = projected_grid_needs(view, options).finest_cell_m;
-    const bool on_ladder = frame.sea().plan().queries.front().query.pixel_m.size() > 1;
-    return surface_above(frame, 0, view.position_m, on_ladder ? first_rung_m(finest_m) : finest_m);
+    const bool has_levels = frame.sea().plan().queries.front().query.pixel_m.size() > 1;
+    return surface_above(frame, 0, view.position_m, has_levels ? first_level_m(finest_m) : finest_m);
 }
 
 template <class T>

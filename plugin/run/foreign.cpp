@@ -10,7 +10,7 @@
 
 #include "core/base/text.h"
 #include "plugin/files/files.h"
-#include "plugin/usd/layers.h"
+#include "plugin/format/usd/layers.h"
 
 namespace pelagic {
 namespace {

@@ -16,9 +16,9 @@
 
 #include "core/base/build_watch.h"
 #include "core/base/constants.h"
-#include "core/plan/copies.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/mode_lattice.h"
+#include "core/plan/random_tiling.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -346,9 +346,10 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
         const auto& asked = plan.from->scene.waves.cascades;
         if (!asked.empty() && asked[static_cast<std::size_t>(number_of)].choppiness)
             row["choppiness"] = *asked[static_cast<std::size_t>(number_of)].choppiness;
-        // By these and the rule of core/plan/copies.h the tiles add up to the sea.
-        if (cascade.has_copies)
-            row["copies"] = {{"key", copies_key(plan.from->scene.shot.seed, number_of)}, {"ramp", kCopyRamp}};
+        // By these and the rule of core/plan/random_tiling.h the tiles add up to the sea.
+        if (cascade.has_random_tiling)
+            row["copies"] = {{"key", tiling_key(plan.from->scene.shot.seed, number_of)},
+                             {"ramp", kBlendRamp}};
     }
 }
 

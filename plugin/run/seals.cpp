@@ -4,11 +4,11 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "plugin/exr/read.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/files.h"
 #include "plugin/files/read.h"
-#include "plugin/png/png.h"
+#include "plugin/format/exr/read.h"
+#include "plugin/format/png/png.h"
 
 namespace pelagic {
 namespace {

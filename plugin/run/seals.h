@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plugin/exr/exr.h"
+#include "plugin/format/exr/exr.h"
 #include "plugin/run/check.h"
 
 namespace pelagic {

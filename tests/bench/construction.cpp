@@ -13,9 +13,9 @@
 #include "core/plan/mode_lattice.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
 #include "tests/bench/timing.h"
 #include "tests/core/waves/reference_sea.h"
 

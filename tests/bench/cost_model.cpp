@@ -29,10 +29,10 @@
 #include "core/scene/names.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/budget/calibration.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
 
 namespace pelagic {
 namespace {

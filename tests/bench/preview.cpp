@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
-#include "plugin/preview/offscreen.h"
 #include "plugin/render/render.h"
 #include "tests/bench/timing.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "examples/trace/tracer.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
-#include "plugin/shot/shot.h"
 #include "tests/examples/compare.h"
 
 namespace pelagic {

@@ -26,7 +26,7 @@ import numpy as np  # noqa: E402
 SHOTS_IN_A_RUN = 10
 SECONDS = 60  # also of a machine that does much else
 MOST_OF_MESSAGES = 64 << 10
-BUOY = ROOT / "tests/plugin/shot/data"
+BUOY = ROOT / "tests/plugin/format/shot/data"
 
 SHOT = """# A sea of everything that a shot can say, small enough to be baked in a moment.
 [shot]

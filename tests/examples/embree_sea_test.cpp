@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/plugin/procedural/opened.h"
+#include "tests/plugin/host/procedural/opened.h"
 
 namespace pelagic {
 namespace {

@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
-#include "plugin/shot/ndbc.h"
+#include "plugin/format/shot/ndbc.h"
 #include "tests/fuzz/fuzz.h"
-#include "tests/plugin/shot/temporary_folder.h"
+#include "tests/plugin/format/shot/temporary_folder.h"
 
 using namespace pelagic;
 using fuzz::hold;

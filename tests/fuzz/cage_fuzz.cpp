@@ -6,7 +6,7 @@
 
 #include "core/scene/limits.h"
 #include "core/surface/cage_limit.h"
-#include "plugin/obj/obj.h"
+#include "plugin/format/obj/obj.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace pelagic;

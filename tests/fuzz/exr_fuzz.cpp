@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plugin/exr/read.h"
+#include "plugin/format/exr/read.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace pelagic;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "plugin/usd/read_mesh.h"
+#include "plugin/format/usd/read_mesh.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace pelagic;

@@ -4,17 +4,17 @@
 #include "core/scene/canonical.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/validate.h"
-#include "plugin/shot/edit_shot.h"
-#include "plugin/shot/shot.h"
+#include "plugin/format/shot/edit_shot.h"
+#include "plugin/format/shot/shot.h"
 #include "tests/fuzz/fuzz.h"
-#include "tests/plugin/shot/no_check.h"
+#include "tests/plugin/format/shot/no_check.h"
 
 using namespace pelagic;
 using fuzz::hold;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     // Buoys lie in this folder; pictures of skies are another target's.
-    static const std::filesystem::path file = PELAGIC_SOURCE_DIR "/tests/plugin/shot/data/fuzz.toml";
+    static const std::filesystem::path file = PELAGIC_SOURCE_DIR "/tests/plugin/format/shot/data/fuzz.toml";
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     try {
         const Scene scene = parse_shot(text, file, no_check);

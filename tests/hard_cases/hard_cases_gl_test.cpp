@@ -5,9 +5,9 @@
 
 #include <string>
 
+#include "plugin/format/shot/shot.h"
+#include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
-#include "plugin/preview/offscreen.h"
-#include "plugin/shot/shot.h"
 
 namespace pelagic {
 namespace {

@@ -17,9 +17,9 @@
 #include "core/plan/plan.h"
 #include "pelagic/procedural.h"
 #include "plugin/bake/bake.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
 
 namespace pelagic {
 namespace {
@@ -119,7 +119,7 @@ TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
                     }
                 }
             }
-            const SpectralMoments shown = sea.sea().shown(asked), total = sea.sea().total();
+            const SpectralMoments shown = sea.sea().resolved_moments(asked), total = sea.sea().total();
             EXPECT_LE(shown.m0, total.m0 * (1.0 + 1e-6));
             // A mode has the energy of its cell at the wavenumber in the cell's middle: of slopes, which grow with it, that is not
             // quite the cell's mean.

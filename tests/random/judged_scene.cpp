@@ -31,10 +31,10 @@
 #include "core/waves/sea.h"
 #include "plugin/bake/bake.h"
 #include "plugin/budget/budget.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/format/usd/read_mesh.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
-#include "plugin/shot/shot.h"
-#include "plugin/usd/read_mesh.h"
 #include "tests/plugin/bake/read_vdb.h"
 
 namespace pelagic::test {
@@ -265,7 +265,7 @@ void judge_energy(const Plan& plan) {
     const Sea<T> sea(plan);
     const SpectralMoments& total = sea.total();
     for (std::size_t query = 0; query < plan.queries.size(); ++query) {
-        const SpectralMoments shown = sea.shown(static_cast<int>(query));
+        const SpectralMoments shown = sea.resolved_moments(static_cast<int>(query));
         const auto compare = [&](const char* what, double part, double whole, double tolerance) {
             judge_number(whole, Is::NotNegative, std::string("the spectrum's ") + what);
             judge_number(part, Is::NotNegative, std::string("shown ") + what);

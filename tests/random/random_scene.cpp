@@ -18,8 +18,8 @@
 #include "core/scene/cascade_bands.h"
 #include "core/spectrum/possible.h"
 #include "plugin/budget/budget.h"
-#include "plugin/exr/exr.h"
-#include "plugin/obj/obj.h"
+#include "plugin/format/exr/exr.h"
+#include "plugin/format/obj/obj.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::test {

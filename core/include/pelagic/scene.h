@@ -119,7 +119,7 @@ struct Waves {
     // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the
     // waves that are shorter than the trains.
     std::vector<CascadeSize> cascades;
-    Tiling tiling = Tiling::Random;    // of the cascades (core/plan/copies.h)
+    Tiling tiling = Tiling::Random;    // of the cascades (core/plan/random_tiling.h)
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).

@@ -24,7 +24,7 @@ using namespace test;
 struct Case {
     std::string name;
     Scene scene;
-    std::vector<double> cell_m;  // the query's ladder
+    std::vector<double> cell_m;  // the query's levels
     std::optional<Lattice> lattice = {};
 };
 
@@ -54,12 +54,12 @@ Scene without_choppiness() {
 
 std::vector<Case> cases() {
     return {{"default sea", Scene(), {0.5}},
-            {"default sea on a ladder", Scene(), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0}},
+            {"default sea on a levels", Scene(), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0}},
             {"shallow storm", storm(), {1.0}},
             {"no choppiness", without_choppiness(), {1.0}},
             {"60 trains", trains(60), {0.5}},
             {"400 trains", trains(400), {0.5}},
-            {"trains and a cascade on a ladder", trains_and_cascade(), {0.25, 0.5, 1.0, 2.0}}};
+            {"trains and a cascade on a levels", trains_and_cascade(), {0.25, 0.5, 1.0, 2.0}}};
 }
 
 Query query_of(const Case& c) {

@@ -60,7 +60,7 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
         std::vector<Query> queries;
         for (const double footprint_m : {finest_m, 0.5 * finest_m, 0.1 * finest_m, 0.01})
             queries.push_back(filtered(footprint_m < 0.1 ? all : kFoam, footprint_m));
-        const int ladder = static_cast<int>(queries.size());
+        const int levels = static_cast<int>(queries.size());
         queries.push_back(filtered(all, 0.0));
         queries.back().pixel_m = {0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
         const auto frame = frame_of<double>(scene, queries, 4.0);
@@ -77,10 +77,10 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
                 most = std::max(most, wanted.numbers(Product::Breaking)[i]);
             }
         };
-        for (int q = 1; q < ladder; ++q) expect_same(sample(frame, q, points));
+        for (int q = 1; q < levels; ++q) expect_same(sample(frame, q, points));
         Where<double> where;
         where.pixel_m.assign(points.size(), 0.04);
-        expect_same(sample(frame, ladder, points, where));
+        expect_same(sample(frame, levels, points, where));
         EXPECT_GT(most, 0.5);
     }
 }
@@ -133,14 +133,14 @@ TEST(Breaking, LongPixelsHideAlongTheirAxisAlone) {
             }
             return std::pair(variance, j2);
         };
-        const auto [round_hidden, round_shown] = mean_of_foam(0.05, {0.05, 0.0});
+        const auto [round_unresolved, round_shown] = mean_of_foam(0.05, {0.05, 0.0});
         for (const glm::dvec2 axis : {glm::dvec2(0.4, 0.0), glm::dvec2(3.0, 0.0), glm::dvec2(0.0, 3.0)}) {
-            const auto [hidden, shown] = mean_of_foam(0.5, axis);
-            EXPECT_NEAR((hidden + shown) / (round_hidden + round_shown), 1.0, 0.03);
+            const auto [unresolved, shown] = mean_of_foam(0.5, axis);
+            EXPECT_NEAR((unresolved + shown) / (round_unresolved + round_shown), 1.0, 0.03);
             if (glm::length(axis) < 0.5)
-                EXPECT_NEAR(hidden / round_hidden, 1.0, 1e-9);
+                EXPECT_NEAR(unresolved / round_unresolved, 1.0, 1e-9);
             else
-                EXPECT_GT(hidden, 1.1 * round_hidden);
+                EXPECT_GT(unresolved, 1.1 * round_unresolved);
         }
     }
 }
@@ -169,7 +169,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
     }
 }
 
-// However little choppiness there is. Where copies of tiles blend, the strain that a level sea breaks by has no gradient of the
+// However little choppiness there is. Where copies of tiles blend, the gradient that a level sea breaks by has no gradient of the
 // weights: from choppiness 0 to the least that counts, some of the foam moves there, and the bound is wider.
 TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
     const auto points = random_points<float>(3000.0, 20000);

@@ -1,4 +1,4 @@
-// Hidden slopes ride on the waves that are shown: Σ′ = M⁻ᵀ Σ M⁻¹.
+// Unresolved slopes ride on the waves that are shown: Σ′ = M⁻ᵀ Σ M⁻¹.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/number.h"
-#include "core/plan/hidden_slopes.h"
+#include "core/plan/unresolved_slopes.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/spectral_moments.h"
 #include "tests/core/waves/samples.h"
@@ -30,9 +30,9 @@ Scene sea(WaveModel model) {
 }
 
 // What a footprint hides, as plane waves of random directions and phases: heights only.
-class HiddenHeights {
+class UnresolvedHeights {
   public:
-    HiddenHeights(const DirectionalSpectrum& spectrum, double footprint_m, int seed) {
+    UnresolvedHeights(const DirectionalSpectrum& spectrum, double footprint_m, int seed) {
         constexpr int kBands = 160;
         const FootprintFilter filter;
         std::mt19937 numbers(static_cast<unsigned>(seed));
@@ -67,7 +67,7 @@ class HiddenHeights {
     std::vector<Plane> waves_;
 };
 
-// Facets of a mesh far finer than any wave: the slopes that its heights get from the hidden waves, and J from its area.
+// Facets of a mesh far finer than any wave: the slopes that its heights get from the unresolved waves, and J from its area.
 struct Bin {
     double count = 0.0, mesh = 0.0, answered = 0.0, at_rest = 0.0;
 };
@@ -84,7 +84,7 @@ std::array<Bin, 20> by_compression(WaveModel model) {
     for (const glm::dvec2& x : rest)
         corners.insert(corners.end(), {x, x + glm::dvec2(kSide_m, 0.0), x + glm::dvec2(0.0, kSide_m)});
     const auto samples = sample(frame, 0, corners);
-    const HiddenHeights hidden(frame.sea().plan().from->spectrum, query.pixel_m.front(), 7);
+    const UnresolvedHeights unresolved(frame.sea().plan().from->spectrum, query.pixel_m.front(), 7);
     struct Facet {
         double j, mesh, answered, at_rest;
     };
@@ -92,7 +92,7 @@ std::array<Bin, 20> by_compression(WaveModel model) {
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const auto corner = [&](std::size_t c) {
             const glm::dvec3 d = samples.vectors(Displacement)[3 * i + c];
-            return glm::dvec3(corners[3 * i + c] - rest[i], hidden.at(corners[3 * i + c])) +
+            return glm::dvec3(corners[3 * i + c] - rest[i], unresolved.at(corners[3 * i + c])) +
                    glm::dvec3(d.x, d.y, 0.0);
         };
         const glm::dvec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
@@ -129,7 +129,7 @@ TEST(CarriedSlopes, AreThoseOfAFineMeshByCompression) {
             high_rest = std::max(high_rest, rest);
         }
         std::printf(
-            "    %s: hidden mss of a mesh over what is answered, by compression: %.2f … %.2f; at rest %.2f … %.2f\n",
+            "    %s: unresolved mss of a mesh over what is answered, by compression: %.2f … %.2f; at rest %.2f … %.2f\n",
             model == WaveModel::Fft ? "cascades" : "trains", low, high, low_rest, high_rest);
         EXPECT_GT(high_rest, 1.2) << "the test has something to see";
         EXPECT_LT(low_rest, 0.9);
@@ -158,7 +158,7 @@ TEST(CarriedSlopes, GainOverAreaAsExpected) {
         const glm::dvec3 rest(samples.vectors(SlopeVarianceAtRest)[0]);
         const double gain = carried / area / (rest.x + rest.y);
         const double expected =
-            hidden_slope_gain(frame.sea().plan().from->spectrum, FootprintFilter{}, footprint_m, 1.0);
+            unresolved_slope_gain(frame.sea().plan().from->spectrum, FootprintFilter{}, footprint_m, 1.0);
         std::printf("    gain over area of sea %.4f, expected %.4f\n", gain, expected);
         EXPECT_NEAR(gain, expected, 0.005);
         EXPECT_GT(expected, 1.01);

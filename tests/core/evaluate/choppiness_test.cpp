@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/evaluate/bounds.h"
-#include "core/plan/hidden_slopes.h"
 #include "core/plan/mesh_error_model.h"
+#include "core/plan/unresolved_slopes.h"
 #include "core/scene/cascade_bands.h"
 #include "core/waves/breaking_rate.h"
 #include "core/waves/folding.h"
@@ -27,7 +27,7 @@ using namespace test;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Two tiles, of waves of 9 m and more and of shorter ones, that both matter to heights and strains.
+// Two tiles, of waves of 9 m and more and of shorter ones, that both matter to heights and gradients.
 Scene choppy_scene(std::optional<double> large, std::optional<double> small, double shots = 1.0) {
     Scene scene;
     scene.effects.foam_decay_s = 0.0;  // all foam breaks now
@@ -59,9 +59,9 @@ TEST(ChoppinessOfCascades, OfEqualOnesIsTheShotsToTheBit) {
             std::vector<double> thresholds, errors;
             for (Scene* scene : {&whole, &part, &each}) {
                 scene->waves.tiling = tiling;
-                Query ladder = filtered(kAll, 0.0);
-                ladder.cell_m = ladder.pixel_m = {0.5, 1.0, 2.0};
-                const auto frame = frame_of<float>(*scene, {ladder}, 2.0);
+                Query levels = filtered(kAll, 0.0);
+                levels.cell_m = levels.pixel_m = {0.5, 1.0, 2.0};
+                const auto frame = frame_of<float>(*scene, {levels}, 2.0);
                 Where<float> where;
                 where.pixel_m.assign(points.size(), 0.8f);
                 answers.push_back(sample(frame, 0, points, where));
@@ -89,7 +89,7 @@ TEST(ChoppinessOfCascades, OfEqualOnesIsTheShotsToTheBit) {
 // Of one point at rest, by the sum over all modes of both tiles (Tessendorf 2001, Eqs. 19 and 29, displaced towards crests).
 struct Summed {
     glm::dvec3 displacement{0.0};
-    double xx = 0.0, yy = 0.0, xy = 0.0;  // strains
+    double xx = 0.0, yy = 0.0, xy = 0.0;  // gradients
     double jacobian() const { return (1.0 + xx) * (1.0 + yy) - xy * xy; }
 };
 class Sum {
@@ -180,7 +180,7 @@ TEST(ChoppinessOfCascades, CostsNothingWhereItIsZero) {
     EXPECT_EQ(fields_of_tile(mixed, 0) & horizontal_fields(), horizontal_fields());
     EXPECT_EQ(fields_of_tile(mixed, 1),
               fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ));
-    EXPECT_EQ(fields_of_tile(none, 1) & horizontal_fields(), strain_fields());
+    EXPECT_EQ(fields_of_tile(none, 1) & horizontal_fields(), displacement_gradient_fields());
     const std::string page = explain(mixed);
     EXPECT_NE(page.find("1  71 m, resolution 96, choppiness 0, waves of"), std::string::npos) << page;
     EXPECT_NE(page.find("0  200 m, resolution 96, waves of"), std::string::npos) << page;
@@ -305,7 +305,7 @@ TEST(ChoppinessOfCascades, AddsUpBandByBand) {
     });
     expect_sum("carried slopes", [](double large, double small) {
         const auto prepared = prepare(choppy_scene(large, small));
-        return hidden_slope_gain(prepared->spectrum, {}, 0.5, Choppiness::asked(prepared->scene)) - 1.0;
+        return unresolved_slope_gain(prepared->spectrum, {}, 0.5, Choppiness::asked(prepared->scene)) - 1.0;
     });
     // Of the waves that break.
     expect_sum("mean choppiness", [](double large, double small) {

@@ -46,7 +46,7 @@ ProductArrays<T> ask(const Frame<T>& frame, const std::vector<glm::vec<2, T>>& r
     return answers;
 }
 
-Query ladder(ProductSet wanted) {
+Query levels(ProductSet wanted) {
     Query query = unfiltered(wanted);
     query.cell_m = query.pixel_m = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0};
     return query;
@@ -78,7 +78,7 @@ TEST(Ellipses, RoundOnesAreRoundToTheBit) {
     for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
         Scene scene = two_tiles();
         scene.waves.model = model;
-        const auto frame = frame_of<float>(scene, {ladder(~lasting_products())}, 3.0);
+        const auto frame = frame_of<float>(scene, {levels(~lasting_products())}, 3.0);
         const auto rest = random_points<float>(300.0, 700);
         Where<float> round;
         std::vector<Ellipse<float>> none, some;
@@ -107,12 +107,12 @@ TEST(Ellipses, RoundOnesAreRoundToTheBit) {
     }
 }
 
-// Every mode counts with its weight in the rungs times R, at any length and direction.
+// Every mode counts with its weight in the levels times R, at any length and direction.
 TEST(Ellipses, ShowTheClosedFormOfTheirTaps) {
     Scene scene;
     scene.waves.cascades = {{100.0, 96}};
     scene.waves.tiling = Tiling::Periodic;  // one sum of modes
-    const auto frame = frame_of<double>(scene, {ladder(products(Product::Displacement))}, 2.0);
+    const auto frame = frame_of<double>(scene, {levels(products(Product::Displacement))}, 2.0);
     const Plan& plan = frame.sea().plan();
     const auto modes = modes_of(frame.sea(), 0, 2.0);
     const double hs_m = 4.0 * std::sqrt(frame.sea().total().m0);
@@ -147,14 +147,14 @@ TEST(Ellipses, FilterTrainsByTheirLengthAlongTheWay) {
     Scene scene;
     scene.waves.model = WaveModel::Trochoid;
     const auto frame =
-        frame_of<double>(scene, {ladder(products(Product::Displacement, Product::SlopeVarianceAtRest))}, 0.0);
+        frame_of<double>(scene, {levels(products(Product::Displacement, Product::SlopeVarianceAtRest))}, 0.0);
     const Trains<double>& trains = frame.sea().trains();
     const SpectralMoments whole = total(trains);
     for (const double ratio : {1.5, 10.0, 1000.0})
         for (const double direction : {0.3, 2.0}) {
             const double width_m = 1.3;
             const glm::dvec2 unit(std::cos(direction), std::sin(direction));
-            double height_m = 0.0, hidden = trains.outside.mss();
+            double height_m = 0.0, unresolved = trains.outside.mss();
             for (std::size_t i = 0; i < trains.count(); ++i) {
                 const double lambda_m = trains.wavelength_m[i];
                 const double along = unit.x * trains.kx_cycles_per_m[i] * lambda_m +
@@ -162,22 +162,22 @@ TEST(Ellipses, FilterTrainsByTheirLengthAlongTheWay) {
                 const double footprint_m = width_m * std::hypot(1.0, std::sqrt(ratio * ratio - 1.0) * along);
                 const double w = FootprintFilter{}.weight(kTwoPi / lambda_m, footprint_m);
                 height_m += w * trains.height_m[i] * std::cos(kTwoPi * trains.start_cycles[i]);
-                hidden += trains.alone[i].mss() * (1.0 - w * w);
+                unresolved += trains.alone[i].mss() * (1.0 - w * w);
             }
             const auto answer = ask<double>(frame, {glm::dvec2(0.0)}, {{width_m, ratio * width_m * unit}});
             const glm::dvec3 variance = answer.vectors(SlopeVarianceAtRest)[0];
             EXPECT_NEAR(answer.vectors(Displacement)[0].z, height_m, 1e-9);
-            EXPECT_NEAR(variance.x + variance.y, hidden, 1e-9 * whole.mss());
+            EXPECT_NEAR(variance.x + variance.y, unresolved, 1e-9 * whole.mss());
         }
 }
 
-// What is hidden is the spectrum's whole less what the taps let through, as a tensor: for all of the seas, at widths on
-// rungs and between them, all lengths and directions. The bands of the cascades as lattices differ from the spectrum's by
+// What is unresolved is the spectrum's whole less what the taps let through, as a tensor: for all of the seas, at widths on
+// levels and between them, all lengths and directions. The bands of the cascades as lattices differ from the spectrum's by
 // less than the tolerance, and so does the table between its nodes.
-TEST(Ellipses, ShownAndHiddenAreTheSpectrumAsATensor) {
+TEST(Ellipses, ShownAndUnresolvedAreTheSpectrumAsATensor) {
     const FootprintFilter filter;
     for (const auto& [name, scene] : seas()) {
-        const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVarianceAtRest))}, 0.0);
+        const auto frame = frame_of<float>(scene, {levels(products(Product::SlopeVarianceAtRest))}, 0.0);
         const Plan& plan = frame.sea().plan();
         const DirectionalSpectrum& spectrum = plan.from->spectrum;
         const SpectralMoments& whole = frame.sea().total();
@@ -238,9 +238,9 @@ TEST(Ellipses, ShownAndHiddenAreTheSpectrumAsATensor) {
                     const auto f = static_cast<float>(width_m);
                     const glm::vec2 axis_m =
                         static_cast<float>(length_m) * glm::vec2(std::cos(direction), std::sin(direction));
-                    const glm::vec3 hidden =
+                    const glm::vec3 unresolved =
                         ask<float>(frame, {glm::vec2(0.0f)}, {{f, axis_m}}).vectors(SlopeVarianceAtRest)[0];
-                    for (const double error : {hidden.x - xx, hidden.y - yy, hidden.z - xy})
+                    for (const double error : {unresolved.x - xx, unresolved.y - yy, unresolved.z - xy})
                         worst = std::max(worst, std::abs(error) / whole.mss());
                 }
         std::printf("    %-8s worst %.2f %% of the mean square slope\n", name, 100.0 * worst);
@@ -248,13 +248,13 @@ TEST(Ellipses, ShownAndHiddenAreTheSpectrumAsATensor) {
     }
 }
 
-// The same of a realisation: the variance of the slopes shown and what is said to be hidden add up to the whole.
-TEST(Ellipses, SlopesShownVaryByWhatIsNotHidden) {
+// The same of a realisation: the variance of the slopes shown and what is said to be unresolved add up to the whole.
+TEST(Ellipses, SlopesShownVaryByWhatIsNotUnresolved) {
     Scene scene = two_tiles();
     scene.waves.choppiness = 0.0;
     scene.effects.whitecaps = false;
     const auto frame =
-        frame_of<float>(scene, {ladder(products(Product::Normal, Product::SlopeVarianceAtRest))}, 1.0);
+        frame_of<float>(scene, {levels(products(Product::Normal, Product::SlopeVarianceAtRest))}, 1.0);
     const SpectralMoments& whole = frame.sea().total();
     const auto rest = random_points<float>(4000.0, 20000);
     for (const double ratio : {2.0, 8.0})
@@ -262,23 +262,23 @@ TEST(Ellipses, SlopesShownVaryByWhatIsNotHidden) {
             const glm::vec2 unit(std::cos(direction), std::sin(direction));
             const std::vector<Ellipse<float>> of(rest.size(), {0.5f, static_cast<float>(0.5 * ratio) * unit});
             const auto answers = ask(frame, rest, of);
-            const glm::dvec3 hidden(answers.vectors(SlopeVarianceAtRest)[0]);
+            const glm::dvec3 unresolved(answers.vectors(SlopeVarianceAtRest)[0]);
             const auto shown = [&](int a, int b) {
                 return mean_of(answers.vectors(Normal),
                                [&](const glm::vec3& n) { return n[a] * n[b] / (n.z * n.z); });
             };
-            EXPECT_NEAR((shown(0, 0) + hidden.x) / whole.mss(), whole.xx / whole.mss(), 0.03);
-            EXPECT_NEAR((shown(1, 1) + hidden.y) / whole.mss(), whole.yy / whole.mss(), 0.03);
-            EXPECT_NEAR((shown(0, 1) + hidden.z) / whole.mss(), whole.xy / whole.mss(), 0.03);
+            EXPECT_NEAR((shown(0, 0) + unresolved.x) / whole.mss(), whole.xx / whole.mss(), 0.03);
+            EXPECT_NEAR((shown(1, 1) + unresolved.y) / whole.mss(), whole.yy / whole.mss(), 0.03);
+            EXPECT_NEAR((shown(0, 1) + unresolved.z) / whole.mss(), whole.xy / whole.mss(), 0.03);
         }
 }
 
-// Wind, swell and ellipse turned together: what is hidden turns with them.
+// Wind, swell and ellipse turned together: what is unresolved turns with them.
 TEST(Ellipses, TurnWithTheWind) {
-    const auto hidden = [&](double turn_deg) {
+    const auto unresolved = [&](double turn_deg) {
         Scene scene = two_tiles();
         scene.sea.wind_direction_deg = 20.0 + turn_deg;
-        const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVarianceAtRest))}, 0.0);
+        const auto frame = frame_of<float>(scene, {levels(products(Product::SlopeVarianceAtRest))}, 0.0);
         const double direction = (50.0 + turn_deg) * kPi / 180.0;
         const glm::vec2 axis_m = 4.0f * glm::vec2(std::cos(direction), std::sin(direction));
         const glm::dvec3 v(
@@ -288,17 +288,17 @@ TEST(Ellipses, TurnWithTheWind) {
                           s * s * v.x - 2.0 * c * s * v.z + c * c * v.y,
                           c * s * (v.y - v.x) + (c * c - s * s) * v.z);
     };
-    const glm::dvec3 first = hidden(0.0);
+    const glm::dvec3 first = unresolved(0.0);
     for (const double turn_deg : {33.0, 90.0, 171.0})
         for (int i = 0; i < 3; ++i)
-            EXPECT_NEAR(hidden(turn_deg)[i], first[i], 0.01 * (first.x + first.y)) << turn_deg;
+            EXPECT_NEAR(unresolved(turn_deg)[i], first[i], 0.01 * (first.x + first.y)) << turn_deg;
 }
 
 TEST(Ellipses, HardOnesAreFinite) {
     for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
         Scene scene = two_tiles();
         scene.waves.model = model;
-        const auto frame = frame_of<float>(scene, {ladder(~lasting_products())}, 3.0);
+        const auto frame = frame_of<float>(scene, {levels(~lasting_products())}, 3.0);
         std::vector<glm::vec2> rest;
         std::vector<Ellipse<float>> of;
         for (const float width_m : {0.0f, 1e-30f, 0.3f, 1e6f, std::numeric_limits<float>::quiet_NaN()})
@@ -326,7 +326,7 @@ TEST(Ellipses, HardOnesAreFinite) {
 TEST(Ellipses, HideOfOneCascadeItsShare) {
     Scene scene = two_tiles();
     scene.waves.choppiness = 0.0;
-    Query whole = ladder(products(Product::SlopeVarianceAtRest));
+    Query whole = levels(products(Product::SlopeVarianceAtRest));
     std::vector<Query> queries{whole, whole, whole};
     for (int c : {0, 1}) {
         queries[c + 1].name = "cascade " + std::to_string(c);
@@ -335,7 +335,7 @@ TEST(Ellipses, HideOfOneCascadeItsShare) {
     const auto frame = frame_of<float>(scene, queries);
     const std::vector<glm::vec2> rest(1), round(1), axis_m{{5.0f, 3.0f}};
     const std::vector<float> width_m{1.0f};
-    const auto hidden = [&](int query, const std::vector<glm::vec2>& axes_m) {
+    const auto unresolved = [&](int query, const std::vector<glm::vec2>& axes_m) {
         std::vector<glm::vec3> variance(1);
         Results<float> results;
         results.set(Product::SlopeVarianceAtRest, {variance.data()});
@@ -347,7 +347,7 @@ TEST(Ellipses, HideOfOneCascadeItsShare) {
                  results);
         return variance[0];
     };
-    const auto more = [&](int query) { return hidden(query, axis_m) - hidden(query, round); };
+    const auto more = [&](int query) { return unresolved(query, axis_m) - unresolved(query, round); };
     const glm::vec3 sum = more(1) + more(2), together = more(0);
     EXPECT_GT(more(1).x, 0.0f);
     EXPECT_GT(more(2).x, 0.0f);
@@ -362,7 +362,7 @@ TEST(Ellipses, NeedAWidthAndPointsAnywhere) {
     Results<float> results;
     results.set(Product::Normal, {normal.data()});
     const auto frame = frame_of<float>(
-        two_tiles(), {ladder(products(Product::Normal)), tile(products(Product::Normal), 0, 200.0, 64)});
+        two_tiles(), {levels(products(Product::Normal)), tile(products(Product::Normal), 0, 200.0, 64)});
     EXPECT_THROW(
         evaluate(frame, 0, {.count = 1, .rest_m = {rest.data()}, .pixel_axis_m = {axis_m.data()}}, results),
         std::invalid_argument);

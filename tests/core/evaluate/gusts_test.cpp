@@ -93,7 +93,7 @@ TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
 
 // Along the wind, at the speed that the wind has a little above the water.
 // A gust of f times the wind has f^p times the coverage, by the law's exponent: counted over the sea, in classes of f, which the
-// hidden slopes tell.
+// unresolved slopes tell.
 TEST(Gusts, WhitecapsFollowTheShotsLaw) {
     constexpr double kWind_mps = 14.0,
                      kFootprint_m = 40.0;  // hides the waves that break, and shows the gusts
@@ -150,7 +150,7 @@ TEST(Gusts, DriftWithTheWind) {
         differs = std::max(differs, std::abs(after.vectors(SlopeVariance)[i].x / was - 1.0));
         stays = std::max(stays, std::abs(stayed.vectors(SlopeVariance)[i].x / was - 1.0));
     }
-    EXPECT_LT(differs, 0.05);  // long waves, which are shown, carry the hidden slopes
+    EXPECT_LT(differs, 0.05);  // long waves, which are shown, carry the unresolved slopes
     EXPECT_GT(stays, 0.5);
 }
 

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
                              }}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
-// Without wind and swell the right limit is known: flat, still, up, no foam, nothing hidden.
+// Without wind and swell the right limit is known: flat, still, up, no foam, nothing unresolved.
 TEST(Calm, IsExactlyFlat) {
     Scene scene;
     scene.sea.wind_speed_mps = 0.0;

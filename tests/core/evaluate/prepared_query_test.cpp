@@ -23,12 +23,12 @@ ProductSet every_product() {
 struct PreparedCase {
     const char* name;
     WaveModel model;
-    bool cascades, ladder;
+    bool cascades, levels;
 };
 constexpr PreparedCase kCases[] = {{"cascades", WaveModel::Fft, true, false},
-                                   {"cascades on a ladder", WaveModel::Fft, true, true},
+                                   {"cascades on a levels", WaveModel::Fft, true, true},
                                    {"trains", WaveModel::Trochoid, false, true},
-                                   {"trains and a cascade on a ladder", WaveModel::Trochoid, true, true}};
+                                   {"trains and a cascade on a levels", WaveModel::Trochoid, true, true}};
 
 template <class T>
 Frame<T> prepared_frame(const PreparedCase& c) {
@@ -38,7 +38,7 @@ Frame<T> prepared_frame(const PreparedCase& c) {
     if (c.model == WaveModel::Trochoid && c.cascades) scene.waves.shortest_m = 5.0;
     Query query = unfiltered(every_product());
     query.cell_m = query.pixel_m = {0.5};
-    if (c.ladder && c.cascades) query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};
+    if (c.levels && c.cascades) query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};
     return test::frame_of<T>(scene, {query}, 3.25);
 }
 
@@ -88,7 +88,7 @@ void expect_the_same_bits_in_any_batches(const PreparedCase& c) {
     constexpr std::size_t kCount = 700;
     const Frame<T> frame = prepared_frame<T>(c);
     const PreparedQuery<T> prepared(frame, 0, every_product());
-    Asked<T> asked(c.ladder, kCount);
+    Asked<T> asked(c.levels, kCount);
     for (const glm::dvec2 origin_m : {glm::dvec2(0.0), glm::dvec2(1e6 + 0.375, -3e5)}) {
         asked.origin_m = origin_m;
         ProductArrays<T> whole;
@@ -151,7 +151,7 @@ TEST(PreparedQuery, GivesEachProductAloneAsAmongAll) {
     for (const PreparedCase& c : kCases) {
         const Frame<float> frame = prepared_frame<float>(c);
         const PreparedQuery<float> prepared(frame, 0, every_product());
-        const Asked<float> asked(c.ladder, 50);
+        const Asked<float> asked(c.levels, 50);
         Values together, single;
         together.resize(every_product(), 50);
         single.resize(every_product(), 50);
@@ -177,7 +177,7 @@ TEST(PreparedQuery, AnswersSeveralThreadsAtOnce) {
     for (const PreparedCase& c : kCases) {
         const Frame<float> frame = prepared_frame<float>(c);
         const PreparedQuery<float> prepared(frame, 0, every_product());
-        const Asked<float> asked(c.ladder, kCount);
+        const Asked<float> asked(c.levels, kCount);
         Values whole, pieces;
         whole.resize(every_product(), kCount);
         pieces.resize(every_product(), kCount);
@@ -198,7 +198,7 @@ TEST(PreparedQuery, IsRefusedAfterSetUntilItIsRefreshed) {
     for (const PreparedCase& c : kCases) {
         Frame<float> frame = prepared_frame<float>(c);
         PreparedQuery<float> prepared(frame, 0, every_product());
-        const Asked<float> asked(c.ladder, 20);
+        const Asked<float> asked(c.levels, 20);
         Values values, expected;
         values.resize(every_product(), 20);
         expected.resize(every_product(), 20);

@@ -63,9 +63,9 @@ TEST(Query, RefusesAFrameWithoutATime) {
 // Places so far off that single precision has no tile left, and footprints that are no number: nothing is
 // read outside the grids, and what does not contain the place itself is finite.
 TEST(Query, StaysInsideItsGridsWhateverThePlace) {
-    Query ladder = filtered(all_products(), 1.0);
-    ladder.cell_m = ladder.pixel_m = {1.0, 2.0};
-    const auto frame = frame_of<float>(small_sea(), {ladder}, 1.0);
+    Query levels = filtered(all_products(), 1.0);
+    levels.cell_m = levels.pixel_m = {1.0, 2.0};
+    const auto frame = frame_of<float>(small_sea(), {levels}, 1.0);
     std::vector<glm::vec2> points{{1e20f, -1e20f}, {3e38f, 0.0f}};
     for (int i = 0; i < 2000; ++i) {
         const float far = 1e16f * std::pow(1.01f, static_cast<float>(i % 1000));
@@ -113,16 +113,16 @@ TEST(Query, AnswersEachPointByItself) {
     }
 }
 
-Query ladder(ProductSet wanted) {
+Query levels(ProductSet wanted) {
     Query query = unfiltered(wanted);
     query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};
     return query;
 }
 
-// On a rung the ladder is the uniform query of that footprint, to rounding; outside it holds its ends.
-TEST(Ladder, IsTheUniformQueryOnItsRungs) {
-    std::vector<Query> queries{ladder(all_products())};
-    for (double rung : {0.5, 1.0, 2.0, 4.0}) queries.push_back(filtered(all_products(), rung));
+// On a level the levels is the uniform query of that footprint, to rounding; outside it holds its ends.
+TEST(Levels, IsTheUniformQueryOnItsLevels) {
+    std::vector<Query> queries{levels(all_products())};
+    for (double level : {0.5, 1.0, 2.0, 4.0}) queries.push_back(filtered(all_products(), level));
     const auto frame = frame_of<float>(small_sea(), queries, 1.0);
     const auto points = random_points<float>(100.0, 200);
     const auto at = [&](float footprint) {
@@ -153,10 +153,10 @@ TEST(Ladder, IsTheUniformQueryOnItsRungs) {
                 << c.footprint;
         }
     }
-    // Across a rung: no step. The blend's slope is bounded by the rungs' own difference, some 0.5 per
+    // Across a level: no step. The blend's slope is bounded by the levels' own difference, some 0.5 per
     // footprint.
-    for (float rung : {1.0f, 2.0f}) {
-        const auto below = at(rung * (1.0f - 1e-5f)), above = at(rung * (1.0f + 1e-5f));
+    for (float level : {1.0f, 2.0f}) {
+        const auto below = at(level * (1.0f - 1e-5f)), above = at(level * (1.0f + 1e-5f));
         for (std::size_t i = 0; i < points.size(); ++i) {
             EXPECT_NEAR(below.vectors(Displacement)[i].z, above.vectors(Displacement)[i].z, 1e-4);
             EXPECT_NEAR(below.vectors(Normal)[i].x, above.vectors(Normal)[i].x, 1e-4);
@@ -165,9 +165,9 @@ TEST(Ladder, IsTheUniformQueryOnItsRungs) {
     }
 }
 
-// Between rungs too resolved + residual is the spectrum's: the residual is that of the blended weights. The
+// Between levels too resolved + residual is the spectrum's: the residual is that of the blended weights. The
 // statistics of one point's footprint, many points, eight seeds.
-TEST(Ladder, ConservesSlopeVarianceBetweenItsRungs) {
+TEST(Levels, ConservesSlopeVarianceBetweenItsLevels) {
     for (float footprint : {0.7f, 1.4f, 3.1f}) {
         double sum_xx = 0.0, sum_yy = 0.0, sum_xy = 0.0;
         SpectralMoments spectrum;
@@ -177,7 +177,7 @@ TEST(Ladder, ConservesSlopeVarianceBetweenItsRungs) {
             scene.sea.wind_direction_deg = 30.0;
             scene.waves.choppiness = 0.0;
             const auto frame =
-                frame_of<float>(scene, {ladder(products(Product::Normal, Product::SlopeVariance))});
+                frame_of<float>(scene, {levels(products(Product::Normal, Product::SlopeVariance))});
             const auto points = tile_points<float>(200.0, 150);
             const std::vector<float> same(points.size(), footprint);
             const auto samples = sample(frame, 0, points, {.origin_m = {}, .cell_m = same, .pixel_m = same});

@@ -89,7 +89,7 @@ TEST(SlopeVariance, TurnsWithTheWind) {
     EXPECT_NEAR(between.z / (0.5 * (along.x - along.y)), 1.0, 0.02);
 }
 
-// What is hidden at rest depends on the footprint alone, not on what else is asked for.
+// What is unresolved at rest depends on the footprint alone, not on what else is asked for.
 TEST(SlopeVariance, IsTheSameAskedForAloneOrTogether) {
     const Scene scene;
     const std::vector<glm::dvec2> origin{{0.0, 0.0}};
@@ -119,7 +119,7 @@ TEST(SlopeVariance, OfTheTilesAddsUp) {
     const auto tiles = sample(frame, 1, origin).vectors(SlopeVarianceAtRest)[0] +
                        sample(frame, 2, origin).vectors(SlopeVarianceAtRest)[0];
     // A mode's slope is that at the centre of its cell, so that a band's modes may hold a little more than
-    // its integral, which then counts as nothing hidden and not as less: measured 1.05e-3 of the whole.
+    // its integral, which then counts as nothing unresolved and not as less: measured 1.05e-3 of the whole.
     EXPECT_NEAR(tiles.x / whole.x, 1.0, 3e-3);
     EXPECT_NEAR(tiles.y / whole.y, 1.0, 3e-3);
 }

@@ -257,13 +257,13 @@ TEST(TrainsKernel, APointDependsOnNothingButThePoint) {
     const auto start = phases_at(trains, {5.0, 6.0}, 7.0);
     const auto cells = footprints<float>(1), pixels = footprints<float>(2);
     const auto together = scattered<float>(kPoints);
-    HiddenChunk<float> hidden_together, hidden_alone;
+    UnresolvedChunk<float> unresolved_together, unresolved_alone;
     TrainArgs<float> args{.trains = &trains,
                           .start_cycles = start.data(),
                           .wanted = all_fields(),
                           .cell_of = cells.data(),
                           .pixel_of = pixels.data(),
-                          .hidden = &hidden_together};
+                          .unresolved = &unresolved_together};
     add_trains(args, *together);
     for (std::size_t i = 0; i < kPoints; ++i) {
         const auto alone = scattered<float>(1);
@@ -276,13 +276,13 @@ TEST(TrainsKernel, APointDependsOnNothingButThePoint) {
         pixel[0] = pixels[i];
         args.cell_of = cell.data();
         args.pixel_of = pixel.data();
-        args.hidden = &hidden_alone;
+        args.unresolved = &unresolved_alone;
         add_trains(args, *alone);
         for (const Field field : kFields)
             ASSERT_EQ(alone->sums[index(field)][0], together->sums[index(field)][i])
                 << index(field) << " " << i;
-        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-            ASSERT_EQ(hidden_alone.moments[m][0], hidden_together.moments[m][i]) << m << " " << i;
+        for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m)
+            ASSERT_EQ(unresolved_alone.moments[m][0], unresolved_together.moments[m][i]) << m << " " << i;
         // A footprint of all points is the same as an array of it.
         const auto uniform = scattered<float>(1);
         uniform->rest_x = alone->rest_x;
@@ -297,24 +297,25 @@ TEST(TrainsKernel, APointDependsOnNothingButThePoint) {
     }
 }
 
-// Per point, what is hidden is what hidden() says of its footprint; with resolved() it is the whole.
+// Per point, what is unresolved is what unresolved() says of its footprint; with resolved() it is the whole.
 template <class T>
-void expect_hidden(const Scene& scene, double relative) {
+void expect_unresolved(const Scene& scene, double relative) {
     const auto trains = trains_of<T>(scene);
     const auto start = phases_at(trains, {0.0, 0.0}, 0.0);
     const auto pixels = footprints<T>(3);
     const auto chunk = scattered<T>(kPoints);
-    HiddenChunk<T> out;
+    UnresolvedChunk<T> out;
     add_trains<T>(
-        {.trains = &trains, .start_cycles = start.data(), .pixel_of = pixels.data(), .hidden = &out}, *chunk);
+        {.trains = &trains, .start_cycles = start.data(), .pixel_of = pixels.data(), .unresolved = &out},
+        *chunk);
     const SpectralMoments all = total(trains);
     for (std::size_t i = 0; i < kPoints; ++i) {
         const double footprint_m = static_cast<double>(pixels[i]);
-        const SpectralMoments wanted = hidden(trains, {}, footprint_m),
+        const SpectralMoments wanted = unresolved(trains, {}, footprint_m),
                               shown = resolved(trains, {}, footprint_m);
-        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) {
-            const auto moment = kHiddenMoments[m];
-            const double scale = m < kHiddenSlopes ? all.mss() : all.xxxx + 2.0 * all.xxyy + all.yyyy;
+        for (std::size_t m = 0; m < kUnresolvedMoments.size(); ++m) {
+            const auto moment = kUnresolvedMoments[m];
+            const double scale = m < kUnresolvedSlopes ? all.mss() : all.xxxx + 2.0 * all.xxyy + all.yyyy;
             EXPECT_NEAR(static_cast<double>(out.moments[m][i]), wanted.*moment, relative * scale);
             EXPECT_NEAR(static_cast<double>(out.moments[m][i]) + shown.*moment, all.*moment,
                         relative * scale);
@@ -324,12 +325,12 @@ void expect_hidden(const Scene& scene, double relative) {
     }
 }
 
-TEST(TrainsKernel, HiddenAndResolvedAreTheWhole) {
-    expect_hidden<double>(sea(), 1e-13);
-    expect_hidden<float>(sea(), 20 * 0x1p-24);  // the weights', and a few sums'
+TEST(TrainsKernel, UnresolvedAndResolvedAreTheWhole) {
+    expect_unresolved<double>(sea(), 1e-13);
+    expect_unresolved<float>(sea(), 20 * 0x1p-24);  // the weights', and a few sums'
     Scene steep = sea(3.0);
     steep.waves.trains = 4;
-    expect_hidden<double>(steep, 1e-13);
+    expect_unresolved<double>(steep, 1e-13);
 }
 
 TEST(TrainsKernel, CostsWhatIsResolved) {

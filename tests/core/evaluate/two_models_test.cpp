@@ -94,7 +94,7 @@ TEST(TwoModels, TogetherAreTheSumOfBoth) {
 // Whatever a footprint lets through of the trains and of the cascades, the slopes that it hides are the rest
 // of the whole sea, for footprints alike for all and one by one; the whole is the spectrum's but for the
 // trains' choice of directions and the trochoid's second order.
-TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
+TEST(TwoModels, ShownAndUnresolvedAddUpToTheWholeAtEveryFootprint) {
     for (const Scene& scene : {trains_alone(), trains_and_cascades()}) {
         Query query = unfiltered(products(Product::SlopeVarianceAtRest, Product::Normal));
         query.pixel_m = query.cell_m = {0.02, 0.1, 0.5, 3.0, 20.0};
@@ -113,14 +113,14 @@ TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
             const SpectralMoments cascades = frame.sea().statistics(0).resolved[i];
             const Where<double> own{.origin_m = {}, .cell_m = {footprint_m}, .pixel_m = {footprint_m}};
             const std::vector<glm::dvec2> point{{1.0, 2.0}};
-            for (const auto& hidden :
+            for (const auto& unresolved :
                  {sample(frame, 0, point, own).vectors(SlopeVarianceAtRest)[0],
                   sample(frame, static_cast<int>(i) + 1, point).vectors(SlopeVarianceAtRest)[0]}) {
                 // Sampled modes against the integral over the cascades' band: 1e-3 of what they hold.
                 const double room = 1e-12 + 1e-3 * cascades.mss();
-                EXPECT_NEAR(hidden.x + trains.xx + cascades.xx, whole.xx, room) << footprint_m;
-                EXPECT_NEAR(hidden.y + trains.yy + cascades.yy, whole.yy, room) << footprint_m;
-                EXPECT_GE(hidden.x + hidden.y, before);
+                EXPECT_NEAR(unresolved.x + trains.xx + cascades.xx, whole.xx, room) << footprint_m;
+                EXPECT_NEAR(unresolved.y + trains.yy + cascades.yy, whole.yy, room) << footprint_m;
+                EXPECT_GE(unresolved.x + unresolved.y, before);
             }
             before = whole.mss() - trains.mss() - cascades.mss() - 1e-12;
         }

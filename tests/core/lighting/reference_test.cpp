@@ -49,7 +49,7 @@ const Facets& facets() {
         results.set(Product::Position, {result.positions_m.data()});
         results.set(Product::Normal, {result.normals.data()});
         evaluate(frame, 0, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}}, results);
-        const SpectralMoments shown = sea->shown(0);
+        const SpectralMoments shown = sea->resolved_moments(0);
         result.slope_variance = glm::vec3(shown.xx, shown.yy, shown.xy);
         return result;
     }();

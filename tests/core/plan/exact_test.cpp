@@ -84,7 +84,7 @@ Scene scene() {
 
 const FieldSet kPosition = fields(Field::Height, Field::Dx, Field::Dy);
 const FieldSet kExactSlopes = fields(Field::SlopeX, Field::SlopeY);
-const FieldSet kExactStrain = fields(Field::Dxx, Field::Dyy, Field::Dxy);
+const FieldSet kExactGradient = fields(Field::Dxx, Field::Dyy, Field::Dxy);
 const FieldSet kMotion = fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 
 using Attributes = std::vector<MeshAttribute>;
@@ -122,58 +122,58 @@ std::vector<Case> cases() {
     const auto one = [](FieldSet fields) { return std::vector<std::vector<GridByHand>>{{{64, 32, fields}}}; };
     return {
         {"MeshPositions", mesh({}), one(kPosition), kMesh * (8 + 12)},
-        {"MeshNormals", mesh({Normal}), one(kPosition | kExactSlopes | kExactStrain), kMesh * (8 + 24)},
+        {"MeshNormals", mesh({Normal}), one(kPosition | kExactSlopes | kExactGradient), kMesh * (8 + 24)},
         {"MeshVelocities", mesh({Velocity}), one(kPosition | kMotion), kMesh * (8 + 24)},
-        {"MeshSlopeVariance", mesh({SlopeVariance}), one(kPosition | kExactStrain), kMesh * (8 + 24)},
-        {"MeshWhitecaps", mesh({Whitecaps}), one(kPosition | kExactStrain), kMesh * (8 + 16)},
-        {"MeshEverything", mesh(kAll), one(kPosition | kExactSlopes | kExactStrain | kMotion),
+        {"MeshSlopeVariance", mesh({SlopeVariance}), one(kPosition | kExactGradient), kMesh * (8 + 24)},
+        {"MeshWhitecaps", mesh({Whitecaps}), one(kPosition | kExactGradient), kMesh * (8 + 16)},
+        {"MeshEverything", mesh(kAll), one(kPosition | kExactSlopes | kExactGradient | kMotion),
          kMesh * (8 + 52)},
         {"WhitecapsOff",
          [](Scene& s) {
              s.output.attributes = {Whitecaps, SlopeVariance};
              s.effects.whitecaps = false;
          },
-         one(kPosition | kExactStrain), kMesh * (8 + 24)},
-        // Heights, their slopes and their velocity; the strain that foam is told from.
+         one(kPosition | kExactGradient), kMesh * (8 + 24)},
+        // Heights, their slopes and their velocity; the gradient that foam is told from.
         {"ChoppinessZero",
          [](Scene& s) {
              s.output.attributes = kAll;
              s.waves.choppiness = 0.0;
          },
-         one(fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ) | kExactStrain),
+         one(fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ) | kExactGradient),
          kMesh * (8 + 52)},
         {"DisplacementMap", maps({MapKind::Displacement}), one(kPosition), kMap * (8 + 12)},
-        {"NormalMap", maps({MapKind::Normal}), one(kExactSlopes | kExactStrain), kMap * (8 + 12)},
+        {"NormalMap", maps({MapKind::Normal}), one(kExactSlopes | kExactGradient), kMap * (8 + 12)},
         // What carries them, at each mip level.
         {"SlopeVarianceMap",
          maps({MapKind::SlopeVariance}),
-         {{{64, 32, kExactStrain},
-           {64, 16, kExactStrain},
-           {30, 8, kExactStrain},
-           {14, 4, kExactStrain},
-           {6, 2, kExactStrain}}},
+         {{{64, 32, kExactGradient},
+           {64, 16, kExactGradient},
+           {30, 8, kExactGradient},
+           {14, 4, kExactGradient},
+           {6, 2, kExactGradient}}},
          kMap * (8 + 12)},
-        {"WhitecapsMap", maps({MapKind::Whitecaps}), one(kExactStrain), kMap * (8 + 16)},
+        {"WhitecapsMap", maps({MapKind::Whitecaps}), one(kExactGradient), kMap * (8 + 16)},
         {"WhitecapsMapChoppinessZero",
          [](Scene& s) {
              maps({MapKind::Whitecaps})(s);
              s.waves.choppiness = 0.0;
          },
-         one(kExactStrain), kMap * (8 + 16)},
+         one(kExactGradient), kMap * (8 + 16)},
         // The same cells at the same nodes: the mesh's own grid, and the maps share their points.
         {"MapsAsFineAsTheMesh",
          [](Scene& s) {
              s.output.attributes = {Velocity};
              s.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
          },
-         one(kPosition | kMotion | kExactStrain), kMesh * (8 + 24) + kMap * (8 + 12 + 16)},
+         one(kPosition | kMotion | kExactGradient), kMesh * (8 + 24) + kMap * (8 + 12 + 16)},
         // 6.25 m texels: 16 modes, every second node.
         {"MapCoarserThanTheMesh",
          [](Scene& s) {
              s.output.maps = {MapKind::Normal};
              s.output.map_resolution = 32;
          },
-         {{{64, 32, kPosition}, {32, 16, kExactSlopes | kExactStrain}}},
+         {{{64, 32, kPosition}, {32, 16, kExactSlopes | kExactGradient}}},
          kMesh * (8 + 12) + 32 * 32 * (8 + 12)},
         // 1.5625 m texels: 64 modes, of which the cascade has 32, at every node of 128.
         {"MapFinerThanTheMesh",
@@ -225,7 +225,7 @@ std::vector<Case> cases() {
         // Positions by their cell, normals by their pixel, each grid with its own fields only.
         {"PixelsCoarserThanCells",
          nothing,
-         {{{126, 32, kPosition}, {64, 16, kExactSlopes | kExactStrain}}},
+         {{{126, 32, kPosition}, {64, 16, kExactSlopes | kExactGradient}}},
          kMap * (8 + 24),
          {query(products(Product::Position, Product::Normal), 3.125, 6.25, false)}},
         {"VariancesAtRestOnly",
@@ -286,13 +286,13 @@ std::size_t held_by(const Trains<T>& trains) {
     std::size_t bytes =
         of(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
            trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.before,
-           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength, trains.breaking);
+           trains.from, trains.unresolved_alone, trains.unresolved_from, trains.wavelength, trains.breaking);
     for (const auto& amplitude : trains.amplitude) bytes += of(amplitude);
     return bytes;
 }
 
 // Of each train 7 doubles, 11 fields' factors, wavelength and weight in breaking in single precision; moments alone
-// and in two running sums of one entry more, 8 hidden ones alone and in one running sum.
+// and in two running sums of one entry more, 8 unresolved ones alone and in one running sum.
 std::size_t trains_bytes(int trains) {
     if (trains == 0) return 0;
     const auto n = static_cast<std::size_t>(trains);
@@ -340,7 +340,7 @@ void check(const Case& c, const Plan& plan) {
     EXPECT_EQ(plan.transforms_per_frame(), transforms);
     EXPECT_EQ(plan.lines_per_frame(), all_lines);
     EXPECT_EQ(plan.frame_bytes(), frame_bytes);
-    std::size_t ellipses_bytes = 0;  // what ellipses hide, for queries on a ladder
+    std::size_t ellipses_bytes = 0;  // what ellipses hide, for queries on a levels
     for (const PlannedQuery& planned : plan.queries)
         if (has_ellipse_table(plan, planned.query))
             ellipses_bytes += (2 * planned.query.pixel_m.size() - 1) * 10 * 24 * 8 * sizeof(float);

@@ -24,7 +24,7 @@ class CountingSurface final : public RestSurface {
     bool has_constant_faces() const override { return surface_->has_constant_faces(); }
     bool is_even() const override { return surface_->is_even(); }
     std::optional<View> shaped_by(int frame) const override { return surface_->shaped_by(frame); }
-    FeedSet feeds() const override { return surface_->feeds(); }
+    KeyPartSet key_parts() const override { return surface_->key_parts(); }
     SurfaceNeeds needs(std::span<const int> frames) const override {
         asked.insert(asked.end(), frames.begin(), frames.end());
         return surface_->needs(frames);

@@ -28,17 +28,17 @@ Scene scene_with(std::vector<MeshAttribute> attributes) {
 
 const FieldSet kPositions = fields(Field::Height, Field::Dx, Field::Dy);
 const FieldSet kSlopes = fields(Field::SlopeX, Field::SlopeY);
-const FieldSet kStrain = fields(Field::Dxx, Field::Dyy, Field::Dxy);
+const FieldSet kDisplacementGradients = fields(Field::Dxx, Field::Dyy, Field::Dxy);
 const FieldSet kVelocities = fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 
 TEST(Plan, HoldsTheFieldsOfWhatIsAskedForAndNoOthers) {
     using enum MeshAttribute;
     EXPECT_EQ(fields_of_plan(plan_bake(scene_with({}))), kPositions);
-    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Normal}))), kPositions | kSlopes | kStrain);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Normal}))), kPositions | kSlopes | kDisplacementGradients);
     EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Velocity}))), kPositions | kVelocities);
-    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Whitecaps}))), kPositions | kStrain);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Whitecaps}))), kPositions | kDisplacementGradients);
     EXPECT_EQ(fields_of_plan(plan_bake(scene_with({SlopeVariance}))),
-              kPositions | kStrain);  // an integral of the spectrum, and what carries it
+              kPositions | kDisplacementGradients);  // an integral of the spectrum, and what carries it
 }
 
 TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
@@ -46,7 +46,7 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
     Scene scene = scene_with({Velocity, Whitecaps});
     scene.effects.whitecaps = false;
     const Plan plan = plan_bake(scene);
-    EXPECT_EQ(fields_of_plan(plan) & kStrain, FieldSet());
+    EXPECT_EQ(fields_of_plan(plan) & kDisplacementGradients, FieldSet());
     EXPECT_EQ(fields_of_plan(plan) & kSlopes, FieldSet());
     for (const PlannedQuery& planned : plan.queries) {
         EXPECT_FALSE(planned.query.products[index(Product::Coverage)]);
@@ -54,7 +54,7 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
     }
 }
 
-// But the strain that waves would have, where somebody asks for foam. So little choppiness that nobody sees it is none.
+// But the gradient that waves would have, where somebody asks for foam. So little choppiness that nobody sees it is none.
 TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
     const FieldSet level = fields(Field::Height, Field::VelocityZ) | kSlopes;
     for (const double choppiness : {0.0, 1e-12, 1e-6, 0.99 * Choppiness::kLeastShown}) {
@@ -62,7 +62,7 @@ TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
         scene.waves.choppiness = choppiness;
         EXPECT_EQ(fields_of_plan(plan_bake(scene)), level);
         scene.output.attributes.push_back(MeshAttribute::Whitecaps);
-        EXPECT_EQ(fields_of_plan(plan_bake(scene)), level | kStrain);
+        EXPECT_EQ(fields_of_plan(plan_bake(scene)), level | kDisplacementGradients);
         // And the page says so.
         const std::string page = explain(plan_bake(scene));
         EXPECT_NE(page.find("whitecap coverage  ← Dxx, Dyy, Dxy"), std::string::npos) << page;
@@ -259,13 +259,14 @@ TEST(Plan, AnswersAtOnceForTheLargestSea) {
     EXPECT_NE(page.find("8192"), std::string::npos);
 }
 
-// What a camera sees never decides which rungs there are, only how many of them are needed.
-TEST(Plan, ALaddersRungsArePowersOfTwoWhoeverAsks) {
+// What a camera sees never decides which levels there are, only how many of them are needed.
+TEST(Plan, LevelsArePowersOfTwoWhoeverAsks) {
     const auto prepared = prepare(Scene{});
     for (const double finest_m : {0.003, 0.1, 0.7, 1.0, 33.0}) {
         const Query query =
             view_query(*prepared, {.finest_cell_m = 6.0 * finest_m, .finest_pixel_m = finest_m});
-        for (const double rung_m : query.pixel_m) EXPECT_EQ(std::exp2(std::round(std::log2(rung_m))), rung_m);
+        for (const double level_m : query.pixel_m)
+            EXPECT_EQ(std::exp2(std::round(std::log2(level_m))), level_m);
         EXPECT_LE(query.cell_m.front(), 1.4143 * 6.0 * finest_m);
     }
 }

@@ -39,7 +39,7 @@ TEST(Keys, EachIsDescribed) {
         EXPECT_FALSE(key.help.empty() || key.label.empty());
         const bool is_inner = key.path.find("[]") != std::string::npos;
         EXPECT_TRUE(is_inner || !key.is_required) << "an empty file is a sea";
-        EXPECT_EQ(key.feeds.any(), !is_inner);
+        EXPECT_EQ(key.key_parts.any(), !is_inner);
         EXPECT_EQ(key.get == nullptr, is_inner);
         EXPECT_FALSE(key.accepted.empty());
         EXPECT_EQ(std::holds_alternative<std::monostate>(key.fallback), key.is_optional) << "its default";
@@ -182,7 +182,7 @@ TEST(Keys, RangesAreCheckedEndsIncluded) {
     EXPECT_GT(checked, 20);
 }
 
-// The whole point of the parts: a key changes the texts of those that it feeds, and of no other.
+// The whole point of the parts: a key changes the texts of those that it key_parts, and of no other.
 TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
     for (const Key& key : keys()) {
         if (!key.set) continue;
@@ -191,14 +191,14 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
             set_value(scene, key, another_value(key, key.fallback));
             return scene;
         }();
-        for (std::size_t part = 0; part < kFeeds; ++part) {
-            const FeedSet only(1ull << part);
-            EXPECT_EQ(canonical(changed, only) != canonical(Scene{}, only), key.feeds[part])
+        for (std::size_t part = 0; part < kKeyParts; ++part) {
+            const KeyPartSet only(1ull << part);
+            EXPECT_EQ(canonical(changed, only) != canonical(Scene{}, only), key.key_parts[part])
                 << key.path << " and " << pelagic::text_of(only);
         }
         EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;
-        EXPECT_EQ(described(changed, key.feeds).size(),
-                  described(Scene{}, key.feeds).size() + (key.is_optional ? 1u : 0u));
+        EXPECT_EQ(described(changed, key.key_parts).size(),
+                  described(Scene{}, key.key_parts).size() + (key.is_optional ? 1u : 0u));
     }
 }
 
@@ -206,7 +206,7 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
 TEST(Keys, TheCanonicalTextHasALineAKey) {
     Scene scene;
     scene.sea.swell = {{1.0, 9.0, 0.0}, {2.0, 10.0, 1.0}};
-    EXPECT_EQ(canonical(scene, feeds(Feed::Foam, Feed::Grid)),
+    EXPECT_EQ(canonical(scene, key_parts(KeyPart::Foam, KeyPart::Grid)),
               "surface.cell_px = 8\nsurface.earth_curvature = true\neffects.whitecaps = true\n"
               "effects.whitecap_law = \"monahan-1980\"\neffects.sea_minus_air_c = 0\n"
               "effects.whitecap_amount = 1\neffects.breaking_from_m = 1\n"
@@ -219,7 +219,7 @@ TEST(Keys, TheCanonicalTextHasALineAKey) {
 
 // OpenEXR's readers before 2.0 know names of at most 31 bytes; ours begin with "pelagic.".
 TEST(Keys, NamesInHeadersAreShort) {
-    for (const DescribedKey& key : described(Scene{}, all_feeds())) {
+    for (const DescribedKey& key : described(Scene{}, all_key_parts())) {
         EXPECT_LE(("pelagic." + key.path).size(), 31u) << key.path;
         EXPECT_EQ(key.identifier().find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"),
                   std::string::npos);
@@ -232,7 +232,7 @@ TEST(Keys, AMeasuredSpectrumIsDescribedByItsStationAndCountsByItsContent) {
     scene.sea.measured = MeasuredSpectrum{
         {{0.1, 1.0, 0.5, 0.1, 0.2, 0.3, true}}, "41010", "2019-02-06T00:40:00Z", "folder/41010w2019.txt"};
     std::map<std::string, std::string> said;
-    for (const DescribedKey& key : described(scene, feeds(Feed::Waves))) said[key.path] = key.text;
+    for (const DescribedKey& key : described(scene, key_parts(KeyPart::Waves))) said[key.path] = key.text;
     EXPECT_EQ(said.at("sea.spectrum_station"), "\"41010\"");
     EXPECT_EQ(said.at("sea.spectrum_time"), "2019-02-06T00:40:00Z");
     EXPECT_FALSE(said.contains("sea.spectrum_file"));
@@ -240,7 +240,7 @@ TEST(Keys, AMeasuredSpectrumIsDescribedByItsStationAndCountsByItsContent) {
     elsewhere.sea.measured->file = "another/41010w2019.txt";
     EXPECT_EQ(canonical(elsewhere), canonical(scene));
     elsewhere.sea.measured->bins[0].c1_im = 0.11;
-    EXPECT_NE(canonical(elsewhere, feeds(Feed::Waves)), canonical(scene, feeds(Feed::Waves)));
+    EXPECT_NE(canonical(elsewhere, key_parts(KeyPart::Waves)), canonical(scene, key_parts(KeyPart::Waves)));
 }
 
 TEST(Keys, ACageCountsAndIsDescribedByItsContent) {
@@ -252,7 +252,7 @@ TEST(Keys, ACageCountsAndIsDescribedByItsContent) {
     scene.surface.cage = std::make_shared<const Cage>(mesh);
     scene.surface.cage_file = "folder/pool.obj";
     std::map<std::string, std::string> said;
-    for (const DescribedKey& key : described(scene, feeds(Feed::Cage))) said[key.path] = key.text;
+    for (const DescribedKey& key : described(scene, key_parts(KeyPart::Cage))) said[key.path] = key.text;
     EXPECT_TRUE(said.at("surface.cage").starts_with("\"1 face, 3 points, ")) << said.at("surface.cage");
     EXPECT_FALSE(said.contains("surface.cage_file") || said.contains("sea.spectrum_station"));
     Scene elsewhere = scene;
@@ -260,8 +260,8 @@ TEST(Keys, ACageCountsAndIsDescribedByItsContent) {
     EXPECT_EQ(canonical(elsewhere), canonical(scene));
     mesh.points_m[0].z = 1e-9;
     elsewhere.surface.cage = std::make_shared<const Cage>(mesh);
-    EXPECT_NE(canonical(elsewhere, feeds(Feed::Cage)), canonical(scene, feeds(Feed::Cage)));
-    EXPECT_EQ(canonical(elsewhere, ~feeds(Feed::Cage)), canonical(scene, ~feeds(Feed::Cage)));
+    EXPECT_NE(canonical(elsewhere, key_parts(KeyPart::Cage)), canonical(scene, key_parts(KeyPart::Cage)));
+    EXPECT_EQ(canonical(elsewhere, ~key_parts(KeyPart::Cage)), canonical(scene, ~key_parts(KeyPart::Cage)));
     EXPECT_EQ(canonical(Scene{}).find("cage_file"), std::string::npos);
 }
 

@@ -74,7 +74,7 @@ void expect_reference(const SeaState& state, const Band& band) {
     }
     const SpectralMoments& r = all.reference;
     EXPECT_LE(all.worst, 1e-4 * r.m0);
-    const double strain = r.xxxx + 2.0 * r.xxyy + r.yyyy;
+    const double gradient = r.xxxx + 2.0 * r.xxyy + r.yyyy;
     for (double SpectralMoments::*m : kSpectralMoments) {
         const bool is_slope =
             m == &SpectralMoments::xx || m == &SpectralMoments::xy || m == &SpectralMoments::yy;
@@ -83,7 +83,7 @@ void expect_reference(const SeaState& state, const Band& band) {
         const double scale = is_slope                          ? r.mss()
                              : is_height                       ? r.m0
                              : m == &SpectralMoments::m_minus1 ? r.m_minus1
-                                                               : strain;
+                                                               : gradient;
         EXPECT_NEAR(all.ours.*m, r.*m, 1e-4 * scale) << "moment " << (m == &SpectralMoments::m0 ? "m0" : "");
     }
 }

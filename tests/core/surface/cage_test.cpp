@@ -323,7 +323,7 @@ Scene cage_scene(CageMesh mesh) {
     return scene;
 }
 
-constexpr Extent kCageExtent{.height_m = 1.0, .reach_m = 1.0, .significant_height_m = 0.5, .hidden = {}};
+constexpr Extent kCageExtent{.height_m = 1.0, .reach_m = 1.0, .significant_height_m = 0.5, .unresolved = {}};
 
 TEST(CageSurface, AUniformOneIsTheSameAtEveryFrame) {
     Scene scene = cage_scene(cube());
@@ -344,7 +344,7 @@ TEST(CageSurface, AUniformOneIsTheSameAtEveryFrame) {
     Faces faces;
     surface->faces_at(8, faces);
     EXPECT_EQ(faces.counts.size(), 6u * 64u);
-    // The first rung is the nearest power of two.
+    // The first level is the nearest power of two.
     for (const double cell_m : points.cell_m) EXPECT_GE(cell_m, needs.finest_cell_m / std::sqrt(2.0));
     EXPECT_NE(surface->describe().find("386 points"), std::string::npos) << surface->describe();
 }

@@ -107,7 +107,7 @@ TEST(Planet, IsTheCamerasGridOnOneSphere) {
         const glm::dvec3 up = earth_up(place_m, kEarthCurvature_per_m);
         scene.camera.position_m = on_earth(glm::dvec3(place_m, 100.0), kEarthCurvature_per_m);
         scene.camera.look_at_m = scene.camera.position_m + 1e3 * from_level(glm::dvec3(0.6, 0.79, -0.05), up);
-        const Extent extent{.height_m = 2.0, .reach_m = 2.0, .significant_height_m = 1.0, .hidden = {}};
+        const Extent extent{.height_m = 2.0, .reach_m = 2.0, .significant_height_m = 1.0, .unresolved = {}};
         const auto planet = make_surface(scene, extent);
         RestPoints<double> points;
         planet->points_at(1, points);

@@ -16,7 +16,7 @@
 #include "core/scene/validate.h"
 #include "core/surface/earth.h"
 #include "core/surface/earth_view.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -238,7 +238,7 @@ TEST(NearFar, PlacesStayWhenTheCameraMoves) {
         }
 }
 
-// Footprints belong to cells: one rung for each, the finest those of the needs; far away the long way between rows.
+// Footprints belong to cells: one level for each, the finest those of the needs; far away the long way between rows.
 TEST(NearFar, FootprintsAreThoseOfTheCells) {
     const Scene scene = seen_from(near_far_scene(200.0, 64), {3.0, 5.0, 4.0});
     const NearFar surface(scene, kNearFarExtent);
@@ -249,7 +249,7 @@ TEST(NearFar, FootprintsAreThoseOfTheCells) {
     EXPECT_TRUE(needs.own_footprints);
     EXPECT_EQ(needs.points, surface.mesh().points());
     EXPECT_EQ(*std::min_element(points.cell_m.begin(), points.cell_m.end()), needs.finest_cell_m);
-    EXPECT_EQ(needs.finest_cell_m, 4.0);  // the rung nearest to 200/64
+    EXPECT_EQ(needs.finest_cell_m, 4.0);  // the level nearest to 200/64
     double cell_m = 4.0;
     for (const NearFarMesh::Level& level : surface.mesh().levels()) {
         level.for_each_point([&](int x, int y) {

@@ -63,11 +63,11 @@ bool covers(const ProjectedGrid& grid, glm::dvec2 p) {
 }
 
 // Of waves as steep at every scale as a gale's, up to this standard deviation of heights.
-HiddenHeight steep_waves(double deviation_m) {
-    HiddenHeight hidden;
-    for (std::size_t i = 0; i < HiddenHeight::kCells; ++i)
-        hidden.deviation_m[i] = std::min(0.022 * HiddenHeight::cell_m(i), deviation_m);
-    return hidden;
+UnresolvedHeight steep_waves(double deviation_m) {
+    UnresolvedHeight unresolved;
+    for (std::size_t i = 0; i < UnresolvedHeight::kCells; ++i)
+        unresolved.deviation_m[i] = std::min(0.022 * UnresolvedHeight::cell_m(i), deviation_m);
+    return unresolved;
 }
 
 std::vector<Shot> hard_shots() {
@@ -123,7 +123,7 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
         const ProjectedGrid grid = projected_grid(view, {.cell_px = 24.0,
                                                          .bounds = {.height_m = height_m, .reach_m = reach_m},
                                                          .significant_height_m = 2.0,
-                                                         .hidden = steep_waves(0.5)});
+                                                         .unresolved = steep_waves(0.5)});
         const double farthest_m = glm::length(glm::dvec2(grid.rest_m.back()));
         for (int i = 0; i < 60; ++i) {
             const glm::dvec2 pixel(uniform(random) * view.resolution.x, uniform(random) * view.resolution.y);
@@ -150,7 +150,7 @@ TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {
         for (const double height_m : {0.0, 3.0}) {
             const ProjectedGridOptions options{.bounds = {.height_m = height_m, .reach_m = 2.0},
                                                .significant_height_m = height_m,
-                                               .hidden = steep_waves(0.25 * height_m)};
+                                               .unresolved = steep_waves(0.25 * height_m)};
             const View view = view_of(shot);
             const ProjectedGrid grid = projected_grid(view, options);
             ASSERT_EQ((ProjectedGridSize{grid.columns, grid.rows}), projected_grid_needs(view, options).size);
@@ -190,7 +190,7 @@ TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
                                 .cell_px = cell_px,
                                 .bounds = {.height_m = 1.3 * wave_m, .reach_m = wave_m},
                                 .significant_height_m = wave_m,
-                                .hidden = steep_waves(0.25 * wave_m)};
+                                .unresolved = steep_waves(0.25 * wave_m)};
                             const ProjectedGridSize size = projected_grid_needs(view_of(shot), options).size;
                             const double across = std::hypot(resolution.x, resolution.y) / cell_px;
                             EXPECT_LE(static_cast<double>(points_of(size)), 100.0 * across * across + 40e3)
@@ -233,7 +233,7 @@ TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
                     view, {.bounds = {.height_m = 0.02 * height_m, .reach_m = 0.02 * height_m}});
                 const ProjectedGrid rough = projected_grid(view, {.bounds = {.height_m = 3.0, .reach_m = 3.0},
                                                                   .significant_height_m = 2.4,
-                                                                  .hidden = steep_waves(0.6)});
+                                                                  .unresolved = steep_waves(0.6)});
                 largest_px = std::max(largest_px, largest_cell_px(view, calm, 0.0));
                 EXPECT_LE(largest_cell_px(view, calm, 0.0), 8.0) << text_of(shot);
                 // A telephoto lens that looks at nearby waves sees less than they move.
@@ -258,7 +258,7 @@ TEST(ProjectedGrid, CellsHideNoHeightsThatAreSeen) {
                     ProjectedGridOptions options{.cell_px = cell_px,
                                                  .bounds = {.height_m = 10.0, .reach_m = 10.0},
                                                  .significant_height_m = 8.0,
-                                                 .hidden = steep_waves(2.0)};
+                                                 .unresolved = steep_waves(2.0)};
                     const ProjectedGrid grid = projected_grid(view, options);
                     double seen_px = 0.0;
                     for (int row = 0; row < grid.rows; ++row) {
@@ -266,10 +266,11 @@ TEST(ProjectedGrid, CellsHideNoHeightsThatAreSeen) {
                             return glm::length(
                                 glm::dvec2(grid.rest_m[static_cast<std::size_t>(j) * (grid.columns + 1)]));
                         };
-                        const double hidden_m = std::min(0.022 * (radius_m(row + 1) - radius_m(row)), 2.0);
+                        const double unresolved_m =
+                            std::min(0.022 * (radius_m(row + 1) - radius_m(row)), 2.0);
                         const double across_m = std::hypot(radius_m(row), std::hypot(height_m, 4.0));
-                        seen_px = std::max(
-                            seen_px, hidden_m * radius_m(row) / (across_m * across_m) / view.pixel_tangent());
+                        seen_px = std::max(seen_px, unresolved_m * radius_m(row) / (across_m * across_m) /
+                                                        view.pixel_tangent());
                     }
                     // A tenth more where deviations rise by less than the table's octaves.
                     EXPECT_LE(seen_px, 0.33 * std::max(cell_px / 8.0, 1.0))
@@ -285,16 +286,16 @@ TEST(ProjectedGrid, HeightsCostRowsOnlyWhereTheyAreSeen) {
         ProjectedGridOptions options{.bounds = {.height_m = 3.0, .reach_m = 3.0},
                                      .significant_height_m = 2.4};
         const ProjectedGridSize without = projected_grid_needs(view_of(shot), options).size;
-        options.hidden = steep_waves(0.6);
+        options.unresolved = steep_waves(0.6);
         EXPECT_EQ(projected_grid_needs(view_of(shot), options).size, without) << text_of(shot);
     }
     const View level = view_of({});
-    EXPECT_EQ(projected_grid_needs(level, {.bounds = {}, .hidden = steep_waves(0.0)}).size,
+    EXPECT_EQ(projected_grid_needs(level, {.bounds = {}, .unresolved = steep_waves(0.0)}).size,
               projected_grid_needs(level, {}).size);
     // From 4 m a gale takes some hundreds.
     const ProjectedGridOptions gale{.bounds = {.height_m = 10.0, .reach_m = 10.0},
                                     .significant_height_m = 8.0,
-                                    .hidden = steep_waves(2.0)};
+                                    .unresolved = steep_waves(2.0)};
     EXPECT_GT(projected_grid_needs(level, gale).size.rows, 500);
     EXPECT_LT(projected_grid_needs(level, gale).size.rows, 1200);
 }
@@ -305,7 +306,7 @@ TEST(ProjectedGrid, RowsFollowTheCameraWithoutAJump) {
         const ProjectedGrid grid = projected_grid(view_of({.height_m = height_m, .fov_deg = fov_deg}),
                                                   {.bounds = {.height_m = 1.0, .reach_m = 1.0},
                                                    .significant_height_m = 1.0,
-                                                   .hidden = steep_waves(0.25),
+                                                   .unresolved = steep_waves(0.25),
                                                    .size = size});
         std::vector<double> radii_m;
         for (int row = 0; row <= grid.rows; ++row)

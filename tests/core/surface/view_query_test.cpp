@@ -1,4 +1,4 @@
-// The ladder of footprints for points at all distances, and the query at the projected grid's points.
+// The levels of footprints for points at all distances, and the query at the projected grid's points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,22 +51,22 @@ TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
     for (const double finest_m : {0.0, 0.01, 0.7, 90.0}) {
         const Query query =
             view_query(*prepare(scene), {.finest_cell_m = 5.0 * finest_m, .finest_pixel_m = finest_m});
-        // The first rung is the power of two nearest to the finest footprint, or the one below 80/64/4 m, whatever
+        // The first level is the power of two nearest to the finest footprint, or the one below 80/64/4 m, whatever
         // is coarser: finer than that nothing changes.
         const double first_m =
             std::max(finest_m > 0.0 ? std::exp2(std::round(std::log2(finest_m))) : 0.0, 0.25);
-        const std::size_t first = finest_m > 0.0 ? 0 : 1;  // after the rung that filters nothing
+        const std::size_t first = finest_m > 0.0 ? 0 : 1;  // after the level that filters nothing
         EXPECT_EQ(query.pixel_m.front(), finest_m > 0.0 ? first_m : 0.0);
         EXPECT_EQ(query.pixel_m[first], first_m);
         for (std::size_t i = first + 1; i < query.pixel_m.size(); ++i)
             EXPECT_EQ(query.pixel_m[i], 2.0 * query.pixel_m[i - 1]);
-        // Footprints that cells ask for lie between their first rung and the next, or below the first of all.
+        // Footprints that cells ask for lie between their first level and the next, or below the first of all.
         EXPECT_LE(query.cell_m.front(), std::max(1.5 * 5.0 * finest_m, 0.25));
         EXPECT_TRUE(std::equal(query.cell_m.rbegin(), query.cell_m.rend(), query.pixel_m.rbegin()));
         const Plan plan = make_plan(scene, {query});
         const std::vector<int>& levels = plan.queries[0].pixel_levels;
         for (const CascadePlan& cascade : plan.cascades) EXPECT_EQ(cascade.grid_of_level[levels.back()], -1);
-        // One rung earlier some waves still pass.
+        // One level earlier some waves still pass.
         EXPECT_GE(plan.cascades[0].grid_of_level[levels[levels.size() - 2]], 0);
     }
 }
@@ -96,23 +96,23 @@ TEST(ViewQuery, RunsNoTransformTwice) {
         EXPECT_LT(light.resolution, cells.resolution);
         EXPECT_EQ(cells.fields | light.fields, fields_of(plan.queries[0].query.products));
     }
-    // The first tile's band ends at 20 modes: several rungs are below its waves.
+    // The first tile's band ends at 20 modes: several levels are below its waves.
     EXPECT_EQ(plan.cascades[0].grid_of_level[0], plan.cascades[0].grid_of_level[3]);
 }
 
-// On a rung the ladder equals a plan of that footprint alone, up to rounding.
-TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
+// On a level the levels equals a plan of that footprint alone, up to rounding.
+TEST(ViewQuery, OnALevelAnswersAsAPlanOfThatFootprintAlone) {
     const Scene scene = scene_of_two_tiles();
-    const Query ladder = view_query(*prepare(scene));
-    const Frame<float> frame = frame_of(scene, ladder);
+    const Query levels = view_query(*prepare(scene));
+    const Frame<float> frame = frame_of(scene, levels);
     std::vector<glm::vec2> rest;
     for (int i = 0; i < 200; ++i)
         rest.emplace_back(1.37f * static_cast<float>(i), 0.61f * static_cast<float>(i % 37));
-    for (const std::size_t rung :
-         {std::size_t(0), std::size_t(1), std::size_t(4), ladder.pixel_m.size() - 2}) {
-        const auto footprint_m = static_cast<float>(ladder.pixel_m[rung]);
+    for (const std::size_t level :
+         {std::size_t(0), std::size_t(1), std::size_t(4), levels.pixel_m.size() - 2}) {
+        const auto footprint_m = static_cast<float>(levels.pixel_m[level]);
         const std::vector<float> footprints(rest.size(), footprint_m);
-        Query alone = ladder;
+        Query alone = levels;
         alone.cell_m = alone.pixel_m = {static_cast<double>(footprint_m)};
         const Points<float> points{.count = rest.size(), .rest_m = {rest.data()}};
         Points<float> varied = points;
@@ -121,13 +121,13 @@ TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
         for (std::size_t i = 0; i < rest.size(); ++i) {
             // Single precision: heights of 3 m, sums of thousands of modes.
             EXPECT_LE(glm::length(a.vectors(Product::Position)[i] - b.vectors(Product::Position)[i]), 2e-5f)
-                << "rung " << rung;
+                << "level " << level;
             EXPECT_LE(glm::length(a.vectors(Product::Normal)[i] - b.vectors(Product::Normal)[i]), 2e-5f)
-                << "rung " << rung;
+                << "level " << level;
             EXPECT_LE(
                 glm::length(a.vectors(Product::SlopeVariance)[i] - b.vectors(Product::SlopeVariance)[i]),
                 1e-6f)
-                << "rung " << rung;
+                << "level " << level;
         }
     }
 }
@@ -172,7 +172,7 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
         }
 }
 
-// At the horizon all waves are hidden: a flat sea with the slope variance of the whole spectrum.
+// At the horizon all waves are unresolved: a flat sea with the slope variance of the whole spectrum.
 TEST(ViewQuery, AtTheHorizonAllIsVariance) {
     Scene scene = scene_of_two_tiles();
     scene.surface.earth_curvature =
@@ -188,7 +188,7 @@ TEST(ViewQuery, AtTheHorizonAllIsVariance) {
         // A pixel there is an ellipse of finite length. What of the slopes across it is left, of 0.2 in all, no eye sees.
         EXPECT_LT(glm::length(glm::vec2(answers.vectors(Product::Normal)[i])), 4e-3);
         // What ellipses hide is an integral over the spectrum, and the whole a sum of modes. It rides on what is left of
-        // the strain across.
+        // the gradient across.
         EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].x, whole.xx, 1e-2 * whole.xx);
         EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].y, whole.yy, 1e-2 * whole.yy);
     }

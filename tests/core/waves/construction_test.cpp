@@ -30,7 +30,7 @@ std::vector<std::complex<double>> complex_of(const Buffer<T>& re, const Buffer<T
 }
 
 void expect_moments(const SpectralMoments& ours, const SpectralMoments& reference) {
-    const double strain = reference.xxxx + 2.0 * reference.xxyy + reference.yyyy;
+    const double gradient = reference.xxxx + 2.0 * reference.xxyy + reference.yyyy;
     const auto near = [&](double SpectralMoments::*m, double scale) {
         EXPECT_NEAR(ours.*m, reference.*m, 1e-4 * scale);
     };
@@ -41,7 +41,7 @@ void expect_moments(const SpectralMoments& ours, const SpectralMoments& referenc
         near(m, reference.mss());
     for (auto m : {&SpectralMoments::xxxx, &SpectralMoments::xxxy, &SpectralMoments::xxyy,
                    &SpectralMoments::xyyy, &SpectralMoments::yyyy})
-        near(m, strain);
+        near(m, gradient);
 }
 
 void expect_reference(const Plan& plan) {
@@ -80,8 +80,8 @@ Scene windy() {
     scene.sea.swell = {{.height_m = 1.0, .period_s = 11.0, .direction_deg = 80.0}};
     return scene;
 }
-// A ladder of footprints through all cascades.
-Query ladder() {
+// A levels of footprints through all cascades.
+Query levels() {
     Query query = unfiltered(products(Product::Normal, Product::SlopeVariance));
     query.pixel_m = {0.3, 0.5};
     while (query.pixel_m.back() < 500.0) query.pixel_m.push_back(2.0 * query.pixel_m.back());
@@ -90,7 +90,7 @@ Query ladder() {
 }
 
 TEST(Construction, GivesTheReferencesSea) {
-    expect_reference(make_plan(windy(), {ladder(), unfiltered(products(Product::Position))}));
+    expect_reference(make_plan(windy(), {levels(), unfiltered(products(Product::Position))}));
 }
 
 TEST(Construction, GivesTheReferencesSeaInShallowWaterAndALoop) {
@@ -176,8 +176,8 @@ bool same_bits(const SpectralMoments& a, const SpectralMoments& b) {
 TEST(Construction, OfOneQueryDependsOnNoOther) {
     Scene scene = windy();
     scene.waves.cascades = {{300.0, 160}, {60.0, 160}};
-    const Query query = ladder();
-    Query other = ladder();
+    const Query query = levels();
+    Query other = levels();
     for (double& footprint_m : other.pixel_m) footprint_m *= 0.77;
     const Sea<float> alone(make_plan(scene, {query}));
     const Sea<float> together(
@@ -199,7 +199,7 @@ TEST(Construction, OfOneQueryDependsOnNoOther) {
 }
 
 TEST(Construction, OnAnyNumberOfThreadsGivesTheSameBits) {
-    const Plan plan = make_plan(windy(), {ladder()});
+    const Plan plan = make_plan(windy(), {levels()});
     const auto built = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         return Sea<float>(plan);
@@ -223,7 +223,7 @@ TEST(Construction, OnAnyNumberOfThreadsGivesTheSameBits) {
 }
 
 TEST(Construction, TellsHowFarItIsAndStops) {
-    const Plan plan = make_plan(windy(), {ladder()});
+    const Plan plan = make_plan(windy(), {levels()});
     std::vector<double> told;
     const BuildWatch watch{.progress = [&](double done) { told.push_back(done); }, .cancel = nullptr};
     const Sea<float> sea(plan, watch);
@@ -251,7 +251,7 @@ TEST(Construction, WhoIsToldMayWorkOnAllThreads) {
                            .cancel = nullptr};
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 4);
     for (int i = 0; i < 20; ++i)
-        tbb::task_arena(4).execute([&] { Sea<float>(make_plan(windy(), {ladder()}), watch); });
+        tbb::task_arena(4).execute([&] { Sea<float>(make_plan(windy(), {levels()}), watch); });
     EXPECT_GT(calls, 60);
 }
 

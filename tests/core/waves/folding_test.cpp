@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/plan/copies.h"
+#include "core/plan/random_tiling.h"
 #include "core/scene/validate.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
@@ -127,7 +127,7 @@ double gain_of(const Scene& scene) {
 }
 
 // Of any sea and any explicit sizes, where it is more than 5 %, with what it is and a size that helps.
-TEST(CopiesGain, IsToldOfWithWhatHelps) {
+TEST(BlendingGains, IsToldOfWithWhatHelps) {
     const std::string of_share = "which adds ", of_size = "size_m = ";
     std::vector<Scene> seas(4);
     seas[1].sea.wind_speed_mps = 3.0;

@@ -29,7 +29,7 @@ Scene swell_alone(double length_m, double depth_m, double direction_deg) {
     return scene;
 }
 
-// A swell as long as its tile, with everything shorter hidden by the footprint: one crest (see
+// A swell as long as its tile, with everything shorter unresolved by the footprint: one crest (see
 // displacement_test.cpp).
 TEST(Crest, MovesAtThePhaseSpeed) {
     for (double depth_m : {kDeep, 5.0})

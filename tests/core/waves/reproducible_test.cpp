@@ -126,7 +126,7 @@ TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     Scene scene;
     scene.waves.choppiness = c.choppiness;
     scene.waves.cascades = {{200.0, 64}};
-    scene.waves.tiling = Tiling::Periodic;  // copies' gradient needs more (CopiesOfTiles)
+    scene.waves.tiling = Tiling::Periodic;  // copies' gradient needs more (RandomTiling)
     scene.effects.whitecaps = c.whitecaps;
     scene.surface.resolution = 64;
     scene.output.attributes = c.attributes;

@@ -158,7 +158,7 @@ std::size_t bytes(const Trains<T>& trains) {
     std::size_t sum =
         of(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
            trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.before,
-           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength, trains.breaking);
+           trains.from, trains.unresolved_alone, trains.unresolved_from, trains.wavelength, trains.breaking);
     for (const auto& amplitude : trains.amplitude) sum += of(amplitude);
     return sum;
 }
@@ -213,20 +213,20 @@ TEST(Trains, ThatWouldLoopAreLimited) {
         for (const double footprint_m : {0.0, 2.7, 3.0, 4.0, 1e3})
             for (const auto m : kSpectralMoments) {
                 EXPECT_TRUE(std::isfinite(resolved(trains, {}, footprint_m).*m));
-                EXPECT_TRUE(std::isfinite(hidden(trains, {}, footprint_m).*m));
+                EXPECT_TRUE(std::isfinite(unresolved(trains, {}, footprint_m).*m));
             }
     }
 }
 
-// Shown and hidden variances add up to the total for every footprint.
-TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
+// Shown and unresolved variances add up to the total for every footprint.
+TEST(TrainVariance, ResolvedAndUnresolvedAreTheWhole) {
     for (const Scene& scene : many_seas()) {
         const auto trains = trains_of(scene);
         const SpectralMoments all = total(trains);
         const FootprintFilter filter;
         for (double footprint_m = 1e-3; footprint_m < 1e4; footprint_m *= 1.3) {
             SpectralMoments both = resolved(trains, filter, footprint_m);
-            const SpectralMoments rest = hidden(trains, filter, footprint_m);
+            const SpectralMoments rest = unresolved(trains, filter, footprint_m);
             both += rest;
             // Sums of at most 70 terms of either sign.
             for (const auto m : kSpectralMoments)
@@ -239,9 +239,9 @@ TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
             EXPECT_LE(rest.xy * rest.xy, rest.xx * rest.yy * (1.0 + 1e-12));
         }
         for (const auto m : kSpectralMoments) {
-            EXPECT_EQ(hidden(trains, filter, 0.0).*m, trains.outside.*m);
+            EXPECT_EQ(unresolved(trains, filter, 0.0).*m, trains.outside.*m);
             EXPECT_EQ(resolved(trains, filter, 1e9).*m, 0.0);
-            EXPECT_EQ(hidden(trains, filter, 1e9).*m, all.*m);
+            EXPECT_EQ(unresolved(trains, filter, 1e9).*m, all.*m);
         }
     }
 }
@@ -258,8 +258,8 @@ TEST(TrainVariance, OutsideTheRangeIsTheRestOfTheSpectrum) {
     SpectralMoments rest = moments(spectrum, 0.0, kTwoPi / 30.0);
     EXPECT_GT(rest.m0, 0.5 * spectrum.m0());
     rest += moments(spectrum, kTwoPi / 0.02, kForever);
-    rest.scale_strain(0.25);
-    // And what the bins have and their trains lack: slopes and strains, never energy.
+    rest.scale_gradients(0.25);
+    // And what the bins have and their trains lack: slopes and gradients, never energy.
     for (const auto m : {&SpectralMoments::m0, &SpectralMoments::m_minus1, &SpectralMoments::east})
         EXPECT_EQ(trains.outside.*m, rest.*m);
     for (const auto m : {&SpectralMoments::xx, &SpectralMoments::yy, &SpectralMoments::xxxx}) {
@@ -279,7 +279,7 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
         scene.effects.breaking_from_m = 0.0;
         const SpectralMoments all = total(trains_of(scene));
         SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kForever);
-        wanted.scale_strain(choppiness * choppiness);
+        wanted.scale_gradients(choppiness * choppiness);
         EXPECT_NEAR(all.m0, wanted.m0, 1e-6 * wanted.m0);
         EXPECT_NEAR(all.mss(), wanted.mss(), 0.01 * wanted.mss());
         EXPECT_NEAR(all.xxxx + 2.0 * all.xxyy + all.yyyy, wanted.xxxx + 2.0 * wanted.xxyy + wanted.yyyy,
@@ -290,7 +290,7 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
 // Over seeds, the energy-weighted means of k̂ and of its square are the spectrum's. The standard error over
 // 400 seeds is √(Σh⁴)/(Σh² √400), some 0.02 (a dozen trains hold the energy); the tolerance is three times
 // that.
-// Down to one train for everything: no steeper than the spectrum, and what it lacks is hidden.
+// Down to one train for everything: no steeper than the spectrum, and what it lacks is unresolved.
 TEST(TrainVariance, OfFewTrainsIsTheSpectrumsToo) {
     for (Scene scene : many_seas())
         for (const int count : {1, 2, 5, 20}) {

@@ -94,21 +94,22 @@ TEST(Coverage, IsTheShareOfTheSeasArea) {
             }
 }
 
-// A sea is the same however finely it is looked at: waves shown in one footprint and hidden in another.
+// A sea is the same however finely it is looked at: waves shown in one footprint and unresolved in another.
 TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
     for (const double wind : {8.0, 14.0}) {
         Scene scene;
         scene.sea.wind_speed_mps = wind;
         const DirectionalSpectrum spectrum(scene.sea);
-        const auto strain = [&](double from, double to) {
+        const auto gradient = [&](double from, double to) {
             const SpectralMoments m = moments(spectrum, from, to);
-            return HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy};
+            return UnresolvedGradients<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy};
         };
         const double threshold =
             calibrated_threshold(moments(spectrum, 0.0, 1e9), law_coverage(scene), 1.0, true);
-        const double all = coverage(jacobian_moments(0.0, 0.0, 0.0, 0.0, strain(0.0, 1e9)), threshold, true);
+        const double all =
+            coverage(jacobian_moments(0.0, 0.0, 0.0, 0.0, gradient(0.0, 1e9)), threshold, true);
         for (const double edge : {0.3, 3.0, 30.0}) {  // rad/m: longer waves are shown
-            const HiddenStrain<double> shown = strain(0.0, edge), hidden = strain(edge, 1e9);
+            const UnresolvedGradients<double> shown = gradient(0.0, edge), unresolved = gradient(edge, 1e9);
             const double a = std::sqrt(shown.xxxx), b = shown.xxyy / a;
             const double d = std::sqrt(shown.yyyy - b * b), f = std::sqrt(shown.xxyy);
             std::mt19937_64 generator(7);
@@ -116,7 +117,7 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
             double foam = 0.0, sea = 0.0;
             for (int i = 0; i < 400000; ++i) {
                 const double x = normal(generator), y = normal(generator), z = normal(generator);
-                const auto j = jacobian_moments(a * x, b * x + d * y, f * z, f * z, hidden);
+                const auto j = jacobian_moments(a * x, b * x + d * y, f * z, f * z, unresolved);
                 const double area = sea_area(j, true);
                 sea += area;
                 foam += area * coverage(j, threshold, true);
@@ -126,7 +127,7 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
     }
 }
 
-// The strain covariance of a real sea and a few shown derivatives: J's cumulants against random draws of the
+// The gradient covariance of a real sea and a few shown derivatives: J's cumulants against random draws of the
 // three Gaussians. 20 batches give the sampling error; the tolerance is five times that.
 class GaussianRemainder : public testing::TestWithParam<double> {};
 
@@ -136,7 +137,7 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
     scene.sea.wind_direction_deg = 20.0;  // so that xxxy and xyyy aren't 0
     const SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.3, 1e4);
     const double c2 = GetParam() * GetParam();
-    const HiddenStrain<double> v{c2 * m.xxxx, c2 * m.xxxy, c2 * m.xxyy, c2 * m.xyyy, c2 * m.yyyy};
+    const UnresolvedGradients<double> v{c2 * m.xxxx, c2 * m.xxxy, c2 * m.xxyy, c2 * m.xyyy, c2 * m.yyyy};
     // Cholesky factor of the covariance of (sxx, syy, sxy).
     const double a = std::sqrt(v.xxxx), b = v.xxyy / a, c = v.xxxy / a;
     const double d = std::sqrt(v.yyyy - b * b), e = (v.xyyy - b * c) / d,
@@ -194,8 +195,8 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
 // The choppiness of a sea, and one at which J's quadratic terms are as large as the linear ones.
 INSTANTIATE_TEST_SUITE_P(Choppiness, GaussianRemainder, testing::Values(1.0, 4.0));
 
-TEST(JacobianMoments, AreExactWhereNothingIsHidden) {
-    const auto j = jacobian_moments(0.3f, -0.2f, 0.1f, 0.1f, HiddenStrain<float>{});
+TEST(JacobianMoments, AreExactWhereNothingIsUnresolved) {
+    const auto j = jacobian_moments(0.3f, -0.2f, 0.1f, 0.1f, UnresolvedGradients<float>{});
     EXPECT_FLOAT_EQ(j.mean, 1.3f * 0.8f - 0.01f);
     EXPECT_EQ(j.variance, 0.0f);
     EXPECT_EQ(j.third, 0.0f);
@@ -246,7 +247,7 @@ TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
         const SpectralMoments m =
             moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
         const auto j = jacobian_moments(0.0, 0.0, 0.0, 0.0,
-                                        HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+                                        UnresolvedGradients<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
         for (const bool third_moment : {false, true}) {
             const double w =
                 coverage(j, calibrated_threshold(m, law_coverage(scene), 1.0, third_moment), third_moment);
@@ -264,9 +265,9 @@ TEST(Whitecaps, OfEveryChoppinessHaveFoam) {
     const double law = law_coverage(scene);
     for (const double choppiness : {0.5, 1.0, 2.0, 4.0, 8.0, 9.0, 10.0}) {
         SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, 6.0);
-        m.scale_strain(choppiness * choppiness);
+        m.scale_gradients(choppiness * choppiness);
         const auto j = jacobian_moments(0.0, 0.0, 0.0, 0.0,
-                                        HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+                                        UnresolvedGradients<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
         const double foam = coverage(j, calibrated_threshold(m, law, choppiness, true), true);
         EXPECT_NEAR(foam, law, 1e-6 * law) << choppiness;
     }
@@ -311,7 +312,7 @@ TEST(WhitecapLaws, AreCapped) {
                     scene.effects.whitecap_amount = amount;
                     EXPECT_LE(law_coverage(scene), 0.6);
                     SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, 6.0);
-                    m.scale_strain(choppiness * choppiness);
+                    m.scale_gradients(choppiness * choppiness);
                     EXPECT_LT(calibrated_threshold(m, law_coverage(scene), choppiness, true), 1.0);
                 }
 }

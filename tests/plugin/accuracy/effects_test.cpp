@@ -84,9 +84,10 @@ std::vector<std::int64_t> costs_of(const Scene& scene) {
     return costs;
 }
 
-// Nothing that the table says to be gone is computed, but for the strains that break, which foam has of its own.
+// Nothing that the table says to be gone is computed, but for the gradients that break, which foam has of its own.
 void expect_gone(const Plan& plan, const EffectRow& row) {
-    const FieldSet gone = row.fields & ~(plan.from->scene.effects.whitecaps ? strain_fields() : FieldSet());
+    const FieldSet gone =
+        row.fields & ~(plan.from->scene.effects.whitecaps ? displacement_gradient_fields() : FieldSet());
     for (const CascadePlan& cascade : plan.cascades)
         for (const Grid& grid : cascade.grids) EXPECT_TRUE((grid.fields & gone).none());
     for (const PlannedQuery& planned : plan.queries)

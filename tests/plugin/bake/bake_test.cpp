@@ -19,12 +19,12 @@
 
 #include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
+#include "core/surface/footprint_levels.h"
 #include "core/surface/projected_grid.h"
-#include "core/surface/rungs.h"
 #include "plugin/bake/sequence.h"
+#include "plugin/format/shot/ndbc.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
-#include "plugin/shot/ndbc.h"
-#include "plugin/shot/shot.h"
 
 namespace {
 
@@ -126,7 +126,7 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
         const Values& mesh = slot.outputs.front()->values;
         const ProjectedGridSize size = alone(f);
         ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
-        keep_to_rungs(grid, projected_grid_needs(view_at(scene.camera, f), options));
+        keep_to_levels(grid, projected_grid_needs(view_at(scene.camera, f), options));
         const std::size_t count = points_of(size);
         ASSERT_EQ(grid.rest_m.size(), count);
         for (const std::size_t got :

@@ -20,8 +20,8 @@
 #include "core/evaluate/evaluate.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
-#include "plugin/usd/layers.h"
-#include "plugin/usd/read_mesh.h"
+#include "plugin/format/usd/layers.h"
+#include "plugin/format/usd/read_mesh.h"
 
 namespace pelagic::test {
 

@@ -17,7 +17,7 @@
 #include "core/scene/scene.h"
 #include "core/scene/validate.h"
 #include "plugin/budget/budget.h"
-#include "plugin/shot/ndbc.h"
+#include "plugin/format/shot/ndbc.h"
 #include "tests/core/scene/key_samples.h"
 
 namespace pelagic::test {

@@ -22,12 +22,12 @@
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
 #include "plugin/bake/bake.h"
-#include "plugin/exr/exr.h"
 #include "plugin/files/files.h"
+#include "plugin/format/exr/exr.h"
+#include "plugin/format/vdb/vdb.h"
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/render/render_files.h"
-#include "plugin/vdb/vdb.h"
 #include "tests/plugin/bake/closure_shots.h"
 
 namespace {
@@ -210,7 +210,7 @@ class Closure : public ::testing::Test {
         for (const PlannedOutput& output : plan.outputs)
             for (const int frame : frames) {
                 std::string source = plan.queries[output.query].query.name + '\n' +
-                                     canonical(plan.from->scene, output.feeds) +
+                                     canonical(plan.from->scene, output.key_parts) +
                                      plan_text(plan, output.query) + std::to_string(frame);
                 if (const auto view = plan.surface->shaped_by(frame); view && output.has_surface)
                     source += pose_text(*view);
@@ -264,7 +264,7 @@ class Closure : public ::testing::Test {
             const bool kept = was_there && fs::equivalent(base_ / path, again / path);
             happened[output].insert(kept ? 'k' : was_there ? 'R' : 'n');
             if (output == "sky" && was_there) {
-                EXPECT_EQ(kept, (key_of(edit.key).feeds & feeds(Feed::Light)).none()) << path;
+                EXPECT_EQ(kept, (key_of(edit.key).key_parts & key_parts(KeyPart::Light)).none()) << path;
             }
             const auto carries = made.fingerprints.find(path);
             if (carries == made.fingerprints.end()) continue;

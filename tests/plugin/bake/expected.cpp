@@ -16,8 +16,8 @@
 #include "core/effects/sea_at_time.h"
 #include "core/evaluate/evaluate.h"
 #include "core/surface/rest_surface.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
-#include "plugin/shot/shot.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "tests/plugin/cli/program.h"
-#include "tests/plugin/cli/small_shot.h"
+#include "tests/plugin/host/cli/program.h"
+#include "tests/plugin/host/cli/small_shot.h"
 
 namespace pelagic::test {
 namespace {

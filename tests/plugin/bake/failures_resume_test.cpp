@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "tests/plugin/cli/program.h"
-#include "tests/plugin/cli/small_shot.h"
+#include "tests/plugin/host/cli/program.h"
+#include "tests/plugin/host/cli/small_shot.h"
 
 namespace pelagic::test {
 namespace {

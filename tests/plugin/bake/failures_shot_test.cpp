@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "tests/plugin/cli/program.h"
+#include "tests/plugin/host/cli/program.h"
 
 namespace pelagic::test {
 namespace {
@@ -40,7 +40,7 @@ TEST_P(RefusedShot, SaysWhereWhatAndWhatInstead) {
 }
 
 const std::string kBuoy =
-    std::string("\"") + PELAGIC_SOURCE_DIR + "/tests/plugin/shot/data/made-99001w2021.txt\"";
+    std::string("\"") + PELAGIC_SOURCE_DIR + "/tests/plugin/format/shot/data/made-99001w2021.txt\"";
 
 INSTANTIATE_TEST_SUITE_P(
     Failures, RefusedShot,

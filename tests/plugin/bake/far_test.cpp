@@ -24,7 +24,7 @@
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
-#include "plugin/usd/layers.h"
+#include "plugin/format/usd/layers.h"
 #include "tests/plugin/bake/baked_mesh.h"
 
 namespace {

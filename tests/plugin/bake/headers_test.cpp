@@ -37,11 +37,13 @@ TEST(Headers, NameTheKeysThatTheFilesDependOn) {
     for (const Key& key : keys()) {
         const KeyValue value = value_of(scene, key);
         const bool is_given = !std::holds_alternative<std::monostate>(value);
-        const bool is_in_map = (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Maps)).any();
+        const bool is_in_map =
+            (key.key_parts & key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Maps)).any();
         // OpenEXR ends names with a zero.
         EXPECT_EQ(map.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_in_map)
             << key.path;
-        const bool is_in_stage = (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts)).any();
+        const bool is_in_stage =
+            (key.key_parts & key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts)).any();
         std::string identifier = key.path;
         identifier.replace(identifier.find('.'), 1, "_");
         EXPECT_EQ(stage.find(' ' + identifier + " = ") != std::string::npos, is_given && is_in_stage)

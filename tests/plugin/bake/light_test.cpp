@@ -25,9 +25,9 @@
 #include "core/lighting/lighting.h"
 #include "core/scene/keys.h"
 #include "plugin/bake/bake.h"
-#include "plugin/exr/exr.h"
-#include "plugin/exr/read.h"
 #include "plugin/files/files.h"
+#include "plugin/format/exr/exr.h"
+#include "plugin/format/exr/read.h"
 #include "plugin/light/light.h"
 
 namespace {
@@ -291,7 +291,7 @@ TEST(StageLightKeys, EveryKeyOfTheLightFeedsIt) {
     int count = 0;
     for (const Key& key : keys()) {
         if (!key.path.starts_with("light.")) continue;
-        EXPECT_TRUE((key.feeds & feeds(Feed::Light)).any()) << key.path;
+        EXPECT_TRUE((key.key_parts & key_parts(KeyPart::Light)).any()) << key.path;
         ++count;
     }
     EXPECT_GE(count, 4);

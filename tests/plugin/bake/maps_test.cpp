@@ -17,7 +17,7 @@
 #include <glm/geometric.hpp>
 #include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
-#include "core/plan/copies.h"
+#include "core/plan/random_tiling.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "tests/plugin/bake/read_exr.h"
@@ -228,7 +228,7 @@ double between_texels(const test::Plane& tile, double x, double y) {
     return sum;
 }
 
-// What a file says of itself is enough to lay its copies: by the rule of core/plan/copies.h the tiles add up to the sea.
+// What a file says of itself is enough to lay its copies: by the rule of core/plan/random_tiling.h the tiles add up to the sea.
 TEST_F(BakedMaps, TilesOfRandomCopiesAddUpToTheSeaByTheirHeaders) {
     scene_.waves.cascades = {{.size_m = 64.0, .resolution = 64}};
     scene_.waves.tiling = Tiling::Random;
@@ -242,7 +242,7 @@ TEST_F(BakedMaps, TilesOfRandomCopiesAddUpToTheSeaByTheirHeaders) {
     const double size_m = input.header().typedAttribute<Imf::DoubleAttribute>("size").value();
     const double ramp = input.header().typedAttribute<Imf::DoubleAttribute>("copiesRamp").value();
     const auto key = static_cast<uint>(input.header().typedAttribute<Imf::IntAttribute>("copiesKey").value());
-    ASSERT_EQ(ramp, kCopyRamp);
+    ASSERT_EQ(ramp, kBlendRamp);
     for (const int row : {7, 128, 250, 383, 386})
         for (const int column : {3, 120, 131, 256, 380, 389}) {
             const glm::dvec2 at(-64.0 + 0.25 * column, -64.0 + 0.25 * row);
@@ -250,13 +250,13 @@ TEST_F(BakedMaps, TilesOfRandomCopiesAddUpToTheSeaByTheirHeaders) {
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i) {
                     const auto weight = [&](double distance) {
-                        return distance <= 0.5 ? copy_weights(distance).own
-                                               : copy_weights(std::max(1.0 - distance, 0.0)).next;
+                        return distance <= 0.5 ? blend_weights(distance).own
+                                               : blend_weights(std::max(1.0 - distance, 0.0)).next;
                     };
                     const double share =
                         weight(std::abs(at.x / size_m - i)) * weight(std::abs(at.y / size_m - j));
                     if (share == 0.0) continue;
-                    const auto offset = copy_offset<double>(key, static_cast<uint>(i), static_cast<uint>(j));
+                    const auto offset = tile_offset<double>(key, static_cast<uint>(i), static_cast<uint>(j));
                     const glm::dvec2 texel =
                         ((at / size_m) + glm::dvec2(offset.x, offset.y) + 0.5) * double(tile.n);
                     sum += share * between_texels(tile, texel.x, texel.y);

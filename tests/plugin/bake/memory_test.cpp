@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/plugin/cli/program.h"
+#include "tests/plugin/host/cli/program.h"
 
 namespace pelagic::test {
 namespace {

@@ -28,7 +28,7 @@
 #include "plugin/bake/bake.h"
 #include "plugin/bake/level_set.h"
 #include "plugin/bake/volume_blocks.h"
-#include "plugin/vdb/vdb.h"
+#include "plugin/format/vdb/vdb.h"
 #include "tests/plugin/bake/read_vdb.h"
 #include "tests/plugin/bake/spray_balance.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "plugin/budget/budget.h"
-#include "tests/plugin/cli/program.h"
+#include "tests/plugin/host/cli/program.h"
 
 namespace pelagic::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/plan/prepared_scene.h"
 #include "plugin/bake/bake.h"
 #include "plugin/budget/budget.h"
-#include "tests/plugin/cli/program.h"
+#include "tests/plugin/host/cli/program.h"
 
 namespace pelagic::test {
 namespace {

@@ -24,8 +24,8 @@
 #include "core/waves/sea.h"
 #include "plugin/accuracy/accuracy.h"
 #include "plugin/accuracy/sea_answers.h"
+#include "plugin/format/shot/shot.h"
 #include "plugin/light/light.h"
-#include "plugin/shot/shot.h"
 
 namespace pelagic {
 namespace {

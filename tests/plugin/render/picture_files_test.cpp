@@ -301,9 +301,10 @@ TEST(PictureFiles, NameTheKeysThatTheyDependOn) {
     const std::string bytes = encode_exr({scene, options, sky, "", 1.0f}, pattern(resolution), 1);
     for (const Key& key : keys()) {
         const bool is_given = !std::holds_alternative<std::monostate>(value_of(scene, key));
-        const bool is_said = (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Grid,
-                                                Feed::Light, Feed::Water))
-                                 .any();
+        const bool is_said =
+            (key.key_parts & key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts,
+                                       KeyPart::Grid, KeyPart::Light, KeyPart::Water))
+                .any();
         // OpenEXR ends names with a zero.
         EXPECT_EQ(bytes.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_said)
             << key.path;

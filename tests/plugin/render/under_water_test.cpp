@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/evaluate/evaluate.h"
-#include "core/surface/rungs.h"
+#include "core/surface/footprint_levels.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
 
@@ -44,11 +44,11 @@ glm::dvec3 surface_at(const Scene& scene, int frame, glm::dvec2 rest_m) {
         const Scene seen = seen_from(scene, place_m);
         Frame<float> state(std::make_shared<const Sea<float>>(picture_plan(seen, std::array{frame})));
         state.set(scene.shot.time_s(frame));
-        const bool on_ladder = state.sea().plan().queries.front().query.pixel_m.size() > 1;
+        const bool has_levels = state.sea().plan().queries.front().query.pixel_m.size() > 1;
         const double finest_m = projected_grid_needs(view_at(seen.camera, frame),
                                                      projected_grid_options(*state.sea().plan().from))
                                     .finest_cell_m;
-        const auto cell_m = static_cast<float>(on_ladder ? first_rung_m(finest_m) : finest_m);
+        const auto cell_m = static_cast<float>(has_levels ? first_level_m(finest_m) : finest_m);
         const glm::vec2 rest(0.0f);
         glm::vec3 position(0.0f);
         Results<float> results;

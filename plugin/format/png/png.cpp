@@ -1,0 +1,142 @@
+// PNG through libpng, onto a string.
+#include "plugin/format/png/png.h"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <vector>
+
+namespace pelagic::png {
+namespace {
+
+constexpr int kLargest = 1000000;  // [pixels] per side: the library's limit
+// zlib's level, 1 … 9. Pictures of a sea look like noise to it: higher levels only take longer.
+constexpr int kZipLevel = 3;
+
+// The state of the library's callbacks. C++ exceptions must not pass through its C code.
+struct Sink {
+    std::string bytes;
+    std::exception_ptr error;
+};
+
+extern "C" void pelagic_png_write(png_structp file, png_bytep bytes, std::size_t count) {
+    auto& sink = *static_cast<Sink*>(png_get_io_ptr(file));
+    try {
+        sink.bytes.append(reinterpret_cast<const char*>(bytes), count);
+        return;
+    } catch (...) {
+        sink.error = std::current_exception();
+    }
+    png_error(file, "no memory");
+}
+
+extern "C" void pelagic_png_flush(png_structp) {}
+
+extern "C" void pelagic_png_read(png_structp file, png_bytep bytes, std::size_t count) {
+    auto& left = *static_cast<std::string_view*>(png_get_io_ptr(file));
+    if (left.size() < count) png_error(file, "the file ends too early");
+    std::memcpy(bytes, left.data(), count);
+    left.remove_prefix(count);
+}
+
+// Unpacks the bytes that are `left`, row after row into `row`. As write().
+bool read(png_structp file, png_infop info, std::string_view& left, png_bytep row) {
+    if (setjmp(png_jmpbuf(file)) != 0) return false;
+    png_set_read_fn(file, &left, pelagic_png_read);
+    png_set_user_limits(file, kLargest, kLargest);
+    png_set_crc_action(file, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_benign_errors(file, 0);
+    png_read_info(file, info);
+    const png_uint_32 height = png_get_image_height(file, info);
+    for (png_uint_32 y = 0; y < height; ++y) png_read_row(file, row, nullptr);
+    png_read_end(file, nullptr);
+    return left.empty();
+}
+
+std::size_t bytes_a_pixel(const Image& image) {
+    return image.has_alpha ? 4 : 3;
+}
+
+// Returns false if the library failed. Has no local with a destructor, because the library uses longjmp().
+bool write(png_structp file, png_infop info, const Image& image) {
+    if (setjmp(png_jmpbuf(file)) != 0) return false;
+    const auto width = static_cast<png_uint_32>(image.width);
+    png_set_user_limits(file, kLargest, kLargest);
+    png_set_compression_level(file, kZipLevel);
+    png_set_IHDR(file, info, width, static_cast<png_uint_32>(image.height), 8,
+                 image.has_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(file, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (!image.comment.empty()) {
+        png_text text{};
+        text.compression = PNG_TEXT_COMPRESSION_NONE;
+        text.key = const_cast<png_charp>("Comment");  // the library copies both
+        text.text = const_cast<png_charp>(image.comment.c_str());
+        text.text_length = image.comment.size();
+        png_set_text(file, info, &text, 1);
+    }
+    png_write_info(file, info);
+    for (int y = 0; y < image.height; ++y)
+        png_write_row(file, image.bytes.data() + bytes_a_pixel(image) * width * static_cast<std::size_t>(y));
+    png_write_end(file, nullptr);
+    return true;
+}
+
+}  // namespace
+
+std::string encode(const Image& image) {
+    const std::string size = std::to_string(image.width) + " x " + std::to_string(image.height);
+    if (image.width < 1 || image.width > kLargest || image.height < 1 || image.height > kLargest)
+        throw std::invalid_argument("a picture of " + size + " pixels: both must be 1 to 1000000");
+    if (image.bytes.size() != bytes_a_pixel(image) * image.width * image.height)
+        throw std::invalid_argument(
+            "a picture of " + size + " pixels with " + std::to_string(image.bytes.size()) +
+            " bytes: " + std::to_string(bytes_a_pixel(image)) + " a pixel are needed");
+    Sink sink;
+    png_structp file = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr,
+                                               [](png_structp, png_const_charp) {});  // warnings
+    png_infop info = file == nullptr ? nullptr : png_create_info_struct(file);
+    bool whole = false;
+    if (info != nullptr) {
+        png_set_write_fn(file, &sink, pelagic_png_write, pelagic_png_flush);
+        whole = write(file, info, image);
+    }
+    png_destroy_write_struct(&file, &info);
+    if (sink.error) std::rethrow_exception(sink.error);
+    if (!whole) throw std::bad_alloc();  // the only failure left after the checks above
+    return std::move(sink.bytes);
+}
+
+bool is_whole(std::string_view bytes) {
+    // The signature, the header's length and name, and its content: width, height, 8 bits of red, green and
+    // blue, or of those and alpha.
+    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    constexpr std::string_view kColours("\x08\x02\0\0\0", 5), kWithAlpha("\x08\x06\0\0\0", 5);
+    constexpr std::size_t kWidth = 16, kColoursAt = 24, kHeader = 33;
+    if (bytes.size() < kHeader || !bytes.starts_with(kSignature)) return false;
+    const std::string_view colours = bytes.substr(kColoursAt, kColours.size());
+    if (colours != kColours && colours != kWithAlpha) return false;
+    std::size_t width = 0;
+    for (std::size_t i = kWidth; i < kWidth + 4; ++i)
+        width = width << 8 | static_cast<std::uint8_t>(bytes[i]);
+    if (width > kLargest) return false;
+    std::vector<std::uint8_t> row(4 * width);
+    // Neither errors nor warnings are printed.
+    png_structp file = png_create_read_struct(
+        PNG_LIBPNG_VER_STRING, nullptr, [](png_structp reader, png_const_charp) { png_longjmp(reader, 1); },
+        [](png_structp, png_const_charp) {});
+    png_infop info = file == nullptr ? nullptr : png_create_info_struct(file);
+    if (info == nullptr) {
+        png_destroy_read_struct(&file, &info, nullptr);
+        throw std::bad_alloc();
+    }
+    const bool whole = read(file, info, bytes, row.data());  // `bytes` are then what is left
+    png_destroy_read_struct(&file, &info, nullptr);
+    return whole;
+}
+
+}  // namespace pelagic::png

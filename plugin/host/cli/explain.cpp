@@ -1,0 +1,168 @@
+// pelagic explain SHOT.toml
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/base/instruction_set.h"
+#include "core/plan/memory.h"
+#include "core/plan/plan.h"
+#include "core/scene/budget.h"
+#include "plugin/bake/bake.h"
+#include "plugin/bake/measure.h"
+#include "plugin/bake/stage.h"
+#include "plugin/budget/budget.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/help.h"
+#include "plugin/host/cli/text.h"
+#include "plugin/host/cli/threads.h"
+#include "plugin/host/cli/verb.h"
+#include "plugin/host/cli/warnings.h"
+#include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
+#include "plugin/render/render.h"
+
+namespace pelagic::cli {
+namespace {
+
+struct ExplainArguments {
+    std::string shot;
+    bool measure = false;
+    std::string threads;
+};
+
+std::string signed_bytes(std::int64_t bytes) {
+    if (bytes == 0) return "0";
+    return (bytes < 0 ? "-" : "") + bytes_text(static_cast<std::size_t>(std::abs(bytes)));
+}
+
+std::string milliseconds_text(const Milliseconds& ms) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.2f (%.2f)", ms.median, ms.spread);
+    return text.data();
+}
+
+// Columns of fixed width, so that each row can be printed as soon as it is measured.
+void print_row(const std::array<std::string, 8>& cells) {
+    constexpr std::array<int, 8> kWidths{-23, 10, 8, 10, 10, 10, 17, 17};
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto width = static_cast<std::size_t>(std::abs(kWidths[i]));
+        const std::string space(width - std::min(width, cells[i].size()), ' ');
+        std::cout << (i > 0 ? " " : "") << (kWidths[i] < 0 ? cells[i] + space : space + cells[i]);
+    }
+    std::cout << std::endl;  // flushed, because a row may take seconds
+}
+
+void print_measured(const Measured& measured) {
+    const PlanCost& cost = measured.cost;
+    print_row({measured.name, std::to_string(cost.transforms), std::to_string(cost.lines),
+               signed_bytes(cost.sea_bytes), signed_bytes(cost.frame_bytes), signed_bytes(cost.output_bytes),
+               milliseconds_text(measured.compute), milliseconds_text(measured.encode)});
+}
+
+std::string too_large(std::size_t needed, const std::string& there) {
+    return "measuring holds the sea twice, with and without an item: about " + bytes_text(needed) + there +
+           "; lower surface.resolution, output.map_resolution or the cascades' resolutions, or run explain "
+           "without --measure";
+}
+
+int print_prices(const Scene& scene, const ExplainArguments& arguments) {
+    std::size_t needed = 0;
+    const auto out_of_memory = [&](int) { return too_large(needed, ", which this process doesn't get"); };
+    const auto print = [&](Session& session) {
+        const int threads = session.threads.count();
+        needed = measure_bytes(scene, threads);
+        if (const MemoryLimit limit = machine::memory_limit(); needed > limit.bytes)
+            throw std::runtime_error(
+                too_large(needed, ", and " + limit.whose + " " + bytes_text(limit.bytes)));
+        std::cout
+            << "\nPrices: a frame with the item minus a frame without it, on "
+            << count_text(threads, "thread", "threads") << ", " << instruction_set()
+            << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median\n"
+               "(half the interquartile range) of computing as in a bake, and of encoding its files.\n\n";
+        print_row({"", "transforms", "lines", "sea", "frame", "output", "compute, ms", "encode, ms"});
+        MeasureOptions options;
+        options.progress = [&](const MeasureProgress& now) {
+            std::string line = "measuring " + now.name;
+            if (now.seconds_left > 0.0)
+                line += ", " + std::to_string(now.item + 1) + " of " + std::to_string(now.items) +
+                        ", about " + duration_text(now.seconds_left) + " left";
+            session.progress.show(line);
+        };
+        options.measured = [&](const Measured& measured) {
+            session.progress.clear();
+            print_measured(measured);
+        };
+        const Measured whole = session.threads.execute([&] { return measure(scene, options); });
+        options.measured(whole);
+        return int{kDone};
+    };
+    return guarded_run(
+        {.shot = {}, .threads = arguments.threads, .stops = false, .out_of_memory = out_of_memory}, print);
+}
+
+// What the shot's budget, if it has one, asks for.
+Settled print_settled(const Scene& scene, Purpose purpose, const std::string& title) {
+    Progress progress;
+    Settled settled;
+    try {
+        settled = settle(
+            scene, purpose,
+            {.watch = {.progress = [&](double done) { progress.show_measuring(done); }, .cancel = nullptr}});
+    } catch (const std::exception& error) {  // who only bakes needs no picture
+        settled = settle(without_budget(scene), purpose);
+        settled.text = std::string("none: ") + error.what();
+    }
+    progress.clear();
+    if (!settled.text.empty()) std::cout << title << "\n  " << settled.text << "\n\n";
+    return settled;
+}
+
+// What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.
+void print_memory(const Scene& scene, const RenderOptions& options, const Plan& plan) {
+    const int threads = tbb::this_task_arena::max_concurrency();
+    const std::vector<int> frames = representative_frames(scene, 64);
+    const bool alone = scene.shot.first_frame == scene.shot.last_frame;
+    if (!plan.outputs.empty())
+        std::cout << "A bake holds " << memory_text(bake_memory(plan, alone ? 1 : kFramesInFlight, threads))
+                  << ".\n";
+    if (scene.output.mesh != MeshFormat::None)
+        std::cout << "The camera of the bake's stage takes " << bytes_text(camera_layer_bytes(scene))
+                  << ", for all frames of the shot together.\n";
+    std::cout << "Pictures of " << scene.camera.resolution.x << " × " << scene.camera.resolution.y << " hold "
+              << memory_text(render_memory(scene, options, frames, alone ? 1 : kPicturesInFlight, threads))
+              << ".\n"
+              << std::flush;
+}
+
+}  // namespace
+
+Verb add_explain(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("explain", help::kExplain);
+    command->group(help::kVerbs);
+    command->footer(help::kExplainFooter);
+    auto arguments = std::make_shared<ExplainArguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
+    CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
+    add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
+    return {command, [arguments] {
+                const Scene scene = load_shot(arguments->shot, check_scene);
+                const Plan plan = plan_bake(print_settled(scene, Purpose::Mesh, "Budget").scene);
+                std::cout << explain(plan);
+                const Settled pictures = print_settled(scene, Purpose::Pictures, "\nBudget of pictures");
+                print_memory(pictures.scene, pictures.options, plan);
+                print_warnings(arguments->shot, scene);
+                return arguments->measure ? print_prices(plan.from->scene, *arguments) : int{kDone};
+            }};
+}
+
+}  // namespace pelagic::cli

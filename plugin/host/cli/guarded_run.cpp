@@ -1,0 +1,95 @@
+#include "plugin/host/cli/guarded_run.h"
+
+#include <iostream>
+#include <new>
+
+#include "core/base/build_watch.h"
+#include "core/base/text.h"
+#include "core/plan/memory.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/memory.h"
+#include "plugin/host/cli/text.h"
+
+namespace pelagic::cli {
+
+int guarded_run(const Guard& guard, const std::function<int(Session&)>& work) {
+    std::optional<StopSignals> stop;  // from here on nobody's closing of a log ends the work
+    if (guard.stops) stop.emplace();
+    Threads threads(guard.threads);
+    try {
+        Progress progress;  // which has gone before a message comes
+        Session session{stop ? &*stop : nullptr, progress, threads};
+        return work(session);
+    } catch (const std::bad_alloc&) {
+        if (!guard.out_of_memory) throw;
+        std::cerr << "pelagic: " << guard.out_of_memory(threads.count()) << '\n';
+        return kRefused;
+    } catch (const NotEnoughMemory& error) {
+        if (guard.shot.empty()) throw;
+        return refuse_memory(guard.shot, error);
+    } catch (const std::invalid_argument& error) {
+        // load_shot() has looked at every value with its line: what is refused here is what it can't see.
+        if (guard.shot.empty()) throw;
+        std::cerr << placed(guard.shot, error.what()) << '\n';
+        return kRefused;
+    } catch (const BuildCancelled&) {
+        if (!stop || !guard.stopped) throw;
+        std::cerr << "pelagic: stopped; " << guard.stopped() << '\n';
+        return kSignal + stop->number();
+    }
+}
+
+RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
+    RunOptions options;
+    if (arguments.frames) options.frames = asked([&] { return parse_frames(*arguments.frames, shot); });
+    if (arguments.out && arguments.out->empty())
+        throw WrongUsage("--out \"\": that is no folder; accepted: a path, or no --out for ./" + shot.name);
+    options.out = arguments.out.value_or(shot.name);
+    options.max_memory_bytes = memory_of(arguments.max_memory);
+    options.trust_times = arguments.trust_times;
+    return options;
+}
+
+Settled settled_for(const RunOptions& options, const Scene& scene, Purpose purpose, Session& session,
+                    const FixedSettings& fixed) {
+    const BuildWatch watch{.progress = [&](double done) { session.progress.show_measuring(done); },
+                           .cancel = options.cancel};
+    Settled settled =
+        settle_for(options, scene, purpose,
+                   {.fixed = fixed, .max_memory_bytes = options.max_memory_bytes, .watch = watch},
+                   purpose == Purpose::Pictures ? "--samples and --sky-quality" : "");
+    session.progress.clear();
+    if (!settled.text.empty()) std::cout << settled.text << std::endl;
+    if (!settled.note.empty())
+        std::cerr << "pelagic: in " << line_text(options.out.string()) << ' ' << settled.note << std::endl;
+    return settled;
+}
+
+int run_frames(const RunArguments& arguments, RunOptions options, const FrameVerb& verb) {
+    RunReport report;
+    const std::string out = line_text(options.out.string());
+    const auto stopped = [&] {
+        return std::to_string(report.done + report.kept) + " of the " +
+               count_text(report.total, "frame", "frames") + " asked for are whole in " + out +
+               "; run the same command again to continue";
+    };
+    return guarded_run({.shot = arguments.shot,
+                        .threads = arguments.threads,
+                        .out_of_memory = verb.out_of_memory,
+                        .stopped = stopped},
+                       [&](Session& session) {
+                           options.cancel = &session.stop->cancelled();
+                           options.progress = [&](const RunProgress& now) {
+                               if (now.stage == RunStage::Frames) session.stop->files_begin();
+                               verb.show ? verb.show(now, session.progress) : session.progress.show(now);
+                           };
+                           report = session.threads.execute([&] { return verb.work(options, session); });
+                           if (report.cancelled) throw BuildCancelled();
+                           session.progress.clear();
+                           verb.report(report, out);
+                           return int{kDone};
+                       });
+}
+
+}  // namespace pelagic::cli

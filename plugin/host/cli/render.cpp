@@ -1,0 +1,174 @@
+// pelagic render SHOT.toml
+#include "plugin/render/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/plan/spray.h"
+#include "core/scene/text.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/help.h"
+#include "plugin/host/cli/memory.h"
+#include "plugin/host/cli/size.h"
+#include "plugin/host/cli/text.h"
+#include "plugin/host/cli/verb.h"
+#include "plugin/light/light.h"
+#include "plugin/render/picture_files.h"
+#include "plugin/render/render_files.h"
+
+namespace pelagic::cli {
+namespace {
+
+struct RenderArguments : RunArguments {
+    std::optional<std::string> terms, sky_quality, layers;
+    std::optional<int> samples;
+    double exposure_stops = 0.0, shutter_frames = 0.0;
+    bool alpha = false;
+    std::string size;
+};
+
+// "sun,sea": those alone.
+void parse_terms(const std::string& text, LightingChoice& choice) {
+    choice.sun = choice.sky = choice.water = choice.air = false;
+    bool foam = false, spray = false;
+    const std::array<std::pair<std::string_view, bool*>, 6> terms{{{"sun", &choice.sun},
+                                                                   {"sky", &choice.sky},
+                                                                   {"sea", &choice.water},
+                                                                   {"foam", &foam},
+                                                                   {"air", &choice.air},
+                                                                   {"spray", &spray}}};
+    std::istringstream words(text + ',');  // an empty text is a word that is none
+    for (std::string word; std::getline(words, word, ',');) {
+        const auto term =
+            std::find_if(terms.begin(), terms.end(), [&](const auto& t) { return t.first == word; });
+        if (term == terms.end())
+            throw WrongUsage(
+                "terms \"" + text + "\": \"" + word +
+                "\" is none; accepted: any of sun, sky, sea, foam, air, spray with commas between");
+        *term->second = true;
+    }
+    choice.whitecaps = choice.whitecaps && foam;
+    choice.spray = choice.spray && spray;
+}
+
+SkyQuality parse_sky_quality(const std::string& text) {
+    if (text == "one") return SkyQuality::One;
+    if (text == "nine") return SkyQuality::Nine;
+    if (text == "integral") return SkyQuality::Integral;
+    throw WrongUsage("sky quality \"" + text + "\"; accepted: one, nine, integral");
+}
+
+PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
+    PictureOrder order{.scene = load_shot(arguments.shot, check_scene), .options = {}};
+    if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) order.scene.camera.resolution = size;
+    RenderOptions& options = order.options = render_options(order.scene);
+    options.samples = arguments.samples.value_or(options.samples);
+    if (options.samples < 1 || options.samples > kMostSamples)
+        throw WrongUsage("samples " + std::to_string(options.samples) + "; accepted: 1 to " +
+                         std::to_string(kMostSamples));
+    if (arguments.terms) parse_terms(*arguments.terms, options.lighting);
+    if (!(arguments.shutter_frames >= 0.0 && arguments.shutter_frames <= kLongestShutter_frames))
+        throw WrongUsage("shutter " + number_text(arguments.shutter_frames) + "; accepted: frames, 0 to " +
+                         number_text(kLongestShutter_frames));
+    options.shutter_frames = arguments.shutter_frames;
+    options.alpha = arguments.alpha;
+    if (arguments.layers) options.layers = asked([&] { return parse_picture_layers(*arguments.layers); });
+    if (arguments.sky_quality) options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
+    fixed = {
+        .samples = arguments.samples, .shutter_frames = options.shutter_frames, .layers = options.layers};
+    if (arguments.sky_quality) fixed.sky_quality = options.lighting.sky_quality;
+    if (!(std::abs(arguments.exposure_stops) <= kMostStops))
+        throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
+                         number_text(-kMostStops) + " to " + number_text(kMostStops));
+    order.exposure_stops = arguments.exposure_stops;
+    return order;
+}
+
+// Pictures take long: each says how far it is.
+void show_pictures(const RunProgress& now, Progress& progress) {
+    if (now.stage != RunStage::Frames || (now.share == 0.0 && now.done > 0)) return progress.show(now);
+    if (now.share > 0.0)
+        progress.show("frame " + std::to_string(now.at) + ": " +
+                      std::to_string(std::lround(100.0 * now.share)) + " %, " + std::to_string(now.done) +
+                      " of " + std::to_string(now.total - now.kept) + " whole");
+}
+
+void print_rendered(const RunReport& report, const PictureOrder& order, const RunOptions& options,
+                    const std::string& out) {
+    const Shot& shot = order.scene.shot;
+    const int first = options.frames.empty() ? shot.first_frame : options.frames.front();
+    std::cout << "pictures: " << line_text((options.out / picture_file(shot, first, "exr")).string())
+              << (report.total > 1 ? " …" : "") << " and .png\n"
+              << count_text(report.done, "frame", "frames") << " rendered in "
+              << duration_text(report.seconds);
+    if (report.kept > 0) std::cout << ", " << report.kept << " kept as they were";
+    std::cout << std::endl;
+    if (!report.stale.empty())
+        std::cerr << "pelagic: in " << out << " the frames " << frames_text(report.stale)
+                  << " are of another version of this shot, and were not asked for; render them again with "
+                     "--frames, or without it for the whole shot\n";
+    for (const std::string& line : report.foreign)
+        std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
+}
+
+int run(const RenderArguments& arguments) {
+    FixedSettings fixed;
+    PictureOrder order = order_of(arguments, fixed);
+    const RunOptions options = run_options(arguments, order.scene.shot);
+    const auto out_of_memory = [&](int) {
+        const glm::ivec2 size = order.scene.camera.resolution;
+        return "out of memory; ask for a smaller picture with --size (now " + std::to_string(size.x) + "x" +
+               std::to_string(size.y) +
+               ") or lower the cascades' resolutions; files already written are whole";
+    };
+    const auto work = [&](RunOptions watched, Session& session) {
+        if (const std::string thin = spray_warning(order.scene); !thin.empty())
+            std::cerr << line_text(arguments.shot) << ": note: " << thin << std::endl;
+        const Settled settled = settled_for(watched, order.scene, Purpose::Pictures, session, fixed);
+        settled.apply(order);
+        watched.chosen = settled.chosen();
+        return render_files(order, watched);
+    };
+    return run_frames(arguments, options,
+                      {.out_of_memory = out_of_memory,
+                       .work = work,
+                       .report = [&](const RunReport& report,
+                                     const std::string& out) { print_rendered(report, order, options, out); },
+                       .show = show_pictures});
+}
+
+}  // namespace
+
+Verb add_render(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("render", help::kRender);
+    command->group(help::kVerbs);
+    command->footer(help::kRenderFooter);
+    auto arguments = std::make_shared<RenderArguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
+    command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
+    command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
+    add_size(*command, arguments->size, help::kSize);
+    command->add_option("--exposure", arguments->exposure_stops, help::kExposure)->type_name("EV");
+    command->add_option("--samples", arguments->samples, help::kSamples)->type_name("N");
+    command->add_option("--sky-quality", arguments->sky_quality, help::kSkyQuality)->type_name("QUALITY");
+    command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
+    command->add_option("--shutter", arguments->shutter_frames, help::kShutter)->type_name("FRAMES");
+    command->add_flag("--alpha", arguments->alpha, help::kAlpha);
+    command->add_option("--layers", arguments->layers, help::kLayers)->type_name("LAYERS");
+    command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
+    add_threads(*command, arguments->threads, help::kThreads);
+    add_max_memory(*command, arguments->max_memory, help::kMaxMemory);
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

@@ -1,0 +1,89 @@
+// pelagic verify DIR …
+#include "plugin/run/verify.h"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/text.h"
+#include "plugin/files/files.h"
+#include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/help.h"
+#include "plugin/host/cli/text.h"
+#include "plugin/host/cli/threads.h"
+#include "plugin/host/cli/verb.h"
+
+namespace pelagic::cli {
+namespace {
+
+struct VerifyArguments {
+    std::vector<std::string> folders;
+    std::string threads;
+};
+
+// "2 shots, 151 files, 1.2 GiB: 3 missing, 1 damaged"
+std::string summary(const Verification& found) {
+    std::string text = count_text(found.shots, "shot", "shots") + ", " +
+                       count_text(found.files, "file", "files") + ", " + bytes_text(found.bytes) + ": ";
+    if (found.is_whole()) return text + "all whole";
+    std::string flaws;
+    for (const Flaw flaw : {Flaw::Missing, Flaw::Damaged, Flaw::Stale, Flaw::Foreign, Flaw::Interrupted}) {
+        long count = 0;
+        for (const Finding& finding : found.findings) count += finding.flaw == flaw ? 1 : 0;
+        if (count > 0) flaws += (flaws.empty() ? "" : ", ") + std::to_string(count) + ' ' + word_of(flaw);
+    }
+    return text + (flaws.empty() ? "no bake and no pictures are here" : flaws);
+}
+
+int run(const VerifyArguments& arguments) {
+    std::string at;  // the folder that is read
+    const auto check_all = [&](Session& session) {
+        session.stop->files_begin();  // a check ends soon, and with a word
+        int status = kDone;
+        for (const std::string& folder : arguments.folders) {
+            at = line_text(folder);
+            const BuildWatch watch{.progress =
+                                       [&](double done) {
+                                           session.progress.show("reading " + at + ": " +
+                                                                 std::to_string(std::lround(100.0 * done)) +
+                                                                 " %");
+                                       },
+                                   .cancel = &session.stop->cancelled()};
+            try {
+                const Verification found = session.threads.execute([&] { return verify(folder, watch); });
+                session.progress.clear();
+                for (const Finding& finding : found.findings)
+                    std::cout << word_of(finding.flaw) << ": " << line_text(folder + '/' + finding.path)
+                              << ' ' << finding.what << '\n';
+                std::cout << at << ": " << summary(found) << std::endl;
+                if (!found.is_whole()) status = kRefused;
+            } catch (const files::FileError& error) {
+                session.progress.clear();
+                std::cerr << "pelagic: " << error.what() << std::endl;
+                status = kRefused;
+            }
+        }
+        return status;
+    };
+    return guarded_run({.shot = {},
+                        .threads = arguments.threads,
+                        .stopped = [&] { return at + " was not read to its end"; }},
+                       check_all);
+}
+
+}  // namespace
+
+Verb add_verify(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("verify", help::kVerify);
+    command->group(help::kVerbs);
+    command->footer(help::kVerifyFooter);
+    auto arguments = std::make_shared<VerifyArguments>();
+    command->add_option("DIR", arguments->folders, help::kFolders)->required()->type_name("");
+    add_threads(*command, arguments->threads, help::kVerifyThreads);
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

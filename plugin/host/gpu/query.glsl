@@ -1,0 +1,65 @@
+// The query at one point: the GPU's evaluate().
+
+uniform float whitecap_threshold;
+
+// Footprints are given as width and long axis [m]. Trains follow them however long they are: (width, stretch) as
+// TrainArgs has it.
+vec3 train_footprint(vec3 given, float finest) {
+    float width = given.x > finest ? given.x : finest;
+    float along2 = dot(given.yz, given.yz);
+    float beyond2 = along2 - width * width;
+    return vec3(width, beyond2 > 0.0 ? sqrt(beyond2 / along2) * given.yz : vec2(0.0));
+}
+
+// Height, Dx, Dy of the point that rests at x.
+vec3 query_cell(vec2 rest_m, vec3 cell) {
+    vec3 sum = cell_cascades(rest_m, footprint_of(0, kCellLevels, cell));
+    if (kTrains) sum += cell_trains(split_metres(rest_m), train_footprint(cell, finest_m.x));
+    return sum;
+}
+
+// The slopes that a mesh of such cells leaves unresolved, at rest: variances (xx, yy, xy).
+vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
+    Footprint footprint = footprint_of(kCellLevels, kPixelLevels, cell);
+    TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), vec4(0.0), unresolved_of(footprint));
+    if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y), sums);
+    PixelMoments unresolved = possible_moments(sums.unresolved);
+    return vec3(unresolved.xx, unresolved.yy, unresolved.xy);
+}
+
+struct AllFoam {
+    float coverage;  // of all foam
+    float breaking;  // of what breaks now
+    float age_s;     // of what earlier breaking has left, on average
+};
+
+struct PixelAnswer {
+    vec3 normal;
+    vec3 slope_variance, slope_variance_at_rest;  // of unresolved waves: xx, yy, xy
+    float coverage;
+    float blend;  // between levels: lower + t
+};
+
+PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
+    Footprint footprint = footprint_of(kCellLevels, kPixelLevels, pixel);
+    bool apart = kCoverage && breaks_apart(footprint);
+    vec4 breaking = apart ? breaking_cascades(rest_m, footprint) : vec4(0.0);
+    TrainSums sums = TrainSums(pixel_cascades(rest_m, footprint), breaking, unresolved_of(footprint));
+    if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
+    PixelFields f = sums.fields;
+    PixelMoments unresolved = possible_moments(sums.unresolved);
+    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dyx);
+    SlopeVariances carried =
+        carried_slopes(SlopeVariances(unresolved.xx, unresolved.yy, unresolved.xy), f.dxx, f.dyy, f.dxy, f.dyx);
+    vec4 gradient = apart ? sums.breaking : vec4(f.dxx, f.dyy, f.dxy, f.dyx);
+    GustAnswer gust = GustAnswer(1.0, whitecap_threshold);
+    if (kGusts) gust = gusts_at(rest_m, pixel);
+    float foam = 0.0;
+    if (kCoverage)
+        foam = coverage(jacobian_moments(gradient.x, gradient.y, gradient.z, gradient.w,
+                                         UnresolvedGradients(unresolved.xxxx, unresolved.xxxy, unresolved.xxyy, unresolved.xyyy,
+                                                      unresolved.yyyy)),
+                        gust.whitecap_threshold, kThirdMoment);
+    return PixelAnswer(vec3(n.x, n.y, n.z), gust.factor * vec3(carried.xx, carried.yy, carried.xy),
+                       vec3(unresolved.xx, unresolved.yy, unresolved.xy), foam, float(footprint.blend.lower) + footprint.blend.t);
+}

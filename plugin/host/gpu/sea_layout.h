@@ -1,0 +1,113 @@
+// The layout of a query's grids and tables in GPU memory. It is the same for all frames and views of a sea.
+// Needs no OpenGL.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <initializer_list>
+#include <memory>
+#include <vector>
+
+#include "core/waves/frame.h"
+
+namespace pelagic {
+
+// A number as the sum of two floats of 12 significant bits, whose products with other such floats are exact.
+struct SplitNumber {
+    float high, low;
+};
+SplitNumber split_number(double value);
+
+class SeaLayout {
+  public:
+    // Throws std::invalid_argument as PackedFrame does.
+    SeaLayout(std::shared_ptr<const Sea<float>> sea, int query);
+
+    const Sea<float>& sea() const { return *sea_; }
+    int query() const { return query_; }
+    bool is_choppy() const { return is_choppy_; }
+    bool has_coverage() const { return has_coverage_; }
+    // Whether cascades have random tiling: their tiles at random offsets, blended (core/plan/random_tiling.h).
+    bool has_random_tiling() const;
+    // Whether what earlier breaking has left is part of the picture (PackedFoam).
+    bool has_living_foam() const { return has_coverage_ && sea_->plan().foam.has_value(); }
+    bool has_trains() const { return sea_->plan().trains.has_value(); }
+    bool has_gusts() const { return sea_->gusts().has_value(); }
+    int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }
+
+    // A texture: rows of `width` texels, fields interleaved, zeros up to `channels`.
+    struct Plane {
+        bool of_cells = false;  // grids of the cells' levels, otherwise of the pixels'
+        int channels = 1;       // 1, 2 or 4
+        std::vector<Field> fields;
+        glm::ivec2 size{1};
+    };
+    const std::vector<Plane>& planes() const { return planes_; }
+    // Those that a sea of this plan will have. Throws as the constructor.
+    static std::vector<Plane> planes_of(const Plan& plan, int query);
+    void fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const;
+
+    // A grid's place: its N × N samples, with the first columns and rows repeated at the end so that a spline
+    // can read across the periodic border. n = 0: this footprint lets nothing of the cascade through.
+    struct Tile {
+        glm::ivec2 first{0};
+        int n = 0;
+        int cascade = 0, grid = 0;
+    };
+    // Levels of footprints [m], ascending, and the tiles by level · cascades() + cascade.
+    struct Levels {
+        std::vector<double> footprints_m;
+        std::vector<Tile> tiles;
+    };
+    // A plane's tiles, each grid's once, without those through which nothing passes. fill_row() writes one row of a
+    // tile, side_of() texels.
+    std::vector<Tile> tiles_of(const Plane& plane) const;
+    int side_of(const Tile& tile) const { return tile.n + sea_->plan().knobs.spline_taps - 1; }
+    void fill_row(const Frame<float>& frame, const Plane& plane, const Tile& tile, int row, float* to) const;
+    const Levels& cells() const { return cells_; }
+    const Levels& pixels() const { return pixels_; }
+    // The tiles of the breaking waves' displacement gradient, by the pixels' levels; none where they are the pixels'
+    // own.
+    const Levels& breaking() const { return breaking_; }
+
+    // The unresolved moments of a level of pixels without the trains' part: alone, and mixed with the next level.
+    struct UnresolvedLevel {
+        UnresolvedMoments<float> alone{}, with_next{};
+    };
+    const std::vector<UnresolvedLevel>& unresolved() const { return unresolved_; }
+
+    // kTrainTexels rows; one column per train, and one more for the end of the prefix sums. trains.glsl
+    // describes the rows.
+    static constexpr int kTrainTexels = 8;
+    std::vector<glm::vec4> train_texels() const;
+
+    // Rows of ellipse_columns(), as cascades.glsl has it; one texel of zeros where there are no cascades.
+    std::vector<glm::vec4> ellipse_texels() const;
+    int ellipse_columns() const;
+
+    // Of gusts.glsl.
+    static constexpr int kGustRows =
+        2 * GustsPlan::kWaves + (Gusts::kLevelTerms + Gusts::kKeptTerms + 1 + 3) / 4;
+
+    // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each, in which the time counts
+    // only for gusts; and, where the sea has trains, their phases there [cycles], one float a train.
+    std::vector<std::byte> tables(glm::dvec2 origin_m, double time_within_loop_s) const;
+    std::vector<float> train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const;
+
+  private:
+    static Levels levels_of(const Plan& plan, const std::vector<double>& footprints_m,
+                            const std::vector<int>& levels);
+    static glm::ivec2 place(const Plan& plan, std::initializer_list<Levels*> all_levels);
+    static std::vector<Plane> lay_out(const Plan& plan, int query, Levels& cells, Levels& pixels,
+                                      Levels& breaking);
+
+    std::shared_ptr<const Sea<float>> sea_;
+    int query_ = 0;
+    bool is_choppy_ = false, has_coverage_ = false;
+    std::vector<Plane> planes_;
+    Levels cells_, pixels_, breaking_;
+    std::vector<UnresolvedLevel> unresolved_;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,123 @@
+// What depends on the grid's origin: the uniform block of cascades.glsl, and the trains' phases. See
+// sea_layout.h.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "core/plan/random_tiling.h"
+#include "core/plan/taps.h"
+#include "plugin/host/gpu/sea_layout.h"
+
+namespace pelagic {
+namespace {
+
+// One entry of the uniform block of cascades.glsl.
+struct TileRow {
+    std::array<std::int32_t, 4> first{}, origin{};
+    std::array<float, 4> scale{};
+};
+
+// A tile's entry for the grid's origin. The phase is computed in double, as in evaluate().
+TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec2 origin_m) {
+    TileRow row;
+    if (tile.n == 0) return row;
+    // Supports nodes within 2^28 of the origin. A multiple of N this large makes their numbers positive.
+    constexpr int kFarthest = 1 << 28;
+    row.first = {tile.first.x, tile.first.y, tile.n, kFarthest / tile.n * tile.n};
+    const double size_m = layout.sea().plan().cascades[tile.cascade].size_m;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double tiles = origin_m[axis] / size_m;
+        const double nodes = (tiles - std::floor(tiles)) * tile.n, node = std::floor(nodes);
+        row.origin[axis] = static_cast<std::int32_t>(node);
+        // In 32 bits wherever the origin is: the tiles' offsets need no more.
+        row.origin[2 + axis] = static_cast<std::int32_t>(static_cast<std::int64_t>(std::floor(tiles)));
+        row.scale[axis] = static_cast<float>(nodes - node);
+    }
+    const SplitNumber nodes_per_m = split_number(tile.n / size_m);
+    row.scale[2] = nodes_per_m.high;
+    row.scale[3] = nodes_per_m.low;
+    return row;
+}
+
+// Those of gusts.glsl.
+std::vector<std::array<float, 4>> rows_of(const Gusts& gusts, glm::dvec2 origin_m,
+                                          double time_within_loop_s) {
+    const auto cycles = gusts.plan.cycles_at(origin_m, time_within_loop_s);
+    const auto number = [](double value) { return static_cast<float>(value); };
+    std::vector<std::array<float, 4>> rows;
+    for (std::size_t i = 0; i < cycles.size(); ++i) {
+        const GustsPlan::Wave& wave = gusts.plan.waves[i];
+        rows.push_back({number(wave.cycles_per_m.x), number(wave.cycles_per_m.y), number(cycles[i]),
+                        number(wave.amplitude)});
+    }
+    for (const GustsPlan::Wave& wave : gusts.plan.waves)
+        rows.push_back({number(wave.shortest_m), number(wave.along.x), number(wave.along.y), 0.0f});
+    std::vector<float> terms;
+    for (const double term : gusts.of_level) terms.push_back(number(term));
+    for (const double term : gusts.of_kept) terms.push_back(number(term));
+    terms.push_back(number(gusts.plan.strength));
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        if (i % 4 == 0) rows.emplace_back();
+        rows.back()[i % 4] = terms[i];
+    }
+    return rows;
+}
+
+}  // namespace
+
+std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within_loop_s) const {
+    const std::size_t levels =
+        cells_.footprints_m.size() + pixels_.footprints_m.size() + breaking_.footprints_m.size();
+    const std::size_t tiles = levels * static_cast<std::size_t>(std::max(cascades(), 1));
+    std::vector<std::array<std::int32_t, 4>> first, origin;
+    std::vector<std::array<float, 4>> scale, level, unresolved;
+    for (const Levels* all : {&cells_, &pixels_, &breaking_}) {
+        for (const Tile& tile : all->tiles) {
+            const TileRow row = tile_row(*this, tile, origin_m);
+            first.push_back(row.first);
+            origin.push_back(row.origin);
+            scale.push_back(row.scale);
+        }
+        for (const double footprint_m : all->footprints_m)
+            if (all != &breaking_) level.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
+    }
+    first.resize(tiles);
+    origin.resize(tiles);
+    scale.resize(tiles);
+    for (const UnresolvedLevel& of : unresolved_)
+        for (const UnresolvedMoments<float>& m : {of.alone, of.with_next}) {
+            unresolved.push_back({m[0], m[1], m[2], m[3]});
+            unresolved.push_back({m[4], m[5], m[6], m[7]});
+        }
+    std::vector<std::byte> block;
+    const auto append = [&](const auto& rows) {
+        const auto bytes = std::as_bytes(std::span(rows));
+        block.insert(block.end(), bytes.begin(), bytes.end());
+    };
+    append(first);
+    append(origin);
+    append(scale);
+    append(level);
+    append(unresolved);
+    std::vector<std::array<float, 4>> cascades;
+    for (int c = 0; c < this->cascades(); ++c) {
+        const CascadePlan& cascade = sea_->plan().cascades[c];
+        cascades.push_back({static_cast<float>(whole_footprint_m(cascade, sea_->plan().filter)),
+                            static_cast<float>(tiling_key(sea_->plan().from->scene.shot.seed, c)),
+                            static_cast<float>(1.0 / cascade.size_m), 0.0f});
+    }
+    cascades.resize(std::max<std::size_t>(cascades.size(), 1));
+    append(cascades);
+    append(sea_->gusts() ? rows_of(*sea_->gusts(), origin_m, time_within_loop_s)
+                         : std::vector<std::array<float, 4>>(SeaLayout::kGustRows));
+    return block;
+}
+
+std::vector<float> SeaLayout::train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const {
+    const std::vector<double> cycles = phases_at(sea_->trains(), origin_m, time_within_loop_s);
+    return {cycles.begin(), cycles.end()};
+}
+
+}  // namespace pelagic

@@ -1,0 +1,202 @@
+#include "plugin/host/gpu/shader_variants.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/lighting/air.h"
+#include "core/lighting/foam_structure.h"
+#include "core/plan/taps.h"
+#include "plugin/host/gpu/packed_foam.h"
+
+namespace pelagic {
+namespace {
+
+std::string constant(const char* name, bool value) {
+    return std::string("const bool ") + name + " = " + (value ? "true" : "false") + ";\n";
+}
+std::string constant(const char* name, int value) {
+    return std::string("const int ") + name + " = " + std::to_string(value) + ";\n";
+}
+
+std::vector<std::string_view> joined(std::initializer_list<std::vector<std::string_view>> lists) {
+    std::vector<std::string_view> all;
+    for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+// Where the sky's map is, and where the light goes.
+const char* sky_file(const DrawOptions& options) {
+    return options.for_host ? "plugin/host/gpu/sky_atlas.glsl" : "plugin/host/gpu/sky_texture.glsl";
+}
+std::vector<std::string_view> output_files(const DrawOptions& options) {
+    if (options.for_host) return {"core/lighting/tone.glsl", "plugin/host/gpu/host_outputs.glsl"};
+    return {"plugin/host/gpu/sea_outputs.glsl"};
+}
+
+// After air.glsl.
+std::vector<std::string_view> spray_files(const LightingChoice& lighting) {
+    if (!lighting.spray) return {"plugin/host/gpu/spray_none.glsl"};
+    return {"plugin/host/gpu/spray_map.glsl", "core/lighting/spray.glsl", "plugin/host/gpu/spray_seen.glsl"};
+}
+
+const char* vertex_file(const DrawOptions& options) {
+    return options.for_host ? "plugin/host/gpu/host_vertex.glsl" : "plugin/host/gpu/sea_vertex.glsl";
+}
+const char* points_file(const DrawOptions& options) {
+    return is_lit_afterwards(options) ? "plugin/host/gpu/sea_points_texture.glsl"
+                                      : "plugin/host/gpu/sea_points_in.glsl";
+}
+
+// The constants that the shaders of sea and sky share.
+std::string picture_constants(const DrawOptions& options) {
+    return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
+           constant("kFalseColour", static_cast<int>(options.false_colour)) +
+           constant("kAirSky", options.sky_from_air);
+}
+
+std::string foam_constants() {
+    return constant("kFoamLevels", FoamPlan::kLevels) + constant("kFoamTileCells", FoamPlan::kTileCells) +
+           constant("kFoamTilesAcross", PackedFoam::kTilesAcross);
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& lighting_files() {
+    static const std::vector<std::string_view> files{
+        "core/lighting/level.glsl",  "core/lighting/fresnel.glsl",
+        "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
+        "core/lighting/sky.glsl",    "core/lighting/water.glsl",
+        "core/lighting/foam.glsl",   "core/lighting/foam_structure.glsl",
+        "core/lighting/sea.glsl"};
+    return files;
+}
+
+const std::vector<std::string_view>& query_files() {
+    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
+                                                     "plugin/host/gpu/prelude.glsl",
+                                                     "core/plan/filter.inl",
+                                                     "core/plan/taps.inl",
+                                                     "core/plan/random_tiling.inl",
+                                                     "core/waves/spline.inl",
+                                                     "core/waves/whitecaps.inl",
+                                                     "core/waves/gusts.inl",
+                                                     "core/evaluate/surface.inl",
+                                                     "core/waves/trains.inl",
+                                                     "core/evaluate/unresolved.inl",
+                                                     "core/surface/earth.inl",
+                                                     "core/surface/pixel_footprint.inl",
+                                                     "plugin/host/gpu/places.glsl",
+                                                     "plugin/host/gpu/cascades.glsl",
+                                                     "plugin/host/gpu/trains.glsl",
+                                                     "plugin/host/gpu/gusts.glsl",
+                                                     "plugin/host/gpu/query.glsl"};
+    return files;
+}
+
+std::string query_constants(const SeaLayout& layout, bool coverage) {
+    return constant("kCascades", layout.cascades()) +
+           constant("kTileCascades", std::max(layout.cascades(), 1)) +
+           constant("kCellLevels", static_cast<int>(layout.cells().footprints_m.size())) +
+           constant("kPixelLevels", static_cast<int>(layout.pixels().footprints_m.size())) +
+           constant("kBreakingLevels", static_cast<int>(layout.breaking().footprints_m.size())) +
+           constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
+           constant("kRandomTiling", layout.has_random_tiling()) + constant("kCoverage", coverage) +
+           constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
+           constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
+           constant("kGustRows", SeaLayout::kGustRows) + constant("kGustWaves", GustsPlan::kWaves) +
+           constant("kGustLevelTerms", Gusts::kLevelTerms) + constant("kGustKeptTerms", Gusts::kKeptTerms) +
+           constant("kNodesALevel", EllipseTable::kNodesALevel) +
+           constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
+           constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
+           "const float kLongestEllipse = " + std::to_string(layout.sea().plan().knobs.longest_ellipse) +
+           ";\n";
+}
+
+std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
+    const int lookups = choice.sky_quality == SkyQuality::One    ? 1
+                        : choice.sky_quality == SkyQuality::Nine ? 9
+                                                                 : 0;
+    return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
+           constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
+           constant("kFoamCell_m", kFoamCell_m) + constant("kAirColumns", Air::kColumns) +
+           constant("kAirRows", Air::kRows) + constant("kAirHorizonRow", Air::kHorizonRow) +
+           constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
+           constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
+           constant("kSecondReflection", choice.second_reflection) +
+           constant("kMeshMasking", choice.mesh_masking) +
+           "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
+}
+
+bool is_lit_afterwards(const DrawOptions& options) {
+    return !options.for_host && !options.wireframe;
+}
+
+ShaderVariant::ShaderVariant(std::string constants, std::vector<std::string_view> vertex,
+                             std::vector<std::string_view> fragment)
+    : constants_(std::move(constants)), vertex_(std::move(vertex)), fragment_(std::move(fragment)) {
+    key_ = constants_;
+    key_ += fragment_.back();
+}
+
+ShaderSource ShaderVariant::source(const std::vector<std::string_view>& files) const {
+    ShaderSource source;
+    source.add_constants(constants_);
+    source.add_files(files);
+    return source;
+}
+
+ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size) {
+    LightingChoice lighting = options.lighting;
+    lighting.whitecaps = lighting.whitecaps && layout.has_coverage();
+    lighting.sky = lighting.sky && sky_map_size > 0;
+    lighting.spray = lighting.spray && !options.for_host;
+    const bool coverage =
+        layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
+    const bool lives = coverage && layout.has_living_foam();
+    return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
+                picture_constants(options) + (lives ? foam_constants() : std::string()),
+            is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
+                                       : joined({query_files(), {vertex_file(options)}}),
+            joined({query_files(),
+                    {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+                    lighting_files(),
+                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {"core/lighting/place.glsl", "plugin/host/gpu/foam_uniforms.glsl",
+                     "plugin/host/gpu/rays.glsl"},
+                    output_files(options),
+                    {"plugin/host/gpu/false_colour.glsl", points_file(options),
+                     "plugin/host/gpu/sea_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_points(const SeaLayout& layout) {
+    return {query_constants(layout, false), joined({query_files(), {vertex_file({})}}),
+            joined({query_files(),
+                    {"plugin/host/gpu/rays.glsl", "plugin/host/gpu/sea_points_in.glsl",
+                     "plugin/host/gpu/sea_points_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {
+    LightingChoice lighting = options.lighting;
+    lighting.sky = lighting.sky && sky_map_size > 0;
+    lighting.spray = lighting.spray && !options.for_host;
+    return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
+            {"plugin/host/gpu/full_vertex.glsl"},
+            joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
+                     "core/lighting/sky_map.glsl"},
+                    lighting_files(),
+                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {"core/lighting/background.glsl", "plugin/host/gpu/rays.glsl"},
+                    output_files(options),
+                    {"plugin/host/gpu/sky_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_screen(bool layers, bool plain) {
+    return {constant("kLayers", layers) + constant("kPlain", plain),
+            {"plugin/host/gpu/full_vertex.glsl"},
+            {"core/lighting/tone.glsl", "plugin/host/gpu/show_fragment.glsl"}};
+}
+
+}  // namespace pelagic

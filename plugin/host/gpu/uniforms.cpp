@@ -1,0 +1,79 @@
+#include "plugin/host/gpu/uniforms.h"
+
+#include "core/lighting/background.h"
+
+namespace pelagic {
+namespace {
+
+Uniform number(const char* name, double value) {
+    return {name, 1, glm::vec4(static_cast<float>(value), 0.0f, 0.0f, 0.0f)};
+}
+Uniform vector(const char* name, const glm::vec3& value) {
+    return {name, 3, glm::vec4(value, 0.0f)};
+}
+
+}  // namespace
+
+std::vector<Uniform> query_uniforms(const SeaLayout& layout) {
+    std::vector<Uniform> uniforms{
+        number("whitecap_threshold", layout.sea().whitecap_threshold()),
+        number("breaking_footprint_m", layout.sea().plan().breaking.footprint_m),
+        {"finest_m", 2,
+         glm::vec4(static_cast<float>(layout.cells().footprints_m.front()),
+                   static_cast<float>(layout.pixels().footprints_m.front()), 0.0f, 0.0f)}};
+    const FootprintFilter& filter = layout.sea().plan().filter;
+    if (layout.has_gusts())
+        uniforms.push_back({"gust_filter", 2,
+                            glm::vec4(static_cast<float>(filter.n_min),
+                                      static_cast<float>(1.0 / (filter.n_max - filter.n_min)), 0.0f, 0.0f)});
+    if (!layout.has_trains()) return uniforms;
+    uniforms.push_back({.name = "train_count",
+                        .value = glm::vec4(static_cast<float>(layout.sea().trains().count())),
+                        .is_integer = true});
+    uniforms.push_back(
+        {"train_filter", 4,
+         glm::vec4(static_cast<float>(filter.n_min), static_cast<float>(1.0 / (filter.n_max - filter.n_min)),
+                   static_cast<float>(1.0 / filter.n_max), static_cast<float>(1.0 / filter.n_min))});
+    return uniforms;
+}
+
+std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
+    const SunDisc disc = sun_disc(sky);
+    return {vector("sun_direction", sky.sun_direction),
+            vector("sun_radiance", sky.sun_radiance),
+            number("sun_angular_radius", static_cast<double>(sky.sun_angular_radius)),
+            vector("sun_irradiance", sky.sun_irradiance),
+            vector("sun_centre", disc.centre),
+            vector("sun_low", disc.low),
+            vector("sun_middle", disc.middle),
+            vector("sun_high", disc.high),
+            vector("sky_irradiance", sky.sky_irradiance),
+            vector("water_reflectance", water.reflectance)};
+}
+
+std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {
+    return {vector("foam_pattern_cell", pattern.cell),
+            vector("foam_pattern_rest", pattern.rest),
+            {"foam_pattern_axes", 4, pattern.axes},
+            {"foam_pattern_look", 4, pattern.look}};
+}
+
+std::vector<Uniform> air_uniforms(const Air& air) {
+    return {{"air_azimuth", 2, glm::vec4(air.azimuth, 0.0f, 0.0f)},
+            vector("air_to_sun", air.to_sun),
+            number("air_by_place", static_cast<double>(air.by_place)),
+            vector("air_reach_m", {air.nearest_m, air.horizon_m, air.farthest_m}),
+            {"air_sky_rows", 2, glm::vec4(air.dip, air.sky_span, 0.0f, 0.0f)}};
+}
+
+std::vector<Uniform> spray_uniforms(const Spray& spray) {
+    return {vector("spray_azimuth", glm::vec3(spray.azimuth, spray.columns_per_rad)),
+            {"spray_rows", 4, glm::vec4(spray.first_m, spray.row_step, spray.scale_m, spray.eye_m)},
+            number("spray_top_m", static_cast<double>(spray.top_m)),
+            vector("spray_to_sun", spray.to_sun),
+            vector("spray_sun", spray.sun),
+            vector("spray_above", spray.above),
+            vector("spray_below", spray.below)};
+}
+
+}  // namespace pelagic

@@ -1,0 +1,35 @@
+// The uniforms of the shaders that aren't of a view, by name.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+#include "core/lighting/air.h"
+#include "core/lighting/foam_structure.h"
+#include "core/lighting/sky.h"
+#include "core/lighting/spray.h"
+#include "core/lighting/water.h"
+#include "plugin/host/gpu/sea_layout.h"
+
+namespace pelagic {
+
+struct Uniform {
+    std::string name;
+    int components = 1;  // of `value` that count
+    glm::vec4 value{0.0f};
+    bool is_integer = false;
+};
+
+// Of query.glsl and trains.glsl.
+std::vector<Uniform> query_uniforms(const SeaLayout& layout);
+// Of light_uniforms.glsl.
+std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water);
+// Of foam_uniforms.glsl.
+std::vector<Uniform> foam_uniforms(const FoamPattern& pattern);
+// Of air_table.glsl.
+std::vector<Uniform> air_uniforms(const Air& air);
+// Of spray_map.glsl.
+std::vector<Uniform> spray_uniforms(const Spray& spray);
+
+}  // namespace pelagic

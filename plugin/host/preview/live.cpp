@@ -1,0 +1,180 @@
+// Computes frames and builds seas in the background. See live.h.
+#include "plugin/host/preview/live.h"
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <chrono>
+#include <utility>
+
+#include "core/waves/frame.h"
+#include "plugin/render/spray_map.h"
+#include "plugin/render/under_water.h"
+
+namespace pelagic {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr SprayMapSize kSprayMap{.columns = 112, .rows = 96};
+
+double milliseconds(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+// Runs a build at lower priority than the frames' parallel loops.
+LiveSea::Build in_the_background(LiveSea::Build build) {
+    return [build = std::move(build)](const Scene& scene) {
+        tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
+        return arena.execute([&] { return build(scene); });
+    };
+}
+
+}  // namespace
+
+LiveSea::LiveSea(Build build)
+    : frames_thread_([this] { compute_frames(); }), builder_(in_the_background(std::move(build))) {}
+
+LiveSea::LiveSea(const LiveLimits& limits) : LiveSea(limits, std::make_shared<std::atomic<double>>(0.0)) {}
+
+LiveSea::LiveSea(const LiveLimits& limits, const std::shared_ptr<std::atomic<double>>& built)
+    : LiveSea([limits, built](const Scene& scene) {
+          *built = 0.0;
+          return build_live(scene, limits, {.progress = [built](double done) { *built = done; }});
+      }) {
+    built_ = built;
+}
+
+LiveSea::~LiveSea() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    wake_.notify_one();
+    frames_thread_.join();
+}
+
+void LiveSea::ask(const Scene& scene) {
+    if (asked_ && same_sea(*asked_, scene)) return;
+    asked_ = scene;
+    builder_.ask(scene);
+}
+
+void LiveSea::show(double time_s, const std::optional<View>& eye, const std::optional<View>& spray_from) {
+    auto built = builder_.take();
+    {
+        const std::lock_guard lock(mutex_);
+        time_s_ = time_s;
+        eye_ = eye;
+        if (!eye) water_over_eye_m_.reset();
+        spray_from_ = spray_from;
+        if (!spray_from) spray_.reset();
+        if (built) {
+            build_.swap(built);
+            ++seas_;
+        }
+    }
+    wake_.notify_one();
+}
+
+const LiveFrame* LiveSea::newest() {
+    const std::lock_guard lock(mutex_);
+    if (fresh_) std::swap(waiting_, shown_);
+    fresh_ = false;
+    const LiveFrame& frame = slots_[shown_];
+    return frame.packed ? &frame : nullptr;
+}
+
+std::optional<double> LiveSea::water_over_eye() const {
+    const std::lock_guard lock(mutex_);
+    return water_over_eye_m_;
+}
+
+std::shared_ptr<const Spray> LiveSea::newest_spray() const {
+    const std::lock_guard lock(mutex_);
+    return spray_;
+}
+
+LiveStatus LiveSea::status() const {
+    LiveStatus status{
+        .building = builder_.is_busy(), .built = built_ ? built_->load() : 0.0, .error = builder_.error()};
+    const std::lock_guard lock(mutex_);
+    if (status.error.empty()) status.error = frame_error_;
+    status.seas = seas_;
+    status.frames = frames_;
+    return status;
+}
+
+void LiveSea::compute_frames() {
+    std::optional<Frame<float>> frame;
+    // The request computed last, whether it succeeded or failed: not repeated.
+    std::shared_ptr<const LiveBuild> tried;
+    std::optional<double> tried_s;
+    std::optional<View> tried_eye, tried_spray;
+    const auto spray_before = [&](const View& view) {
+        return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->grid, kSprayMap));
+    };
+    std::unique_lock lock(mutex_);
+    const auto wants_frame = [&] {
+        return build_ != nullptr && time_s_ && (build_ != tried || time_s_ != tried_s);
+    };
+    for (;;) {
+        wake_.wait(lock, [&] {
+            return stopping_ || wants_frame() ||
+                   (frame && ((eye_ && eye_ != tried_eye) || (spray_from_ && spray_from_ != tried_spray)));
+        });
+        if (stopping_) return;
+        tried_eye = eye_;
+        tried_spray = spray_from_;
+        if (!wants_frame()) {  // the eye has moved over a sea that stands still
+            lock.unlock();
+            std::optional<double> water_m;
+            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            std::shared_ptr<const Spray> spray;
+            if (tried_spray) spray = spray_before(*tried_spray);
+            lock.lock();
+            if (eye_) water_over_eye_m_ = water_m;
+            if (spray_from_) spray_ = spray;
+            continue;
+        }
+        tried = build_;
+        tried_s = time_s_;
+        LiveFrame& slot = slots_[written_];
+        lock.unlock();
+        std::string error;
+        std::optional<double> water_m;
+        std::shared_ptr<const Spray> spray;
+        try {
+            if (!frame || &frame->sea() != tried->sea.get()) {
+                frame.reset();  // before the new one is made: halves the peak memory
+                frame.emplace(tried->sea);
+            }
+            if (slot.build != tried) {
+                slot.packed.reset();
+                slot.build = tried;
+                slot.packed.emplace(tried->sea, tried->query);
+            }
+            const auto start = Clock::now();
+            frame->set(*tried_s);
+            const auto transformed = Clock::now();
+            slot.packed->pack(*frame);
+            slot.transforms_ms = milliseconds(start, transformed);
+            slot.packing_ms = milliseconds(transformed, Clock::now());
+            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            if (tried_spray) spray = spray_before(*tried_spray);
+        } catch (...) {
+            error = message_of(std::current_exception());
+            frame.reset();
+            slot = LiveFrame{};
+        }
+        lock.lock();
+        frame_error_ = error;
+        if (!error.empty()) continue;
+        if (eye_) water_over_eye_m_ = water_m;
+        if (spray_from_) spray_ = spray;
+        slot.number = ++frames_;
+        std::swap(written_, waiting_);
+        fresh_ = true;
+    }
+}
+
+}  // namespace pelagic

@@ -1,0 +1,97 @@
+// Builds a sea that plays from a scene. See live.h.
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/plan/plan.h"
+#include "core/scene/budget.h"
+#include "core/scene/canonical.h"
+#include "core/scene/text.h"
+#include "core/spectrum/possible.h"
+#include "core/waves/folding.h"
+#include "plugin/host/gpu/packed_foam.h"
+#include "plugin/host/gpu/sea_layout.h"
+#include "plugin/host/preview/live.h"
+
+namespace pelagic {
+namespace {
+
+// The sea, a frame of it, three packed ones, two on their way to the driver, and the textures, which are the driver's
+// in software and a graphics card's otherwise.
+MemoryNeed live_memory(const Plan& plan) {
+    MemoryNeed need;
+    add_sea(need, plan, tbb::this_task_arena::max_concurrency());
+    std::size_t packed = 0;
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))
+        packed += static_cast<std::size_t>(plane.size.x) * static_cast<std::size_t>(plane.size.y) *
+                  static_cast<std::size_t>(plane.channels) * sizeof(float);
+    need.add("the frame's grids as textures", 6 * packed,
+             "lower the resolutions in waves.cascades, or quality.level");
+    // A history, three packed ones and the driver's.
+    if (plan.foam)
+        need.add("the foam as textures", 4 * PackedFoam::bytes_for(*plan.foam, plan.foam_history_bytes()),
+                 "lower effects.foam_decay_s");
+    return need;
+}
+
+bool fits(const Plan& plan, const LiveLimits& limits) {
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))
+        if (std::max(plane.size.x, plane.size.y) > limits.texture) return false;
+    return live_memory(plan).bytes() <= limits.memory.bytes;
+}
+
+}  // namespace
+
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits,
+                                            const BuildWatch& watch) {
+    std::string problems;
+    for (const Problem& problem : problems_of(scene))
+        problems += (problems.empty() ? "" : "\n") + text_of(problem);
+    if (!problems.empty()) throw std::invalid_argument(problems);
+    const auto start = std::chrono::steady_clock::now();
+    const auto prepared = prepare(without_budget(scene));  // a budget is of meshes and of rendered pictures
+    LiveBuild made;
+    made.scene = scene;
+    const auto plan_from = [&](double finest_m) {
+        const Query query = view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
+        return make_plan(prepared, {query}, {.double_precision = false});
+    };
+    for (const std::string& warning : sea_warnings(*prepared))
+        made.note += (made.note.empty() ? "" : "\n") + warning;
+    Plan plan = plan_from(0.0);
+    const Plan whole = plan;
+    std::string left_out;
+    // Level by level of the pixels' footprints, of which the first lets everything pass.
+    for (const double level_m : whole.queries.front().query.pixel_m) {
+        if (fits(plan, limits)) break;
+        if (level_m == 0.0) continue;
+        plan = plan_from(level_m);
+        const std::size_t needed = live_memory(whole).bytes();
+        left_out =
+            (needed > limits.memory.bytes ? "the sea needs about " + bytes_text(needed) + ", and " +
+                                                limits.memory.whose + " " + bytes_text(limits.memory.bytes)
+                                          : "the sea's grids need larger textures than the driver's, " +
+                                                std::to_string(limits.texture) + " a side") +
+            "; waves below " + number_text(plan.filter.n_min * level_m) +
+            " m are left out of the picture. To see them, lower the resolutions in waves.cascades, or "
+            "quality.level";
+    }
+    if (!left_out.empty()) made.note = left_out + (made.note.empty() ? "" : "\n") + made.note;
+    if (!fits(plan, limits)) require_memory(live_memory(plan), limits.memory, "this sea");
+    made.sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
+    made.grid = projected_grid_options(*prepared);
+    made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return std::make_shared<const LiveBuild>(std::move(made));
+}
+
+bool same_sea(const Scene& a, const Scene& b) {
+    const KeyPartSet sea = key_parts(KeyPart::Waves, KeyPart::Clock, KeyPart::Foam, KeyPart::Gusts,
+                                     KeyPart::Quality, KeyPart::Spray);
+    return canonical(a, sea) == canonical(b, sea);
+}
+
+}  // namespace pelagic

@@ -1,0 +1,240 @@
+#include <epoxy/gl.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "core/evaluate/values.h"
+#include "core/plan/plan.h"
+#include "core/plan/quality.h"
+#include "core/surface/earth.h"
+#include "core/surface/footprint_levels.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "core/waves/whitecaps.h"
+#include "plugin/host/gpu/packed_foam.h"
+#include "plugin/host/gpu/sea_layout.h"
+#include "plugin/host/preview/offscreen.h"
+#include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
+#include "plugin/render/spray_map.h"
+#include "plugin/render/under_water.h"
+
+namespace pelagic {
+namespace {
+
+int largest_picture() {
+    std::array<GLint, 3> largest{};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, largest.data());
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data() + 1);
+    return *std::min_element(largest.begin(), largest.end());
+}
+
+void check_size(glm::ivec2 size) {
+    const int largest = largest_picture();
+    if (size.x >= 1 && size.y >= 1 && std::max(size.x, size.y) <= largest) return;
+    throw PreviewError("a picture of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                       " does not fit the driver (" +
+                       reinterpret_cast<const char*>(glGetString(GL_RENDERER)) + "), whose largest is " +
+                       std::to_string(largest) +
+                       " a side: ask for a smaller one with --size, or use pelagic render");
+}
+
+// Positions of the grid's points, relative to its origin, with the waves that its cells resolve.
+std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea, double time_s,
+                                    const ProjectedGrid& grid) {
+    Frame<float> frame(sea);
+    frame.set(time_s);
+    std::vector<glm::vec3> positions(grid.rest_m.size());
+    Results<float> results;
+    results.set(Product::Position, {positions.data()});
+    evaluate(frame, 0,
+             Points<float>{.origin_m = grid.origin_m,
+                           .count = positions.size(),
+                           .rest_m = {grid.rest_m.data()},
+                           .cell_m = {grid.cell_m.data()},
+                           .cell_axis_m = {grid.cell_axis_m.data()}},
+             results);
+    for (glm::vec3& position : positions)
+        position = glm::vec3(on_earth(glm::dvec3(position), grid.curvature_per_m));
+    return positions;
+}
+
+// The finest footprint of a pixel that shows the sea, or more than any where none does: the least of all triangles
+// that reach into the picture.
+double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
+                            std::span<const glm::vec3> positions) {
+    const glm::dmat4 clip_from = view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m);
+    constexpr int kPlanes = 5;
+    std::vector<std::uint8_t> outside(positions.size());  // of which planes, a bit each
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec4 p = clip_from * glm::dvec4(positions[i], 1.0);
+        const std::array<bool, kPlanes> beyond{p.x > p.w, p.x<-p.w, p.y> p.w, p.y < -p.w, p.z < -p.w};
+        for (int plane = 0; plane < kPlanes; ++plane)
+            outside[i] |= static_cast<std::uint8_t>(beyond[plane] ? 1 << plane : 0);
+    }
+    double finest_m = std::numeric_limits<double>::infinity();
+    const auto take = [&](std::size_t a, std::size_t b, std::size_t c) {
+        if ((outside[a] & outside[b] & outside[c]) != 0) return;
+        for (const std::size_t corner : {a, b, c})
+            finest_m = std::min(finest_m, static_cast<double>(grid.pixel_m[corner]));
+    };
+    const auto stride = static_cast<std::size_t>(grid.columns) + 1;
+    for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row)
+        for (std::size_t column = 0; column + 1 < stride; ++column) {
+            const std::size_t near_left = row * stride + column, far_left = near_left + stride;
+            take(near_left, near_left + 1, far_left + 1);
+            take(near_left, far_left + 1, far_left);
+        }
+    return finest_m;
+}
+
+// [bytes] of a point of the grid: itself and while it is made, as a vertex, and in triangles, here and at the driver's.
+constexpr std::size_t kPointBytes = 3 * sizeof(glm::vec2) + 2 * sizeof(float) + 2 * sizeof(double) +
+                                    2 * (2 * sizeof(glm::vec4) + 6 * sizeof(std::uint32_t)) +
+                                    sizeof(glm::vec3);
+// [bytes/pixel] of the driver's pictures of five terms, the points and their depth; of what is read back from it.
+constexpr std::size_t kDrawnBytes = 7 * sizeof(glm::vec4) + sizeof(float),
+                      kReadBytes = sizeof(SeaRadiance) + 1 + sizeof(glm::vec4);
+// Mesa's driver in software, with its compiler and the programs of this sea.
+constexpr std::size_t kDriverBytes = std::size_t{64} << 20;
+
+std::string smaller() {
+    return "ask for a smaller picture (--size) or raise surface.cell_px";
+}
+
+}  // namespace
+
+MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
+    MemoryNeed need;
+    add_sea(need, planned.plan, threads);
+    // Fields of the frame are freed one after another, as soon as the driver has them.
+    const std::size_t frame = planned.plan.frame_bytes();
+    std::size_t textures = 0, largest = 0;
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(planned.plan, 0)) {
+        const std::size_t bytes = static_cast<std::size_t>(plane.size.x) *
+                                  static_cast<std::size_t>(plane.size.y) *
+                                  static_cast<std::size_t>(plane.channels) * sizeof(float);
+        textures += bytes;
+        largest = std::max(largest, bytes);
+    }
+    need.add("the frame's grids as textures", std::max(textures, frame + largest) - frame,
+             "lower quality.level (--quality draft), or the resolutions in waves.cascades");
+    if (planned.plan.foam)
+        need.add("the foam as textures",
+                 2 * PackedFoam::bytes_for(*planned.plan.foam, planned.plan.foam_history_bytes()),
+                 "lower effects.foam_decay_s");
+    const glm::ivec2 size = planned.scene.camera.resolution;
+    need.add("the picture",
+             static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * (kDrawnBytes + kReadBytes),
+             "ask for a smaller picture (--size)");
+    need.add("the camera's grid of points", planned.grid.rest_m.size() * kPointBytes, smaller());
+    if (render_options(planned.scene).lighting.spray)
+        need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
+                 "set effects.spray to false");
+    need.add("the driver", kDriverBytes, smaller());
+    return need;
+}
+
+OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std::size_t max_memory_bytes) {
+    OffscreenPlan planned{.scene = scene, .frame = frame, .plan = {}, .grid = {}};
+    if (size.x > 0 && size.y > 0) planned.scene.camera.resolution = size;
+    check_size(planned.scene.camera.resolution);
+    const MemoryLimit limit = machine::memory_limit_or(max_memory_bytes);
+    const int threads = tbb::this_task_arena::max_concurrency();
+    const char* const run = "this picture";
+
+    const auto prepared = prepare(planned.scene);
+    const View view = view_at(planned.scene.camera, frame);
+    const ProjectedGridOptions options = projected_grid_options(*prepared);
+    const ProjectedGridNeeds needs = projected_grid_needs(view, options);
+    const auto plan_for = [&](ProductSet wanted, double finest_pixel_m) {
+        const Query query = view_query(*prepared, {.products = wanted,
+                                                   .finest_cell_m = needs.finest_cell_m,
+                                                   .finest_pixel_m = finest_pixel_m,
+                                                   .points = points_of(needs.size)});
+        return make_plan(prepared, {query}, {.double_precision = false});
+    };
+    // Positions alone, with waves no shorter than the cells: little beside what pixels resolve. They tell which
+    // pixels are in the picture. A low camera has points nearby that a crest might bring into view and that no pixel
+    // shows: their footprints would ask for gigabytes.
+    MemoryNeed first;
+    const Plan of_points = plan_for(products(Product::Position), needs.finest_cell_m);
+    add_sea(first, of_points, threads);
+    first.add("the camera's grid of points", points_of(needs.size) * kPointBytes, smaller());
+    require_memory(first, limit, run, "at least");
+    planned.grid = projected_grid(view, options);
+    const bool has_levels = of_points.queries.front().query.cell_m.size() > 1;
+    if (has_levels) keep_to_levels(planned.grid, needs);
+    double finest_pixel_m = needs.finest_pixel_m;
+    if (has_levels) {
+        const auto sea = std::make_shared<const Sea<float>>(of_points);
+        const double in_view_m = finest_pixel_in_view(
+            view, planned.grid, positions_of(sea, planned.scene.shot.time_s(frame), planned.grid));
+        // The level below, as every point reads the two levels beside its footprint.
+        finest_pixel_m = std::max(first_level_m(needs.finest_pixel_m),
+                                  level_below_m(std::min(in_view_m, needs.finest_cell_m)));
+    }
+    planned.plan = plan_for({}, finest_pixel_m);
+    require_memory(offscreen_memory(planned, threads), limit, run);
+    return planned;
+}
+
+namespace {
+
+// Uploads what earlier breaking has left where the picture's pixels are.
+void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
+                 const View& view, const ProjectedGrid& grid, const BuildWatch& watch) {
+    const SeaRenderer::ShownPoints shown = renderer.shown_points(view, grid);
+    FoamHistory<float> history(sea);
+    history.set(time_s);
+    history.prepare(Points<float>{.origin_m = grid.origin_m,
+                                  .count = shown.rest_m.size(),
+                                  .rest_m = {shown.rest_m.data()},
+                                  .pixel_m = {shown.pixel_m.data()},
+                                  .pixel_axis_m = {shown.pixel_axis_m.data()}},
+                    0, watch);
+    renderer.upload_foam(std::make_shared<const PackedFoam>(history, grid.origin_m));
+}
+
+}  // namespace
+
+OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, const OffscreenWatch& watch) {
+    const auto sea = std::make_shared<const Sea<float>>(planned.plan, watch.sea);
+    SeaRenderer renderer;
+    renderer.set_sky(sky, make_water(planned.scene));
+    const View view = view_at(planned.scene.camera, planned.frame);
+    const LightingChoice lighting = render_options(planned.scene).lighting;
+    Frame<float> state(sea);
+    state.set(planned.scene.shot.time_s(planned.frame));
+    const ProjectedGridOptions grid = projected_grid_options(*planned.plan.from);
+    refuse_under_water(state, planned.scene, planned.frame, grid);
+    if (lighting.spray) {
+        Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x));
+        light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
+        renderer.set_spray(spray);
+    }
+    renderer.upload_once(std::move(state), 0);
+    const bool lives = planned.plan.foam && lighting.whitecaps;
+    if (lives)
+        upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid,
+                    watch.foam_past);
+    renderer.draw(
+        view, planned.grid,
+        {.lighting = lighting,
+         .foam = make_foam(planned.scene, lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+         .layers = true});
+    OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
+    if (quality_of(planned.scene.quality.level).double_precision)
+        drawn.note =
+            "the preview computes in single precision, quality.level \"reference\" in double: "
+            "use pelagic render for that";
+    return drawn;
+}
+
+}  // namespace pelagic

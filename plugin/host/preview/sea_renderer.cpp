@@ -1,0 +1,546 @@
+#include "plugin/host/preview/sea_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/lighting/tone.h"
+#include "plugin/host/gpu/sea_layout.h"
+#include "plugin/host/gpu/shader_variants.h"
+#include "plugin/host/gpu/uniforms.h"
+#include "plugin/host/preview/gl_objects.h"
+#include "plugin/host/preview/gl_stage_timer.h"
+#include "plugin/host/preview/gl_textures.h"
+#include "plugin/host/preview/sea_textures.h"
+#include "plugin/host/preview/shader_program.h"
+
+namespace pelagic {
+namespace {
+
+// Texture units. SeaTextures has the first ones.
+enum OtherUnit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMapUnit, kDither, kPictures };
+
+constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
+constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
+                                                        "foam_picture", "air_picture"};
+
+constexpr std::array<const char*, 2> kPointNames{"first_points", "second_points"};
+
+void set_uniform(GLint at, const glm::vec3& v) {
+    glUniform3f(at, v.x, v.y, v.z);
+}
+
+// Restores the caller's framebuffers and viewport.
+class KeptFramebuffer {
+  public:
+    KeptFramebuffer() {
+        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_);
+        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
+        glGetIntegerv(GL_VIEWPORT, viewport_.data());
+    }
+    ~KeptFramebuffer() {
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_));
+        glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+    }
+    KeptFramebuffer(const KeptFramebuffer&) = delete;
+    KeptFramebuffer& operator=(const KeptFramebuffer&) = delete;
+
+  private:
+    GLint draw_ = 0, read_ = 0;
+    std::array<GLint, 4> viewport_{};
+};
+
+}  // namespace
+
+struct SeaRenderer::Implementation {
+    Implementation();
+
+    void upload_grid(const ProjectedGrid& grid);
+    void make_pictures(glm::ivec2 size, bool layers);
+    static void require_framebuffer();
+    void make_dither();
+    void set_common(const ShaderProgram& program, const View& view) const;
+    void set_air(double height_m);
+    void draw_grid(const ShaderProgram& program, const View& view, const ProjectedGrid& grid);
+    void draw_over_all(const ShaderProgram& program) const;
+    void begin_picture(glm::ivec2 size, bool layers);
+    void draw_points(const View& view, const ProjectedGrid& grid);
+    void end_picture() const;
+    void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
+    void draw_sky(const View& view, const DrawOptions& options);
+    const ShaderProgram& program_of(const ShaderVariant& variant);
+
+    GLint largest_texture = 0;
+    bool reversed_depth = false;
+
+    SeaTextures sea;
+
+    GlTexture sky_map, dither_tile;
+    int sky_map_size = 0;
+    std::vector<Uniform> light;
+    std::shared_ptr<const AirModel> air_model;
+    GlTexture air_table;
+    std::optional<double> air_height_m;  // of the eye that the table is for
+    std::vector<Uniform> air;
+    GlTexture spray_map;
+    std::vector<Uniform> spray;  // empty: there is none
+
+    GlVertexArray grid_array, no_array;
+    GlBuffer grid_vertices, grid_indices;
+    glm::ivec2 grid_size{0};
+    GLsizei grid_index_count = 0;
+
+    GlFramebuffer framebuffer, points_framebuffer;
+    std::array<GlTexture, kTerms> pictures;
+    std::array<GlTexture, kPointNames.size()> points;  // what each pixel of the sea shows, before its light
+    GlTexture depth;
+    glm::ivec2 picture_size{0};
+    bool picture_layers = false, picture_plain = false;
+
+    std::map<std::string, ShaderProgram> programs;  // by ShaderVariant::key()
+    GlStageTimer timer;
+    double submit_ms = 0.0;
+};
+
+SeaRenderer::Implementation::Implementation() {
+    if (epoxy_gl_version() < 33 || !epoxy_is_desktop_gl())
+        throw PreviewError("the preview needs OpenGL 3.3, and this driver (" +
+                           std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ") has " +
+                           std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
+                           ": update it, or use pelagic render");
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
+    reversed_depth = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+    make_pictures(glm::ivec2(4), true);
+    make_dither();
+}
+
+void SeaRenderer::Implementation::make_dither() {
+    constexpr int kSide = 64;
+    std::vector<glm::vec4> texels;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) texels.emplace_back(dither({x, y}), 1.0f);
+    edit_texture(dither_tile);
+    texels_as_they_are();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kSide, kSide, 0, GL_RGBA, GL_FLOAT, texels.data());
+}
+
+// Shaders.
+
+const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant& variant) {
+    const auto found = programs.find(variant.key());
+    if (found != programs.end()) return found->second;
+    ShaderProgram program(variant.vertex(), variant.fragment());
+    program.use();
+    glUniform1i(program.uniform("sky_map"), kSkyMap);
+    glUniform1i(program.uniform("air_table"), kAirTable);
+    glUniform1i(program.uniform("spray_map"), kSprayMapUnit);
+    glUniform1i(program.uniform("dither"), kDither);
+    for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
+    // No program reads both kinds.
+    for (std::size_t i = 0; i < kPointNames.size(); ++i)
+        glUniform1i(program.uniform(kPointNames[i]), kPictures + static_cast<int>(i));
+    return programs.emplace(variant.key(), std::move(program)).first->second;
+}
+
+void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
+    struct Vertex {
+        glm::vec2 rest_m;
+        float cell_m;
+        glm::vec2 cell_axis_m;
+        float pixel_m;
+        glm::vec2 pixel_axis_m;
+    };
+    std::vector<Vertex> vertices(grid.rest_m.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        vertices[i] = {grid.rest_m[i], grid.cell_m[i], grid.cell_axis_m[i], grid.pixel_m[i],
+                       grid.pixel_axis_m[i]};
+    glBindVertexArray(grid_array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, grid_vertices.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                 GL_STREAM_DRAW);
+    const auto attribute = [](GLuint location, GLint size, std::size_t offset) {
+        glEnableVertexAttribArray(location);
+        glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                              reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, 2, offsetof(Vertex, rest_m));
+    attribute(1, 3, offsetof(Vertex, cell_m));
+    attribute(2, 3, offsetof(Vertex, pixel_m));
+    if (grid_size == glm::ivec2(grid.columns, grid.rows)) return;
+    grid_size = {grid.columns, grid.rows};
+    const std::vector<std::uint32_t> triangles =
+        projected_grid_triangles(ProjectedGridSize{.columns = grid.columns, .rows = grid.rows});
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, grid_indices.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size() * sizeof(std::uint32_t)),
+                 triangles.data(), GL_STATIC_DRAW);
+    grid_index_count = static_cast<GLsizei>(triangles.size());
+}
+
+// Pictures.
+
+void SeaRenderer::Implementation::require_framebuffer() {
+    const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        throw PreviewError("the driver cannot draw into pictures of 32-bit floats (framebuffer status " +
+                           std::to_string(status) + "): update it, or use pelagic render");
+}
+
+void SeaRenderer::Implementation::make_pictures(glm::ivec2 size, bool layers) {
+    if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_texture)
+        throw PreviewError("a picture of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                           " does not fit the driver, whose largest is " + std::to_string(largest_texture) +
+                           " a side: ask for a smaller one");
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    if (size == picture_size && layers == picture_layers) return;
+    std::array<GLenum, kTerms> attachments{};
+    for (int i = 0; i < kTerms; ++i) {
+        const bool used = i == 0 || layers;
+        attachments[i] = used ? GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i) : GL_NONE;
+        edit_texture(pictures[i]);
+        texels_as_they_are();
+        const glm::ivec2 of = used ? size : glm::ivec2(1);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, of.x, of.y, 0, GL_RGBA, GL_FLOAT, nullptr);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), GL_TEXTURE_2D,
+                               used ? pictures[i].name() : 0, 0);
+    }
+    edit_texture(depth);
+    texels_as_they_are();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size.x, size.y, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 nullptr);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+    glDrawBuffers(kTerms, attachments.data());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    require_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        edit_texture(points[i]);
+        texels_as_they_are();
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, nullptr);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), GL_TEXTURE_2D,
+                               points[i].name(), 0);
+    }
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+    glDrawBuffers(static_cast<GLsizei>(points.size()),
+                  std::array<GLenum, 2>{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}.data());
+    require_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    picture_size = size;
+    picture_layers = layers;
+}
+
+void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const View& view) const {
+    const auto tangent = view.pixel_tangent();
+    set_uniform(program.uniform("view_forward"), glm::vec3(view.forward));
+    set_uniform(program.uniform("view_right"), glm::vec3(view.right * tangent));
+    set_uniform(program.uniform("view_up"), glm::vec3(view.up * tangent));
+    glUniform2f(program.uniform("view_centre"), 0.5f * static_cast<float>(view.resolution.x),
+                0.5f * static_cast<float>(view.resolution.y));
+    glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
+    bind_texture(kSkyMap, sky_map);
+    set_uniforms(program, light);
+    if (spray.empty()) return;
+    bind_texture(kSprayMapUnit, spray_map);
+    set_uniforms(program, spray);
+}
+
+void SeaRenderer::Implementation::set_air(double height_m) {
+    bind_texture(kAirTable, air_table);
+    if (air_height_m == height_m) return;
+    const Air seen = air_model->seen_from(height_m);
+    texels_as_they_are();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kWidth, Air::kHeight, 0, GL_RGBA, GL_FLOAT,
+                 seen.texels.data());
+    air = air_uniforms(seen);
+    air_height_m = height_m;
+}
+
+void SeaRenderer::Implementation::draw_grid(const ShaderProgram& program, const View& view,
+                                            const ProjectedGrid& grid) {
+    program.use();
+    set_common(program, view);
+    sea.bind(program, grid.origin_m);
+    set_uniforms(program, air);
+    glUniform1f(program.uniform("eye_height_m"), static_cast<float>(view.position_m.z));
+    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
+    upload_grid(grid);
+    const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
+    glUniformMatrix4fv(program.uniform("clip_from_grid"), 1, GL_FALSE, glm::value_ptr(clip));
+    // Reversed depth, near/distance, keeps precision out to the horizon.
+    if (reversed_depth)
+        glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(kNear_m));
+    else
+        glUniform2f(program.uniform("depth_of_distance"), 1.0f, static_cast<float>(-2.0 * kNear_m));
+    glDrawElements(GL_TRIANGLES, grid_index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+// One triangle at the far plane. The program must be in use.
+void SeaRenderer::Implementation::draw_over_all(const ShaderProgram& program) const {
+    glUniform1f(program.uniform("farthest"), reversed_depth ? 0.0f : 1.0f);
+    glBindVertexArray(no_array.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void SeaRenderer::Implementation::begin_picture(glm::ivec2 size, bool layers) {
+    make_pictures(size, layers);
+    glViewport(0, 0, size.x, size.y);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glClearDepth(reversed_depth ? 0.0 : 1.0);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    if (reversed_depth) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDepthFunc(reversed_depth ? GL_GREATER : GL_LESS);
+}
+
+void SeaRenderer::Implementation::end_picture() const {
+    glDisable(GL_DEPTH_TEST);
+    if (reversed_depth) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glBindVertexArray(0);
+    glActiveTexture(GL_TEXTURE0);
+}
+
+void SeaRenderer::Implementation::draw_points(const View& view, const ProjectedGrid& grid) {
+    glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
+    draw_grid(program_of(ShaderVariant::of_points(sea.layout())), view, grid);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+}
+
+void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
+                                           const DrawOptions& options) {
+    const SeaLayout& layout = sea.layout();
+    const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
+    if (!is_lit_afterwards(options)) {
+        glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
+        draw_grid(program, view, grid);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+        return;
+    }
+    draw_points(view, grid);
+    program.use();
+    set_common(program, view);
+    sea.bind(program, grid.origin_m);
+    set_uniforms(program, air);
+    set_uniforms(program, foam_uniforms(foam_pattern(options.foam, grid.origin_m)));
+    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
+    for (std::size_t i = 0; i < points.size(); ++i) bind_texture(kPictures + static_cast<int>(i), points[i]);
+    // Where something is nearer than the far plane.
+    glDepthMask(GL_FALSE);
+    glDepthFunc(reversed_depth ? GL_LESS : GL_GREATER);
+    draw_over_all(program);
+    glDepthMask(GL_TRUE);
+}
+
+void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& options) {
+    const ShaderProgram& program = program_of(ShaderVariant::of_sky(options, sky_map_size));
+    program.use();
+    set_common(program, view);
+    set_uniforms(program, air);
+    glDepthFunc(reversed_depth ? GL_GEQUAL : GL_LEQUAL);
+    draw_over_all(program);
+}
+
+SeaRenderer::SeaRenderer() : implementation_(std::make_unique<Implementation>()) {}
+SeaRenderer::~SeaRenderer() = default;
+
+int SeaRenderer::largest_texture() const {
+    return implementation_->largest_texture;
+}
+
+bool SeaRenderer::is_software() const {
+    const std::string name = device();
+    static constexpr std::array kNames{"llvmpipe", "softpipe", "swrast", "Software Rasterizer",
+                                       "SwiftShader"};
+    return std::any_of(kNames.begin(), kNames.end(),
+                       [&](const char* known) { return name.find(known) != std::string::npos; });
+}
+
+std::string SeaRenderer::device() const {
+    return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
+           reinterpret_cast<const char*>(glGetString(GL_VERSION));
+}
+
+void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
+    Implementation& of = *implementation_;
+    of.light = light_uniforms(sky, water);
+    of.sky_map_size = sky.map.size();
+    of.air_model = sky.air;
+    of.air = air_uniforms({});  // none until a table is there
+    of.air_height_m.reset();
+    bind_texture(kSkyMap, of.sky_map);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, std::max(sky.map.level_count() - 1, 0));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    for (int level = 0; level < sky.map.level_count(); ++level)
+        glTexImage2D(GL_TEXTURE_2D, level, GL_RGB32F, sky.map.size() >> level, sky.map.size() >> level, 0,
+                     GL_RGB, GL_FLOAT, sky.map.level(level).data());
+}
+
+void SeaRenderer::set_spray(const Spray& spray) {
+    Implementation& of = *implementation_;
+    of.spray.clear();
+    if (spray.empty()) return;
+    of.spray = spray_uniforms(spray);
+    edit_texture(of.spray_map);
+    texels_as_they_are();
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    const TexelFormat format = float_texels(2);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), spray.columns, spray.rows, 0,
+                 format.format, GL_FLOAT, spray.texels.data());
+}
+
+void SeaRenderer::upload(const PackedFrame& frame) {
+    Implementation& of = *implementation_;
+    const GlStageTimer::Measured measured(of.timer, GlStageTimer::Upload);
+    of.sea.upload(frame);
+}
+void SeaRenderer::upload_once(Frame<float>&& frame, int query) {
+    implementation_->sea.upload_once(std::move(frame), query);
+}
+bool SeaRenderer::has_frame() const {
+    return !implementation_->sea.empty();
+}
+
+void SeaRenderer::upload_foam(std::shared_ptr<const PackedFoam> foam) {
+    implementation_->sea.upload_foam(std::move(foam));
+}
+
+SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const ProjectedGrid& grid) {
+    Implementation& of = *implementation_;
+    const KeptFramebuffer kept;
+    of.begin_picture(view.resolution, of.picture_layers);
+    // No pixel of the sea has a footprint of 0.
+    glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
+    glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    of.draw_points(view, grid);
+    of.end_picture();
+    glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
+    const auto count =
+        static_cast<std::size_t>(view.resolution.x) * static_cast<std::size_t>(view.resolution.y);
+    std::array<std::vector<glm::vec4>, 2> texels;
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        texels[i].resize(count);
+        glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+        glReadPixels(0, 0, view.resolution.x, view.resolution.y, GL_RGBA, GL_FLOAT, texels[i].data());
+    }
+    ShownPoints shown;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec4 &first = texels[0][i], &second = texels[1][i];
+        if (!(first.z > 0.0f)) continue;
+        shown.rest_m.emplace_back(first);
+        shown.pixel_m.push_back(first.z);
+        shown.pixel_axis_m.emplace_back(first.w, second.x);
+    }
+    return shown;
+}
+
+void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOptions& options) {
+    const auto started = std::chrono::steady_clock::now();
+    Implementation& of = *implementation_;
+    const KeptFramebuffer kept;
+    DrawOptions drawn = options;
+    drawn.lighting.air = options.lighting.air && of.air_model;
+    drawn.lighting.spray = options.lighting.spray && !of.spray.empty();
+    drawn.sky_from_air = of.air_model && of.air_model->has_sky();
+    if (of.air_model) of.set_air(view.position_m.z);
+    of.begin_picture(view.resolution, options.layers);
+    of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
+    {
+        const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
+        if (!of.sea.empty()) of.draw_sea(view, grid, drawn);
+    }
+    {
+        const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
+        of.draw_sky(view, drawn);
+    }
+
+    of.end_picture();
+    of.submit_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+}
+
+void SeaRenderer::show(float exposure) {
+    Implementation& of = *implementation_;
+    const ShaderProgram& program =
+        of.program_of(ShaderVariant::of_screen(of.picture_layers, of.picture_plain));
+    std::array<GLint, 4> viewport{};
+    glGetIntegerv(GL_VIEWPORT, viewport.data());
+    if (viewport[2] < 1 || viewport[3] < 1) return;  // an empty window
+    const GlStageTimer::Measured measured(of.timer, GlStageTimer::Show);
+    program.use();
+    for (int i = 0; i < kTerms; ++i) bind_texture(kPictures + i, of.pictures[i]);
+    bind_texture(kDither, of.dither_tile);
+    glUniform2f(program.uniform("picture_from_window"),
+                static_cast<float>(of.picture_size.x) / static_cast<float>(viewport[2]),
+                static_cast<float>(of.picture_size.y) / static_cast<float>(viewport[3]));
+    glUniform2f(program.uniform("window_first"), static_cast<float>(viewport[0]),
+                static_cast<float>(viewport[1]));
+    glUniform1f(program.uniform("exposure"), exposure);
+    glUniform1f(program.uniform("farthest"), 0.0f);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glBindVertexArray(of.no_array.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glActiveTexture(GL_TEXTURE0);
+}
+
+Picture SeaRenderer::read_layers() const {
+    const Implementation& of = *implementation_;
+    const KeptFramebuffer kept;
+    glBindFramebuffer(GL_FRAMEBUFFER, of.framebuffer.name());
+    const auto width = static_cast<std::size_t>(of.picture_size.x),
+               height = static_cast<std::size_t>(of.picture_size.y);
+    Picture picture{of.picture_size, std::vector<SeaRadiance>(width * height),
+                    std::vector<std::uint8_t>(width * height)};
+    constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{
+        &SeaRadiance::sea, &SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::foam, &SeaRadiance::air};
+    std::vector<glm::vec4> texels(width * height);
+    for (int i = 0; i < (of.picture_layers ? kTerms : 1); ++i) {
+        glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glReadPixels(0, 0, of.picture_size.x, of.picture_size.y, GL_RGBA, GL_FLOAT, texels.data());
+        for (std::size_t y = 0; y < height; ++y)
+            for (std::size_t x = 0; x < width; ++x) {
+                const glm::vec4& texel = texels[(height - 1 - y) * width + x];
+                const std::size_t at = y * width + x;
+                if (i == 0) picture.sea[at] = texel.w > 0.5f;
+                const auto term = of.picture_layers || picture.sea[at] ? kTerm[i] : &SeaRadiance::sky;
+                picture.layers[at].*term = glm::vec3(texel);
+            }
+    }
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    return picture;
+}
+
+StageTimes SeaRenderer::times() const {
+    const Implementation& of = *implementation_;
+    return {.upload_ms = of.timer.milliseconds(GlStageTimer::Upload),
+            .sea_ms = of.timer.milliseconds(GlStageTimer::Sea),
+            .sky_ms = of.timer.milliseconds(GlStageTimer::Sky),
+            .show_ms = of.timer.milliseconds(GlStageTimer::Show),
+            .submit_ms = of.submit_ms};
+}
+
+}  // namespace pelagic

@@ -1,0 +1,237 @@
+// The lighting on arrays: pelagic.Sky, pelagic.WaterBody and pelagic.shade.
+#include "plugin/light/light.h"
+#include "plugin/host/python/light.h"
+#include "plugin/light/exposure.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/lighting/background.h"
+#include "plugin/host/python/arrays.h"
+#include "plugin/host/python/bindings.h"
+#include "plugin/host/python/watch.h"
+#include "plugin/render/render.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+using Range = tbb::blocked_range<std::size_t>;
+
+constexpr std::size_t kGrain = 256;  // points a task computes
+constexpr std::size_t kShaded =
+    kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
+
+// work(range) over as many points, by all threads, until it is interrupted.
+template <class Work>
+void over_points(py::ssize_t count, const Work& work) {
+    Watch watch{py::none(), py::none()};
+    beside_others(watch, [&] {
+        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+            if (!*watch.flag()) work(range);
+        });
+    });
+    if (*watch.flag()) throw Cancelled("the program ends");
+}
+
+py::tuple tuple_of(glm::vec3 v) {
+    return py::make_tuple(v.x, v.y, v.z);
+}
+
+// ---- Sky
+
+struct PythonSky {
+    std::shared_ptr<const Sky> sky;
+};
+
+PythonSky sky_of(const Scene& scene) {
+    require_valid(scene);
+    return {beside_others([kept = scene] { return std::make_shared<const Sky>(make_sky(kept)); })};
+}
+
+py::array image_of(const PythonSky& self, int width) {
+    LatLong picture = beside_others([sky = self.sky, width] { return lat_long(*sky, width); });
+    return array_of<float>(std::move(picture.radiance), {picture.height, picture.width});
+}
+
+py::object radiance_towards(const PythonSky& self, const py::object& directions, py::object out) {
+    Copies copies;
+    const auto [towards, count] = readable_vectors(directions, {"directions"}, copies);
+    if (out.is_none()) out = py::array_t<float>({count, py::ssize_t{3}});
+    const Strided<glm::vec3> radiance = writable_vectors(out, {"out", count}, copies);
+    const Strided<const glm::vec3> to = towards;
+    over_points(count, [&](const Range& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            radiance[i] = background(*self.sky, to[i], 1.0f).sky;
+    });
+    copies.give_back();
+    return out;
+}
+
+void add_sky(py::module_& module) {
+    py::class_<PythonSky>(
+        module, "Sky",
+        "The light of a scene: daylight computed from the sun's place and the haze, or a picture that "
+        "light.sky names.\n\n"
+        "Radiances are linear Rec. 709 in kcd/m², irradiances in klx; of a picture in the picture's "
+        "own units. ValueError, naming the file, for a picture that can't be read or isn't of a sky.")
+        .def(py::init(&sky_of), py::arg("scene"))
+        .def_property_readonly(
+            "sun_direction", [](const PythonSky& self) { return tuple_of(self.sky->sun_direction); },
+            "Unit, towards the sun, world axes.")
+        .def_property_readonly(
+            "sun_radiance", [](const PythonSky& self) { return tuple_of(self.sky->sun_radiance); },
+            "Mean over the disc; 0 after sunset and where a picture has no sun.")
+        .def_property_readonly(
+            "sun_angular_radius", [](const PythonSky& self) { return self.sky->sun_angular_radius; },
+            "Of the disc [rad].")
+        .def_property_readonly(
+            "sun_irradiance", [](const PythonSky& self) { return tuple_of(self.sky->sun_irradiance); },
+            "Of the sun alone, on a horizontal plane. Across its rays: divided by sun_direction's z.")
+        .def_property_readonly(
+            "sky_irradiance", [](const PythonSky& self) { return tuple_of(self.sky->sky_irradiance); },
+            "Of the sky without the sun, on a horizontal plane.")
+        .def(
+            "exposure",
+            [](const PythonSky& self, const Scene& scene, double stops) {
+                require_valid(scene);
+                return shot_exposure(scene, *self.sky, stops);
+            },
+            py::arg("scene"), py::arg("stops") = 0.0,
+            "For pictures of a scene in this light, which should be its own: radiance · exposure = 0.18 is middle "
+            "grey. Metered from the light and a mean sea in the scene's camera, at its keys where it has any; stops "
+            "brighter.")
+        .def(
+            "image", &image_of, py::arg("width"),
+            "float32 (width/2, width, 3): the sky without the sun's disc as a lat-long picture, rows from the "
+            "zenith down, the middle column +x, azimuth growing counter-clockwise, which is to the left: as "
+            "light.sky reads one. Below the horizon: the sky's reflection in more sea. width: even, 8 … 16384.")
+        .def("radiance", &radiance_towards, py::arg("directions"), py::kw_only(), py::arg("out") = py::none(),
+             "float32 (n, 3): the sky without the sun's disc in these directions, float32 (n, 3), unit; into "
+             "out, where that is given.");
+}
+
+// ---- The sea's light
+
+template <class Choice>
+Choice choice_of(const std::string& name, const std::string& word,
+                 std::initializer_list<std::pair<const char*, Choice>> choices) {
+    std::string accepted;
+    for (const auto& [known, choice] : choices) {
+        if (word == known) return choice;
+        accepted += (accepted.empty() ? "" : ", ") + std::string(known);
+    }
+    throw py::value_error(name + " \"" + word + "\"; accepted: " + accepted);
+}
+
+struct ShadeArguments {
+    py::object to_eye, normal, slope_variance, coverage;
+    std::array<py::object, kShaded> layers;
+};
+
+py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArguments& given,
+               LightingChoice choice) {
+    Copies copies;
+    const auto [normal, count] = readable_vectors(given.normal, {"normal"}, copies);
+    const auto read = [&, n = count](const py::object& object, const char* name) {
+        return readable_vectors(object, {name, n}, copies).view;
+    };
+    const Strided<const glm::vec3> to_eye = read(given.to_eye, "to_eye"),
+                                   slope_variance = read(given.slope_variance, "slope_variance"),
+                                   normals = normal;
+    choice.whitecaps = !given.coverage.is_none();
+    const Strided<const float> coverage = choice.whitecaps
+                                              ? readable_numbers(given.coverage, {"coverage", count}, copies)
+                                              : Strided<const float>{};
+    std::array<Strided<glm::vec3>, kShaded> out;
+    py::dict written;
+    for (std::size_t layer = 0; layer < kShaded; ++layer) {
+        const char* name = kLayers[layer].first;
+        py::object array = given.layers[layer];
+        if (array.is_none()) array = py::array_t<float>({count, py::ssize_t{3}});
+        out[layer] = writable_vectors(array, {name, count}, copies);
+        written[name] = array;
+    }
+    over_points(count, [&](const Range& range) {
+        std::vector<SeaPoint> points(range.size());
+        std::vector<SeaRadiance> radiance(range.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::size_t at = range.begin() + i;
+            points[i] = {.to_eye = to_eye[at],
+                         .normal = normals[at],
+                         .slope_variance = slope_variance[at],
+                         .coverage = coverage ? coverage[at] : 0.0f};
+        }
+        shade_sea(choice, *sky.sky, water, points, radiance);
+        for (std::size_t layer = 0; layer < kShaded; ++layer)
+            for (std::size_t i = 0; i < radiance.size(); ++i)
+                out[layer][range.begin() + i] = radiance[i].*kLayers[layer].second;
+    });
+    copies.give_back();
+    return written;
+}
+
+}  // namespace
+
+SkyQuality sky_quality_of(const std::string& word) {
+    return choice_of<SkyQuality>(
+        "sky_quality", word,
+        {{"one", SkyQuality::One}, {"nine", SkyQuality::Nine}, {"integral", SkyQuality::Integral}});
+}
+
+void add_light(py::module_& module) {
+    add_sky(module);
+    py::class_<WaterBody>(module, "WaterBody", "What is in a scene's water.")
+        .def(py::init([](const Scene& scene) {
+                 require_valid(scene);
+                 return make_water(scene);
+             }),
+             py::arg("scene"))
+        .def_property_readonly(
+            "reflectance", [](const WaterBody& self) { return tuple_of(self.reflectance); },
+            "Diffuse, just below the surface, linear Rec. 709.")
+        .def_property_readonly(
+            "absorption_per_m", [](const WaterBody& self) { return tuple_of(self.absorption_per_m); },
+            "[1/m], at the dominant wavelengths of red, green and blue.")
+        .def_property_readonly(
+            "backscatter_per_m", [](const WaterBody& self) { return tuple_of(self.backscatter_per_m); },
+            "[1/m], at the same. Isotropic scattering of twice as much sends as much back.");
+    module.def(
+        "shade",
+        [](const PythonSky& sky, const WaterBody& water, const py::object& to_eye, const py::object& normal,
+           const py::object& slope_variance, const py::object& coverage, const std::string& sky_quality,
+           const std::string& fresnel, const py::object& sun_layer, const py::object& sky_layer,
+           const py::object& sea_layer, const py::object& foam_layer) {
+            LightingChoice choice;
+            choice.sky_quality = sky_quality_of(sky_quality);
+            choice.fresnel = choice_of<FresnelFit>(
+                "fresnel", fresnel, {{"exact", FresnelFit::Exact}, {"paper", FresnelFit::Paper}});
+            return shade(
+                sky, water,
+                {to_eye, normal, slope_variance, coverage, {sun_layer, sky_layer, sea_layer, foam_layer}},
+                choice);
+        },
+        py::arg("sky"), py::arg("water"), py::arg("to_eye"), py::arg("normal"), py::arg("slope_variance"),
+        py::arg("coverage") = py::none(), py::kw_only(), py::arg("sky_quality") = "nine",
+        py::arg("fresnel") = "exact", py::arg("sun_layer") = py::none(), py::arg("sky_layer") = py::none(),
+        py::arg("sea_layer") = py::none(), py::arg("foam_layer") = py::none(),
+        "The radiance of the sea towards the eye, by its source: a dict of float32 (n, 3), \"sun\" (its "
+        "reflection), \"sky\" (its reflection), \"sea\" (light from the water) and \"foam\", in the sky's units. "
+        "Each is weighted by its share of the pixel; their sum is what the eye sees.\n\n"
+        "to_eye: float32 (n, 3), unit, from the sea to the eye. normal: float32 (n, 3), unit, of the resolved "
+        "waves. slope_variance: float32 (n, 3), xx, yy, xy of the waves that the normals leave out. coverage: "
+        "float32 (n,), of whitecaps; None: there are none. The last three are as evaluate() gives them.\n"
+        "sky_quality: \"one\" lookup over the ellipse of the slopes, \"nine\", or the \"integral\". fresnel: "
+        "\"exact\", or as the \"paper\" has it.\n"
+        "sun_layer, sky_layer, sea_layer, foam_layer: arrays to write into instead of new ones.");
+}
+
+}  // namespace pelagic::python

@@ -1,0 +1,323 @@
+// pelagic.Scene and its tables: the keys of core/scene/keys.h as attributes, documented in the words of the
+// shot file's help.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/plan/prepared_scene.h"
+#include "core/scene/budget.h"
+#include "core/scene/canonical.h"
+#include "core/scene/keys.h"
+#include "core/scene/names.h"
+#include "core/scene/shot_text.h"
+#include "core/scene/text.h"
+#include "core/spectrum/possible.h"
+#include "core/waves/folding.h"
+#include "plugin/budget/budget.h"
+#include "plugin/files/files.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/host/python/bindings.h"
+#include "plugin/host/python/cage.h"
+#include "plugin/host/python/values.h"
+#include "plugin/host/python/watch.h"
+#include "plugin/light/light.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// "how far the wind has blown over water [m]; a number, 1 … 1e8; default 300000"
+std::string doc_of(const Key& key) {
+    std::string text = key.help;
+    if (!key.unit.empty()) text += " [" + key.unit + "]";
+    if (!key.accepted.empty()) text += "; " + key.accepted;
+    const std::string fallback = key.is_required ? "" : value_text(key, key.fallback);
+    if (!fallback.empty()) text += "; default " + fallback;
+    return text;
+}
+
+// ---- Classes out of the table of keys
+
+// A table of a scene, which it keeps alive; the base of a class for each table.
+struct TableOfScene {
+    std::shared_ptr<Scene> scene;
+};
+
+py::object property(const py::object& get, const py::object& set, const std::string& doc) {
+    return py::module_::import("builtins").attr("property")(get, set, py::none(), doc);
+}
+
+// The attributes of a table's class that aren't keys.
+void add_methods(const std::string& table, const py::object& base, py::dict& members) {
+    if (table == "shot")
+        members["time_s"] = py::cpp_function(
+            [](const TableOfScene& self, double frame) { return self.scene->shot.time_s(frame); },
+            py::name("time_s"), py::is_method(base), py::arg("frame"),
+            "The sea's time that a frame shows [s], also between frames: "
+            "t = time_offset_s + time_scale (frame - 1)/fps, whatever the range.");
+    if (table == "surface")
+        members["cage"] = property(
+            py::cpp_function([](const TableOfScene& self) -> py::object {
+                const Surface& surface = self.scene->surface;
+                if (!surface.cage) return py::none();
+                return py::cast(PythonCage{surface.cage, surface.cage_file});
+            }),
+            py::cpp_function([](const TableOfScene& self, const py::object& given) {
+                if (!given.is_none() && !py::isinstance<PythonCage>(given))
+                    throw py::type_error("surface.cage: accepted: a Cage, or None");
+                const PythonCage cage = given.is_none() ? PythonCage() : given.cast<PythonCage>();
+                self.scene->surface.cage = cage.cage;
+                self.scene->surface.cage_file = cage.file;
+            }),
+            "With kind = \"cage\": the Cage whose limit surface the sea lies on, from cage_file or from arrays; otherwise None.");
+    if (table != "sea") return;
+    members["is_measured"] = property(
+        py::cpp_function([](const TableOfScene& self) { return self.scene->sea.measured.has_value(); }),
+        py::none(), "Whether a buoy's hour is in it, from Scene.from_file.");
+    members["forget_measured"] = py::cpp_function(
+        [](const TableOfScene& self) { self.scene->sea.measured.reset(); }, py::name("forget_measured"),
+        py::is_method(base), "Lets the buoy's hour go, so that spectrum can be another than \"file\".");
+}
+
+std::string repr_of(const KeyTable& table, const Scene& scene) {
+    std::string text;
+    for (const Key& key : table.keys)
+        text += (text.empty() ? "" : ", ") + key.name + "=" +
+                std::string(py::repr(to_python(key, value_of(scene, key))));
+    return table.name + "(" + text + ")";
+}
+
+// "ShotTable", "SeaTable", …
+py::object add_table_class(py::module_& module, const py::object& base, const KeyTable& table) {
+    py::dict members;
+    members["__module__"] = "pelagic";
+    members["__slots__"] = py::tuple();  // a misspelt key is refused, not added
+    members["__doc__"] = "[" + table.name + "]: " + table.help;
+    members["__repr__"] = py::cpp_function(
+        [&table](const TableOfScene& self) { return repr_of(table, *self.scene); }, py::is_method(base));
+    for (const Key& key : table.keys) {
+        const py::cpp_function get(
+            [&key](const TableOfScene& self) { return to_python(key, value_of(*self.scene, key)); });
+        const py::cpp_function set([&key](const TableOfScene& self, const py::object& value) {
+            set_from_python(*self.scene, key, value);
+        });
+        members[key.name.c_str()] = property(get, key.set ? py::object(set) : py::none(), doc_of(key));
+    }
+    add_methods(table.name, base, members);
+    std::string name = table.name + "Table";
+    name.front() += 'A' - 'a';
+    const py::object made = py::type::of(base)(name, py::make_tuple(base), members);
+    module.attr(name.c_str()) = made;
+    return made;
+}
+
+// Named tuples: an attribute that is assigned would be lost with the copy that it belongs to.
+void add_entry_class(py::module_& module, const Key& key) {
+    py::list names;
+    py::list defaults;  // of the last names: keys without one come first
+    for (const Key& inner : key.entry_keys) {
+        names.append(inner.name);
+        if (!inner.is_required) defaults.append(to_python(inner, inner.fallback));
+    }
+    const py::object made = py::module_::import("collections")
+                                .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic",
+                                                    py::arg("defaults") = defaults);
+    made.attr("__doc__") = "An entry of " + key.path + ".";
+    for (const Key& inner : key.entry_keys) made.attr(inner.name.c_str()).attr("__doc__") = doc_of(inner);
+    module.attr(key.entry_name.c_str()) = made;
+}
+
+// ---- The table itself
+
+py::object range_of(const Key& key) {
+    if (key.range) return py::make_tuple(key.range->low, key.range->high);
+    if (key.type == KeyType::Integer) return py::make_tuple(key.least, key.largest);
+    return py::none();
+}
+
+py::dict described_key(const Key& key) {
+    py::list feeds, inner;
+    for (std::size_t part = 0; part < kKeyParts; ++part)
+        if (key.key_parts[part]) feeds.append(text_of(KeyPartSet(1ull << part)));
+    for (const Key& each : key.entry_keys) inner.append(described_key(each));
+    py::dict out;
+    out["path"] = key.path;
+    out["name"] = key.name;
+    out["label"] = key.label;
+    out["type"] = std::string(word_of(key.type));
+    out["unit"] = key.unit;
+    out["help"] = key.help;
+    out["accepted"] = key.accepted;
+    out["default"] = key.is_required ? py::none() : to_python(key, key.fallback);
+    out["required"] = key.is_required;
+    out["range"] = range_of(key);
+    out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());
+    out["logarithmic"] = key.soft && key.soft->is_logarithmic;
+    out["choices"] = py::cast(key.choices);
+    out["feeds"] = feeds;
+    out["keys"] = inner;
+    out["entry"] = key.entry_name;
+    out["other_word"] = key.other_word;
+    return out;
+}
+
+py::list described_keys() {
+    py::list out;
+    for (const Key& key : keys()) out.append(described_key(key));
+    return out;
+}
+
+// A shot file may be read from any folder.
+std::string text_of_shot(const Scene& scene) {
+    Scene placed = scene;
+    const auto absolute = [](std::string& path) { path = std::filesystem::absolute(path).string(); };
+    if (placed.light.sky != Light{}.sky) absolute(placed.light.sky);
+    if (placed.sea.measured) absolute(placed.sea.measured->file);
+    if (placed.surface.cage) {
+        if (placed.surface.cage_file.empty())
+            throw std::invalid_argument(
+                text_of(Problem{std::string(kCageFile), quoted_text(placed.surface.cage->content()),
+                                "is a cage that came from no file, which no shot file can name",
+                                "a cage that was read from a file"}));
+        absolute(placed.surface.cage_file);
+    }
+    const auto require_utf8 = [](std::string_view key, const std::string& path) {
+        if (utf8_text(path) != path)
+            throw std::invalid_argument(text_of(
+                Problem{std::string(key), quoted_text(path),
+                        "has bytes that aren't UTF-8, which no shot file can have", "a path in UTF-8"}));
+    };
+    require_utf8("light.sky", placed.light.sky);
+    if (placed.sea.measured) require_utf8(kSpectrumFile, placed.sea.measured->file);
+    if (placed.surface.cage) require_utf8(kCageFile, placed.surface.cage_file);
+    return shot_text(placed);
+}
+
+double significant_height_of(const Scene& scene) {
+    require_valid(scene);
+    const Scene kept = scene;
+    const OthersMayRun others_may_run;
+    return prepare(without_budget(kept))->extent.significant_height_m;
+}
+
+std::vector<std::string> warnings_of(const Scene& scene) {
+    require_valid(scene);
+    const Scene kept = scene;
+    const OthersMayRun others_may_run;
+    return sea_warnings(*prepare(without_budget(kept)));
+}
+
+Scene settled_scene(const Scene& scene) {
+    require_valid(scene);
+    const Scene kept = scene;
+    const OthersMayRun others_may_run;
+    return held(settle(kept, Purpose::Mesh, with_rates(recorded_rates()))).scene;
+}
+
+std::vector<std::string> problem_lines(const Scene& scene) {
+    std::vector<std::string> lines;
+    for (const Problem& problem : problems_of(scene)) lines.push_back(text_of(problem));
+    return lines;
+}
+
+}  // namespace
+
+void require_valid(const Scene& scene) {
+    std::string report;
+    for (const std::string& line : problem_lines(scene)) report += (report.empty() ? "" : "\n") + line;
+    if (!report.empty()) throw ShotError(report);
+}
+
+void add_scene(py::module_& module) {
+    for (const Key& key : keys())
+        if (!key.entry_keys.empty()) add_entry_class(module, key);
+    py::class_<Scene, std::shared_ptr<Scene>> scene(
+        module, "Scene",
+        "What the artist asks for: the tables of a shot file, each with its keys as attributes.\n\n"
+        "Scene() has the defaults. Words are strings, vectors and lists are tuples: assign a new one to "
+        "change "
+        "it. pelagic.keys() describes every key.");
+    scene.def(py::init<>())
+        .def_static(
+            "from_file",
+            [](const std::filesystem::path& path) {
+                return std::make_shared<Scene>(load_shot(path, check_scene));
+            },
+            py::arg("path"),
+            "The scene that a shot file describes. ShotError with every problem of the file.")
+        .def_static(
+            "from_text",
+            [](const std::string& text, const std::filesystem::path& folder) {
+                return std::make_shared<Scene>(parse_shot(text, folder / "text", check_scene));
+            },
+            py::arg("text"), py::arg("folder") = ".",
+            "The scene that a shot file's text describes; paths in it are from this folder. ShotError with "
+            "every problem, in whose lines the text is called \"text\" in the folder.")
+        .def(
+            "shot_text", &text_of_shot,
+            "The shot file that describes the scene: the keys that aren't at their defaults. Paths in it are "
+            "absolute.")
+        .def(
+            "save",
+            [](const Scene& self, const std::filesystem::path& path) {
+                files::write_atomically(path, text_of_shot(self));
+            },
+            py::arg("path"),
+            "Writes shot_text() to a file, which is the old one until the new one is whole. FileError where "
+            "it can't be written.")
+        .def("validate", &problem_lines,
+             "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
+             "can be "
+             "planned.")
+        .def(
+            "warnings", &warnings_of,
+            "What an artist should know of a sea that can be planned, a sentence each: that much of the surface folds over "
+            "itself, that troughs reach the bed. Empty: nothing. ShotError for a scene that can't be.")
+        .def(
+            "significant_height_m", &significant_height_of,
+            "4 times the root of the variance of the surface's height [m]: of its spectrum, without building a Sea.")
+        .def(
+            "settled", &settled_scene,
+            "A copy with the keys of the mesh that the budget asks for (quality.max_error, quality.frame_ms), and without "
+            "the budget; without one as it is. frame_ms counts here, as in a Sea, in Maps and in render(), the milliseconds of the "
+            "recorded two cores, so that all machines of a farm choose alike; bake() and render_files() count this machine's. "
+            "ValueError where nothing holds the budget, ShotError for a scene that can't "
+            "be.")
+        .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
+        .def(
+            "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },
+            py::arg("memo"))
+        .def("__str__", [](const Scene& self) { return canonical(self); });
+    py::class_<TableOfScene> base(module, "Table", "A table of a scene: its keys are the attributes.");
+    base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }),
+             py::arg("scene"));
+    for (const KeyTable& table : key_tables()) {
+        const py::object made = add_table_class(module, base, table);
+        scene.def_property(
+            table.name.c_str(), [made](const std::shared_ptr<Scene>& self) { return made(self); },
+            [&table, made](Scene& self, const py::object& other) {
+                if (!py::isinstance(other, made))
+                    throw py::type_error(table.name + ": accepted: a " +
+                                         std::string(py::str(made.attr("__name__"))) +
+                                         ", such as another scene's");
+                const Scene from = *other.cast<const TableOfScene&>().scene;
+                table.copy(from, self);
+            },
+            ("[" + table.name + "]: " + table.help).c_str());
+    }
+    add_presets(module, scene);
+    module.def(
+        "keys", &described_keys,
+        "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "
+        "required, range, soft_range (of a slider), logarithmic, choices (words), feeds (what depends on it), "
+        "the keys of a list's entries, the entries' class, and other_word (that may stand in the place of a list or an "
+        "integer).");
+}
+
+}  // namespace pelagic::python

@@ -1,0 +1,546 @@
+// pelagic.GpuSea, GpuLight and GpuGrid: what a host's own GPU code draws the sea from, as plugin/host/preview does.
+// Arrays and text; no OpenGL.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/lighting/air.h"
+#include "core/plan/plan.h"
+#include "core/scene/budget.h"
+#include "core/scene/canonical.h"
+#include "core/scene/text.h"
+#include "core/surface/footprint_levels.h"
+#include "core/surface/projected_grid.h"
+#include "plugin/host/gpu/foam_worker.h"
+#include "plugin/host/gpu/packed_frame.h"
+#include "plugin/host/gpu/shader_variants.h"
+#include "plugin/host/gpu/sky_atlas.h"
+#include "plugin/host/gpu/uniforms.h"
+#include "plugin/host/python/arrays.h"
+#include "plugin/host/python/bindings.h"
+#include "plugin/host/python/task.h"
+#include "plugin/host/python/watch.h"
+#include "plugin/light/exposure.h"
+#include "plugin/light/light.h"
+#include "plugin/render/render.h"
+#include "plugin/render/under_water.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// Names to numbers and tuples.
+py::dict dict_of(const std::vector<Uniform>& uniforms) {
+    py::dict made;
+    for (const Uniform& uniform : uniforms) {
+        const glm::vec4& v = uniform.value;
+        if (uniform.is_integer) {
+            made[py::str(uniform.name)] = static_cast<int>(v.x);
+        } else if (uniform.components == 1) {
+            made[py::str(uniform.name)] = v.x;
+        } else {
+            py::tuple values(uniform.components);
+            for (int i = 0; i < uniform.components; ++i) values[i] = v[i];
+            made[py::str(uniform.name)] = values;
+        }
+    }
+    return made;
+}
+
+// ---- Light
+
+struct GpuLight {
+    explicit GpuLight(const Scene& scene) : made_from(light_content(scene)) {
+        sky = make_sky(scene);
+        map_size = sky.map.size();
+        uniforms = light_uniforms(sky, make_water(scene));
+        atlas = sky_atlas(sky.map);
+    }
+    bool serves(const Scene& scene) const { return light_content(scene) == made_from; }
+
+    std::string made_from;
+    Sky sky;
+    int map_size = 0;
+    std::vector<Uniform> uniforms;
+    SkyAtlas atlas;
+    // What was metered last: hosts ask at each redraw, and metering takes tens of milliseconds.
+    struct Metered {
+        std::string made_from;
+        float exposure = 1.0f;
+    };
+    Metered metered{};
+};
+
+glm::dvec2 checked_origin(std::array<double, 2> origin_m) {
+    const glm::dvec2 origin(origin_m[0], origin_m[1]);
+    if (!std::isfinite(origin.x) || !std::isfinite(origin.y))
+        throw py::value_error("origin_m: accepted: (x, y), finite [m]");
+    return origin;
+}
+
+// The uniforms and the texture of the air before an eye; of none without a height.
+py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
+    if (height_m && !std::isfinite(*height_m))
+        throw py::value_error("height_m: accepted: a finite height [m], or None");
+    Air air;
+    if (light.sky.air) {
+        const OthersMayRun others_may_run;
+        air = light.sky.air->seen_from(height_m.value_or(0.0));
+    }
+    constexpr std::size_t kRow = Air::kWidth;
+    air.texels.resize(kRow * Air::kHeight, glm::vec4(0.0f));
+    if (!height_m) std::fill_n(air.texels.begin(), kRow * Air::kRows, glm::vec4(0.0f));
+    py::dict uniforms = dict_of(air_uniforms(air));
+    uniforms["eye_height_m"] = height_m.value_or(0.0);
+    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kHeight, Air::kWidth}));
+}
+
+double checked_footprint(double finest_m) {
+    if (!(finest_m >= 0.0 && finest_m < 1e6))
+        throw py::value_error("finest_m: accepted: a length below 1e6 m, from 0 up");
+    return finest_m;
+}
+
+template <class Made, class... More>
+std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
+    require_valid(scene);
+    // A copy: other threads may change the caller's meanwhile.
+    return beside_others([kept = scene, more...] { return std::make_shared<Made>(kept, more...); });
+}
+
+template <class Made, class... More>
+std::unique_ptr<Task> begin_making(const Scene& scene, More... more) {
+    require_valid(scene);
+    return std::make_unique<Task>([kept = scene, more...](Task& task) -> Task::Made {
+        std::shared_ptr<Made> made;
+        if constexpr (std::is_constructible_v<Made, const Scene&, More..., const BuildWatch&>)
+            made = std::make_shared<Made>(kept, more..., BuildWatch{.cancel = task.flag()});
+        else
+            made = std::make_shared<Made>(kept, more...);
+        return [made] { return py::cast(made); };
+    });
+}
+
+// ---- Grid
+
+struct GpuGrid {
+    std::shared_ptr<const ProjectedGrid> grid;
+    py::array vertices;
+};
+
+py::array triangles_of(const GpuGrid& grid) {
+    std::vector<std::uint32_t> indices =
+        projected_grid_triangles({.columns = grid.grid->columns, .rows = grid.grid->rows});
+    const auto count = static_cast<py::ssize_t>(indices.size() / 3);
+    return array_of<std::uint32_t>(std::move(indices), {count, 3});
+}
+
+// ---- Sea
+
+// GpuSea's thread. The program's end waits for it.
+class FoamThread final : public NativeWork {
+  public:
+    // With the interpreter held, as Enlisted.
+    explicit FoamThread(std::shared_ptr<const Sea<float>> sea)
+        : worker_(std::make_unique<FoamWorker>(std::move(sea))) {}
+
+    FoamWorker* worker() { return worker_.get(); }  // null in a forked process
+
+    void cancel() override {
+        if (worker_) worker_->cancel();
+    }
+    bool is_done() const override { return !worker_ || !worker_->is_busy(); }
+    // Neither joined nor destroyed: the thread may have been anywhere.
+    void abandon() override { static_cast<void>(worker_.release()); }
+
+  private:
+    Enlisted enlisted_{*this};
+    std::unique_ptr<FoamWorker> worker_;
+};
+
+class GpuSea {
+  public:
+    GpuSea(const Scene& scene, double finest_m, const BuildWatch& watch = {})
+        : finest_m_(finest_m),
+          made_from_(what_counts(scene)),
+          lighting_(render_options(scene).lighting),
+          prepared_(prepare(without_budget(scene))),
+          sea_(std::make_shared<const Sea<float>>(
+              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
+          frame_(sea_),
+          packed_(sea_, 0) {
+        if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
+        ellipse_table_ = packed_.layout()->ellipse_texels();
+    }
+
+    bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
+
+    double finest_m() const { return finest_m_; }
+    double finest_for(const View& view) const {
+        const double finest_m = projected_grid_needs(view, projected_grid_options(*prepared_)).finest_pixel_m;
+        return first_level_m(std::max(finest_m, kLeast_m));
+    }
+
+    void set(double t_s) {
+        const OthersMayRun others_may_run;
+        const std::lock_guard writing(mutex_);
+        // Without other tasks of the same TBB meanwhile: the host's own might ask this sea, and wait for themselves.
+        tbb::this_task_arena::isolate([&] {
+            frame_.set(t_s);
+            packed_.pack(frame_);
+        });
+    }
+
+    // Of the time that was set; nullopt before.
+    std::optional<double> water_over(const View& view) const {
+        const OthersMayRun others_may_run;
+        const std::lock_guard reading(mutex_);
+        if (!frame_.is_set()) return std::nullopt;
+        return tbb::this_task_arena::isolate(
+            [&] { return surface_above_camera(frame_, view, projected_grid_options(*prepared_)); });
+    }
+
+    py::dict shaders(const GpuLight& light) const {
+        DrawOptions options{.lighting = lighting_, .for_host = true};
+        options.lighting.air = options.lighting.air && light.sky.air;
+        options.sky_from_air = light.sky.air && light.sky.air->has_sky();
+        const auto pair = [](const ShaderVariant& variant) {
+            return py::make_tuple(std::string(variant.vertex().body()),
+                                  std::string(variant.fragment().body()));
+        };
+        py::dict made;
+        made["sea"] = pair(ShaderVariant::of_sea(*packed_.layout(), options, light.map_size));
+        made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
+        return made;
+    }
+
+    py::dict uniforms() const { return dict_of(query_uniforms(*packed_.layout())); }
+
+    // Views of the packed frame's memory, which `self` keeps alive.
+    static py::dict textures(const py::object& self) {
+        const auto& sea = self.cast<const GpuSea&>();
+        const auto reading = sea.locked();
+        static constexpr std::array<const char*, 3> kNames{"cell_fields", "pixel_fields", "pixel_fields_2"};
+        py::dict made;
+        for (std::size_t p = 0; p < sea.packed_.planes().size(); ++p) {
+            const SeaLayout::Plane& plane = sea.packed_.layout()->planes()[p];
+            made[kNames[p]] =
+                view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
+        }
+        if (made.empty()) return made;  // no time was set
+        const int columns = sea.packed_.layout()->ellipse_columns();
+        made["ellipse_table"] =
+            view_of(self, &sea.ellipse_table_[0].x,
+                    {static_cast<py::ssize_t>(sea.ellipse_table_.size()) / columns, columns, 4});
+        if (!sea.train_table_.empty())
+            made["train_table"] =
+                view_of(self, &sea.train_table_[0].x,
+                        {SeaLayout::kTrainTexels,
+                         static_cast<py::ssize_t>(sea.train_table_.size()) / SeaLayout::kTrainTexels, 4});
+        return made;
+    }
+
+    py::tuple at_origin(std::array<double, 2> origin_m) const {
+        const glm::dvec2 origin = checked_origin(origin_m);
+        const auto reading = locked();
+        const SeaLayout& layout = *packed_.layout();
+        py::object cycles = py::none();
+        if (layout.has_trains()) {
+            std::vector<float> values = layout.train_cycles(origin, packed_.time_within_loop_s());
+            values.resize(std::max<std::size_t>(values.size(), 1));  // a texture has a texel
+            const auto count = static_cast<py::ssize_t>(values.size());
+            cycles = array_of<float>(std::move(values), {1, count, 1});
+        }
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_.time_within_loop_s())),
+                              cycles);
+    }
+
+    GpuGrid grid(const View& view, std::optional<double> cell_px, bool on_earth) const {
+        ProjectedGridOptions options = projected_grid_options(*prepared_);
+        if (!on_earth) options.curvature_per_m = 0.0;
+        if (cell_px) {
+            if (!(*cell_px > 0.0 && *cell_px <= std::numeric_limits<double>::max()))
+                throw py::value_error("cell_px: accepted: a number above 0");
+            options.cell_px = *cell_px;
+        }
+        ProjectedGrid grid;
+        std::vector<std::array<float, 8>> vertices;
+        {
+            const OthersMayRun others_may_run;
+            const ProjectedGridNeeds needs = projected_grid_needs(view, options);
+            options.size = {.columns = std::min(needs.size.columns, kMostCells),
+                            .rows = std::min(needs.size.rows, kMostCells)};
+            grid = projected_grid(view, options);
+            if (packed_.layout()->pixels().footprints_m.size() > 1) keep_to_levels(grid, needs);
+            vertices.resize(grid.rest_m.size());
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                vertices[i] = {grid.rest_m[i].x,       grid.rest_m[i].y,      grid.cell_m[i],
+                               grid.cell_axis_m[i].x,  grid.cell_axis_m[i].y, grid.pixel_m[i],
+                               grid.pixel_axis_m[i].x, grid.pixel_axis_m[i].y};
+        }
+        return {std::make_shared<const ProjectedGrid>(std::move(grid)), array_of<float>(std::move(vertices))};
+    }
+
+    py::dict foam(const Scene& scene, std::array<double, 2> origin_m) const {
+        const double active =
+            has_living_foam() ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
+        return dict_of(foam_uniforms(foam_pattern(make_foam(scene, active), checked_origin(origin_m))));
+    }
+
+    bool has_living_foam() const { return packed_.layout()->has_living_foam(); }
+    void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
+        if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
+            throw py::value_error("t: accepted: a time of at most 1e12 s to either side of 0");
+        FoamWorker::Grids asked;
+        for (const GpuGrid* grid : grids) {
+            if (!grid) throw py::type_error("grids: accepted: a list of GpuGrid");
+            asked.push_back(grid->grid);
+        }
+        if (!has_living_foam()) return;
+        if (!foam_thread_ || !foam_thread_->worker()) foam_thread_.emplace(sea_);
+        foam_thread_->worker()->ask(t_s, std::move(asked));
+    }
+    bool is_foam_busy() const { return foam_thread_ && !foam_thread_->is_done(); }
+    // Empty where there is nothing new.
+    py::dict take_foam() {
+        py::dict made;
+        if (!has_living_foam()) return made;
+        std::shared_ptr<const PackedFoam> foam;
+        if (FoamWorker* const worker = foam_thread_ ? foam_thread_->worker() : nullptr) {
+            if (const std::string problem = worker->error(); !problem.empty())
+                throw std::runtime_error(problem);
+            foam = worker->take();
+        }
+        if (!foam && foam_) return made;
+        foam_ = foam ? std::move(foam) : std::make_shared<const PackedFoam>();
+        const auto picture = [](auto values, glm::ivec2 size, py::ssize_t channels) {
+            py::array_t<float> all = array_of<float>(std::move(values));
+            return all.reshape({py::ssize_t{size.y}, py::ssize_t{size.x}, channels});
+        };
+        made["foam_nodes"] = picture(std::vector(foam_->nodes()), foam_->nodes_size(), 2);
+        made["foam_pages"] = picture(std::vector(foam_->pages()), foam_->pages_size(), 1);
+        return made;
+    }
+    py::array foam_levels(std::array<double, 2> origin_m) const {
+        const glm::dvec2 origin = checked_origin(origin_m);
+        std::vector<glm::vec4> texels = (foam_ ? *foam_ : PackedFoam()).level_texels(origin);
+        const auto rows = static_cast<py::ssize_t>(texels.size()) / PackedFoam::kLevelTexels;
+        return array_of<float>(std::move(texels), {rows, PackedFoam::kLevelTexels});
+    }
+
+    std::size_t bytes() const {
+        std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
+        if (foam_) sum += foam_->bytes() + foam_->history_bytes();
+        for (const SeaLayout::Plane& plane : packed_.layout()->planes())
+            sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
+        return sum;
+    }
+
+  private:
+    // Waits without the interpreter: who sets meanwhile may take long.
+    std::unique_lock<std::mutex> locked() const {
+        const OthersMayRun others_may_run;
+        return std::unique_lock(mutex_);
+    }
+
+    // The clock only by the loop that it makes: set() is given the sea's time.
+    static std::string what_counts(const Scene& scene) {
+        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s());
+    }
+
+    // A cell is several pixels wide.
+    static Query query_of(const PreparedScene& prepared, double finest_m) {
+        return view_query(prepared, {.products = {},
+                                     .finest_cell_m = 0.5 * prepared.scene.surface.cell_px * finest_m,
+                                     .finest_pixel_m = finest_m});
+    }
+
+    static py::array view_of(const py::object& owner, const float* data, std::vector<py::ssize_t> shape) {
+        py::array_t<float> view(std::move(shape), data, owner);
+        view.attr("setflags")(py::arg("write") = false);
+        return view;
+    }
+
+    static constexpr KeyPartSet kKeyParts =
+        key_parts(KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality, KeyPart::Grid);
+    // A side of a grid. Views along the surface from far behind, as orthographic ones are, would need millions.
+    static constexpr int kMostCells = 1024;
+    static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres
+    double finest_m_ = 0.0;
+    std::string made_from_;
+    LightingChoice lighting_;
+    std::shared_ptr<const PreparedScene> prepared_;
+    std::shared_ptr<const Sea<float>> sea_;
+    Frame<float> frame_;
+    PackedFrame packed_;
+    std::vector<glm::vec4> train_table_, ellipse_table_;
+    mutable std::mutex mutex_;
+    std::shared_ptr<const PackedFoam> foam_;  // what was taken last
+    std::optional<FoamThread> foam_thread_;   // of persistent foam that was asked for
+};
+
+void add_gpu_light(py::module_& module) {
+    py::class_<GpuLight, std::shared_ptr<GpuLight>>(
+        module, "GpuLight",
+        "Sky, sun and water of a scene for GpuSea's shaders. ShotError for an invalid scene, ValueError for a "
+        "sky's picture that can't be read.")
+        .def(py::init(&make_beside_others<GpuLight>), py::arg("scene"))
+        .def_static("begin", &begin_making<GpuLight>, py::arg("scene"),
+                    "Begins to make one: a Task whose result is the GpuLight.")
+        .def("serves", &GpuLight::serves, py::arg("scene"), "Whether that scene has the same light.")
+        .def_property_readonly(
+            "uniforms", [](const GpuLight& self) { return dict_of(self.uniforms); },
+            "Uniforms of both shaders by name: numbers and tuples.")
+        .def_property_readonly(
+            "sky_map",
+            [](const py::object& self) {
+                const SkyAtlas& atlas = self.cast<const GpuLight&>().atlas;
+                py::array_t<float> view({atlas.size.y, atlas.size.x, 4}, &atlas.texels[0].x, self);
+                view.attr("setflags")(py::arg("write") = false);
+                return view;
+            },
+            "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
+        .def(
+            "air", &air_of, py::arg("height_m"),
+            "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "
+            "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air "
+            "before the sea, for views without an eye. Takes some 25 ms.")
+        .def(
+            "exposure",
+            [](GpuLight& self, const Scene& scene, double stops) {
+                std::string made_from = canonical(scene) + std::to_string(stops);
+                if (made_from != self.metered.made_from) {
+                    require_valid(scene);
+                    const float exposure = shot_exposure(scene, self.sky, stops);
+                    self.metered = {std::move(made_from), exposure};
+                }
+                return self.metered.exposure;
+            },
+            py::arg("scene"), py::arg("stops") = 0.0,
+            "The uniform exposure, of both shaders: that of a scene that this light serves, as Sky.exposure() has it.");
+}
+
+void add_gpu_grid(py::module_& module) {
+    py::class_<GpuGrid>(module, "GpuGrid", "The projected grid of a view, as vertices for GpuSea's shader.")
+        .def_property_readonly(
+            "size", [](const GpuGrid& self) { return py::make_tuple(self.grid->columns, self.grid->rows); },
+            "(columns, rows) of cells.")
+        .def_property_readonly(
+            "origin_m",
+            [](const GpuGrid& self) { return py::make_tuple(self.grid->origin_m.x, self.grid->origin_m.y); },
+            "(x, y) [m], in double precision: vertices are relative to it.")
+        .def_property_readonly(
+            "curvature_per_m", [](const GpuGrid& self) { return self.grid->curvature_per_m; },
+            "The uniform of that name [1/m]: of the earth, round which the shader lays the grid; 0: flat.")
+        .def_readonly(
+            "vertices", &GpuGrid::vertices,
+            "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
+        .def_property_readonly("triangles", &triangles_of,
+                               "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
+}
+
+}  // namespace
+
+void add_viewport(py::module_& module) {
+    add_gpu_light(module);
+    add_gpu_grid(module);
+    py::class_<GpuSea, std::shared_ptr<GpuSea>>(
+        module, "GpuSea",
+        "A sea for pictures from any camera, with what a GPU needs to draw it by itself: the preview's "
+        "shaders, and their textures and uniforms.\n\n"
+        "Built once from a scene, which takes as long as a Sea; other threads run meanwhile. ShotError for an "
+        "invalid scene. Single precision. finest_m: no pixel's footprint is taken as finer [m], and what is "
+        "left out of it roughens the surface; each halving costs up to four times the memory and the time. 0: "
+        "nothing is left out.")
+        .def(py::init([](const Scene& scene, double finest_m) {
+                 return make_beside_others<GpuSea>(scene, checked_footprint(finest_m));
+             }),
+             py::arg("scene"), py::arg("finest_m") = 0.0)
+        .def_static(
+            "begin",
+            [](const Scene& scene, double finest_m) {
+                return begin_making<GpuSea>(scene, checked_footprint(finest_m));
+            },
+            py::arg("scene"), py::arg("finest_m") = 0.0,
+            "Begins to build one: a Task whose result is the GpuSea.")
+        .def_property_readonly("finest_m", &GpuSea::finest_m, "As it was built [m].")
+        .def("finest_for", &GpuSea::finest_for, py::arg("view"),
+             "The finest_m that shows all waves that the pixels of this view can hold: a power of two [m].")
+        .def("serves", &GpuSea::serves, py::arg("scene"),
+             "Whether that scene has the same waves, foam and quality, so that nothing needs to be built.")
+        .def("set", &GpuSea::set, py::arg("t"),
+             "Makes it the sea at any finite time t [s]: `textures` changes. Other threads run meanwhile.")
+        .def(
+            "water_over", &GpuSea::water_over, py::arg("view"),
+            "The height z [m] of the surface above the view's place, at the time that was set; None for a view "
+            "in the air, the only one that can be drawn.")
+        .def(
+            "shaders", &GpuSea::shaders, py::arg("light"),
+            "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
+            "Equal for seas with as many cascades and footprints.\n\n"
+            "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
+            "values to what its framebuffer stores. Uniforms besides those of GpuSea and GpuLight: mat4 "
+            "clip_from_grid (the host's projection of points relative to the grid's origin), exposure, and the "
+            "pixels' rays: vec3 view_forward, view_right, view_up (the latter two times the tangent that a "
+            "pixel covers), vec2 view_centre [px] from the bottom left, view_pixel_tangent. The sky is one "
+            "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
+            "plane.")
+        .def_property_readonly(
+            "uniforms", &GpuSea::uniforms,
+            "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "
+            "tuples.")
+        .def_property_readonly(
+            "textures", &GpuSea::textures,
+            "Textures of the sea's shader by name: float32 (height, width, 1, 2 or 4), texels as they are. "
+            "Read-only views of memory that the next set() overwrites; only train_table stays.")
+        .def(
+            "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
+            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "
+            "on time where there are gusts, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
+            "None.")
+        .def(
+            "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"),
+            "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea serves has it, for a grid's "
+            "origin [m].")
+        .def_property_readonly(
+            "has_living_foam", &GpuSea::has_living_foam,
+            "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "
+            "foam_levels().")
+        .def(
+            "ask_foam", &GpuSea::ask_foam, py::arg("t"), py::arg("grids"),
+            "Wants what earlier breaking has left at a time t [s] where these GpuGrids are. It is made by a thread of its own, "
+            "the latest request first; nothing waits. ValueError for a time beyond 1e12 s.")
+        .def_property_readonly("is_foam_busy", &GpuSea::is_foam_busy,
+                               "Whether that thread has something to do.")
+        .def(
+            "take_foam", &GpuSea::take_foam,
+            "The textures foam_nodes and foam_pages, float32 (height, width, 2 or 1), of the latest request that is done: "
+            "once, {} otherwise. The first call has textures of a sea without such foam.")
+        .def(
+            "foam_levels", &GpuSea::foam_levels, py::arg("origin_m"),
+            "The texture foam_levels for what was taken last and a grid's origin [m], float32 (height, 2, 4).")
+        .def(
+            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
+            py::arg("on_earth") = true,
+            "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
+            "scene's surface.cell_px. At most 1024 cells a side: where a view needs more, they are larger. on_earth: "
+            "False for a flat sea, whatever the scene's surface.earth_curvature.")
+        .def_property_readonly("bytes", &GpuSea::bytes, "Memory that it holds [bytes].");
+}
+
+}  // namespace pelagic::python

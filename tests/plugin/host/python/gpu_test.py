@@ -1,0 +1,255 @@
+"""What a host's GPU code draws the sea from. The pictures themselves: tests/addon/viewport.py, tests/plugin/host/preview."""
+
+import math
+import time
+import unittest
+
+import numpy as np
+import pelagic
+
+
+def small_scene(**waves):
+    scene = pelagic.Scene()
+    scene.waves.cascades = [{"size_m": 100.0, "resolution": 128}, {"size_m": 13.0, "resolution": 32}]
+    for name, value in waves.items():
+        setattr(scene.waves, name, value)
+    return scene
+
+
+def view(height_m=4.0, resolution=(320, 180)):
+    return pelagic.View(position_m=(7.0, -3.0, height_m), right=(1, 0, 0), up=(0, 0, 1), forward=(0, 1, 0),
+                        tan_half_width=0.5, resolution=resolution)
+
+
+class Seas(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sea = pelagic.GpuSea(small_scene(), 0.125)
+
+    def test_textures_hold_the_frame_that_was_set(self):
+        sea = pelagic.GpuSea(small_scene())
+        self.assertEqual(sea.textures, {})
+        sea.set(1.5)
+        textures = {name: texels.copy() for name, texels in sea.textures.items()}
+        self.assertEqual({name: texels.shape[2] for name, texels in textures.items()},
+                         {"cell_fields": 4, "pixel_fields": 4, "pixel_fields_2": 4, "ellipse_table": 4})
+        sea.set(2.5)
+        self.assertFalse(np.array_equal(sea.textures["cell_fields"], textures["cell_fields"]))
+        sea.set(1.5)
+        for name, texels in textures.items():
+            np.testing.assert_array_equal(sea.textures[name], texels)
+        # The largest tile is that of the whole largest cascade, and its height has the sea's variance, nearly.
+        height_m = textures["cell_fields"][:128, :128, 0]
+        self.assertGreater(4 * height_m.std(), 0.3 * pelagic.Sea(small_scene()).significant_height_m)
+        with self.assertRaises(ValueError):
+            sea.textures["cell_fields"][0, 0, 0] = 1.0
+
+    def test_a_view_under_water_is_known(self):
+        sea = pelagic.GpuSea(small_scene(), 0.125)
+        self.assertIsNone(sea.water_over(view(-9.0)))  # it has no time yet
+        sea.set(1.5)
+        self.assertIsNone(sea.water_over(view(30.0)))
+        surface_m = sea.water_over(view(-9.0))
+        frame = pelagic.Frame(pelagic.Sea(small_scene()))
+        frame.set(1.5)
+        self.assertAlmostEqual(surface_m, float(frame.heights(np.array([[7.0, -3.0]]))["height_m"][0]), delta=0.05)
+        # From where the view is depends how fine a sea it sees.
+        self.assertIsNone(sea.water_over(view(surface_m + 0.05)))
+        self.assertAlmostEqual(sea.water_over(view(surface_m - 0.05)), surface_m, delta=0.05)
+
+    def test_tables_follow_the_origin(self):
+        here, cycles = self.sea.at_origin((0.0, 0.0))
+        self.assertIsNone(cycles)
+        self.assertEqual((here.dtype, here.size % 16), (np.uint8, 0))
+        self.assertFalse(np.array_equal(here, self.sea.at_origin((1.0, 0.0))[0]))
+        np.testing.assert_array_equal(here, self.sea.at_origin((0.0, 0.0))[0])
+        for nowhere in (np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, "finite"):
+                self.sea.at_origin((0.0, nowhere))
+
+    def test_trains_have_a_table_and_phases_that_depend_on_time_and_place(self):
+        sea = pelagic.GpuSea(small_scene(model="trochoid", cascades=[]))
+        sea.set(1.0)
+        _, count, channels = sea.textures["train_table"].shape
+        self.assertEqual((count - 1, channels), (sea.uniforms["train_count"], 4))
+        before = sea.at_origin((0.0, 0.0))[1]
+        self.assertEqual(before.shape, (1, count - 1, 1))
+        self.assertFalse(np.array_equal(before, sea.at_origin((9.0, 0.0))[1]))
+        sea.set(2.0)
+        self.assertFalse(np.array_equal(before, sea.at_origin((0.0, 0.0))[1]))
+
+    def test_shaders_name_all_that_the_host_gives_them(self):
+        light = pelagic.GpuLight(small_scene())
+        shaders = self.sea.shaders(light)
+        for vertex, fragment in shaders.values():
+            self.assertNotIn("#version", vertex + fragment)
+            self.assertIn("host_colour(", fragment)
+        text = "".join(shaders["sea"])
+        for name in (*self.sea.uniforms, *light.uniforms, *light.air(2.0)[0], "exposure", "clip_from_grid", "view_centre", "sky_map", "SeaTables",
+                     "rest_in", "cell_in", "pixel_in"):
+            self.assertIn(name, text)
+        self.assertIn("farthest", shaders["sky"][0])
+
+    def test_a_finer_sea_has_larger_textures(self):
+        def texels(finest_m):
+            sea = pelagic.GpuSea(pelagic.Scene(), finest_m)
+            sea.set(0.0)
+            return sum(texels.size for texels in sea.textures.values())
+
+        self.assertGreater(texels(0.125), texels(1.0))
+        self.assertGreater(pelagic.GpuSea(small_scene()).bytes, 0)
+        for wrong in (-1.0, math.nan, math.inf):
+            with self.assertRaises(ValueError):
+                pelagic.GpuSea(small_scene(), wrong)
+
+    def test_the_finest_footprint_follows_the_view(self):
+        near, far = self.sea.finest_for(view(4.0)), self.sea.finest_for(view(400.0))
+        self.assertGreaterEqual(far, 32 * near)
+        self.assertEqual(math.log2(near) % 1, 0)
+
+    def test_serves_says_when_nothing_needs_to_be_built(self):
+        scene = small_scene()
+        light = pelagic.GpuLight(scene)
+        scene.light.sun_elevation_deg = 40.0
+        self.assertTrue(self.sea.serves(scene))
+        self.assertFalse(light.serves(scene))
+        scene = small_scene()
+        scene.sea.wind_speed_mps = 3.0
+        self.assertFalse(self.sea.serves(scene))
+        self.assertTrue(light.serves(scene))
+
+    def test_the_clock_matters_only_in_a_loop(self):
+        scene = small_scene()
+        scene.shot.time_scale, scene.shot.time_offset_s, scene.shot.fps = 0.5, 100.0, 25.0
+        self.assertTrue(self.sea.serves(scene))
+        scene.shot.loop_s = 2.0
+        looping = pelagic.GpuSea(scene, finest_m=1.0)
+        scene.shot.time_offset_s = 0.0
+        self.assertTrue(looping.serves(scene))
+        scene.shot.time_scale = 1.0
+        self.assertFalse(looping.serves(scene))
+
+    def test_how_foam_looks_needs_no_other_sea_and_no_other_sky(self):
+        scene = small_scene()
+        sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)
+        before = sea.foam(scene, (0.0, 0.0))
+        scene.effects.foam_structure, scene.effects.foam_streaks = 0.25, 0.75
+        self.assertTrue(sea.serves(scene) and light.serves(scene))
+        self.assertNotEqual(sea.foam(scene, (0.0, 0.0)), before)
+
+
+class LivingFoam(unittest.TestCase):
+    @staticmethod
+    def wait(sea):
+        while sea.is_foam_busy:
+            time.sleep(0.002)
+
+    def test_comes_when_it_is_asked_for_and_ready(self):
+        scene = small_scene()
+        scene.sea.wind_speed_mps, scene.effects.foam_decay_s = 16.0, 1.0
+        sea, light = pelagic.GpuSea(scene, finest_m=0.5), pelagic.GpuLight(scene)
+        self.assertTrue(sea.has_living_foam)
+        self.assertIn("foam_nodes", sea.shaders(light)["sea"][1])
+        nothing = sea.take_foam()
+        self.assertEqual(set(nothing), {"foam_nodes", "foam_pages"})
+        self.assertFalse(nothing["foam_nodes"].any())
+        self.assertEqual(sea.take_foam(), {})
+        grid = sea.grid(view())
+        sea.ask_foam(3.0, [grid])
+        self.wait(sea)
+        foam = sea.take_foam()
+        nodes, pages, levels = foam["foam_nodes"], foam["foam_pages"], sea.foam_levels(grid.origin_m)
+        self.assertEqual((nodes.dtype, nodes.shape[0] % 17, nodes.shape[1] % 17, nodes.shape[2]), (np.float32, 0, 0, 2))
+        self.assertEqual((pages.dtype, pages.shape[2], levels.shape[1:]), (np.float32, 1, (2, 4)))
+        self.assertTrue((nodes >= 0.0).all() and nodes.max() > 0.05)
+        numbers = np.sort(pages[pages >= 0.0])
+        np.testing.assert_array_equal(numbers, np.arange(len(numbers)))  # each tile is in one place
+        # The same alone and after other times.
+        again = pelagic.GpuSea(scene, finest_m=0.5)
+        for t in (2.0, 3.0):
+            again.ask_foam(t, [grid])
+            self.wait(again)
+        np.testing.assert_array_equal(again.take_foam()["foam_nodes"], nodes)
+        with self.assertRaises(ValueError):
+            sea.ask_foam(math.nan, [grid])
+
+    def test_is_left_behind_when_nobody_wants_it(self):
+        scene = small_scene()
+        scene.sea.wind_speed_mps, scene.effects.foam_decay_s = 16.0, 8.0
+        sea = pelagic.GpuSea(scene, finest_m=0.5)
+        grid = sea.grid(view())
+        began = time.perf_counter()
+        sea.ask_foam(3.0, [grid])
+        self.wait(sea)
+        whole = time.perf_counter() - began
+        sea.ask_foam(500.0, [grid])
+        began = time.perf_counter()
+        del sea
+        self.assertLess(time.perf_counter() - began, 0.5 * whole)
+
+    def test_is_none_where_foam_does_not_live(self):
+        scene = small_scene()
+        scene.effects.foam_decay_s = 0.0
+        sea, light = pelagic.GpuSea(scene, finest_m=0.5), pelagic.GpuLight(scene)
+        self.assertFalse(sea.has_living_foam)
+        self.assertNotIn("foam_nodes", sea.shaders(light)["sea"][1])
+        self.assertEqual(sea.take_foam(), {})
+
+
+class Grids(unittest.TestCase):
+    def test_air_is_that_before_an_eye(self):
+        light = pelagic.GpuLight(pelagic.Scene())
+        uniforms, table = light.air(100.0)
+        self.assertEqual((uniforms["eye_height_m"], table.dtype, table.shape[2]), (100.0, np.float32, 4))
+        self.assertTrue(np.isfinite(table).all() and (table[0] != 0.0).any())
+        none = light.air(None)[1]
+        self.assertTrue((none[:48] == 0.0).all() and (none[48:] != 0.0).any())
+        with self.assertRaises(ValueError):
+            light.air(float("nan"))
+
+    def test_is_the_seas_projected_grid(self):
+        scene = small_scene()
+        own = pelagic.Sea(scene, views=[view()]).projected_grid(view())
+        sea = pelagic.GpuSea(scene)
+        grid = sea.grid(view(), on_earth=False)
+        self.assertEqual(grid.curvature_per_m, 0.0)
+        self.assertAlmostEqual(sea.grid(view()).curvature_per_m * 6371e3, 1.0)
+        self.assertEqual((grid.size, grid.origin_m), ((own.columns, own.rows), (7.0, -3.0)))
+        np.testing.assert_array_equal(grid.vertices[:, :2], own.rest_m)
+        self.assertEqual((grid.triangles.dtype, len(grid.triangles)), (np.uint32, 2 * own.columns * own.rows))
+        self.assertLess(grid.triangles.max(), len(grid.vertices))
+
+    def test_larger_cells_are_fewer_and_there_are_never_too_many(self):
+        sea = pelagic.GpuSea(small_scene())
+        self.assertLess(len(sea.grid(view(), 24.0).vertices), len(sea.grid(view(), 8.0).vertices))
+        grid = sea.grid(view(resolution=(8000, 4500)), 1.0)
+        self.assertEqual(grid.size, (1024, 1024))
+        self.assertTrue(np.isfinite(grid.vertices).all())
+        for wrong in (0.0, -1.0, math.nan):
+            with self.assertRaises(ValueError):
+                sea.grid(view(), wrong)
+
+
+class Lights(unittest.TestCase):
+    def test_all_levels_of_the_sky_are_in_one_picture(self):
+        light = pelagic.GpuLight(pelagic.Scene())
+        atlas = light.sky_map
+        size = atlas.shape[0]
+        self.assertEqual(atlas.shape, (size, size * 3 // 2, 4))
+        # The finest has no ground: the others are means of the next finer one from level 2 on.
+        whole, size = size, size // 2
+        fine = atlas[whole - 2 * size:whole - size, whole:whole + size, :3]
+        while size > 1:
+            size //= 2
+            fine = fine.reshape(size, 2, size, 2, 3).mean(axis=(1, 3))
+            np.testing.assert_allclose(atlas[whole - 2 * size:whole - size, whole:whole + size, :3], fine, rtol=1e-4)
+
+    def test_exposure_is_in_stops(self):
+        scene = pelagic.Scene()
+        light = pelagic.GpuLight(scene)
+        self.assertAlmostEqual(light.exposure(scene, 2.0) / light.exposure(scene), 4.0, places=5)
+        self.assertEqual(light.exposure(scene), pelagic.Sky(scene).exposure(scene))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -2,7 +2,7 @@
 """Oceans follow the timeline and their settings.
 
 Everything happens in two handlers, after a frame change and after an evaluation of the scene; the others only say that
-what is in a mesh may be old. How buffers reach a mesh, and why in this way: examples/blender-buffers.md.
+what is in a mesh may be old. How buffers reach a mesh, and why in this way: README.md, "How buffers reach a mesh".
 
 A sea is built from what its settings say, and found again by them: nothing here holds an object of Blender's, so undo,
 renaming and duplicates need no care, and oceans with the same settings share a sea. A new one is built beside

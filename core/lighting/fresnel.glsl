@@ -30,7 +30,7 @@ float fresnel_effective_paper(float cosine, float sigma_v) {
 
 // The mean of the exact term over the visible facets: the integral of Eq. 24 with the density of slopes.glsl and
 // Hu's term. (Eq. 26, made for Smith's masking and Schlick's term, differs from it by up to 0.153 for σ ≤ 0.5, and
-// from the mean of Schlick's by 0.105, both at 89.9° on a calm sea: tests/bench/optics.)
+// from the mean of Schlick's by 0.105, both at 89.9° on a calm sea.)
 //
 // The fit evaluates the exact term at one effective cosine. It starts from w, the mean of v·f/f_z over the
 // visible facets (cosθ for a flat mirror), and lowers it for the facets' tilt, by their variances along and across

@@ -13,7 +13,7 @@
 
 namespace pelagic {
 
-// How the sky's reflection is computed. Accuracy and time: tests/bench/README.md.
+// How the sky's reflection is computed. Accuracy and time: `pelagic accuracy --rows sky`.
 enum class SkyQuality {
     One,       // one lookup, filtered over an ellipse (Eq. 22, 27)
     Nine,      // nine lookups, at the nodes of a quadrature over the visible slopes

@@ -81,7 +81,7 @@ SkyEllipse sky_ellipse(PlaceChange change, vec3 variance) {
 //
 // Without a horizon the probes are a standard deviation apart. A probe has at least 1/32 of the variance along the axis, so
 // the ellipse is 1 : 5.7 at most. More blurs the horizon; with less, the sun's aureole falls between two probes. Errors against
-// the integral, also of an isotropic filter and without H: tests/bench, "optics".
+// the integral, also of an isotropic filter and without H: tests/bench/README.md.
 vec3 sky_at_mean_normal(vec3 to_eye, SlopeFrame frame) {
     vec3 r = 2.0f * dot(to_eye, frame.normal) * frame.normal - to_eye;
     vec2 u = sky_place(r);

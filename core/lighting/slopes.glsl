@@ -143,7 +143,7 @@ float visible_area(vec3 direction, vec3 variance) {
 //
 // A sea with a horizon test lies between the two: the nested part is larger the more scales there are, the higher
 // the eye, and the sharper the crests. Gaussian profiles, 0.5° … 15° above the horizon: 0.05 … 0.6 for waves over
-// 2.5 octaves, 0.35 … 0.75 over 6.6. kNested is fitted to the far field of tests/bench/reference, 7 octaves with
+// 2.5 octaves, 0.35 … 0.75 over 6.6. kNested is fitted to the far field of the mirrors of Fig. 10 (tests/bench/README.md), 7 octaves with
 // choppiness. Smith's alone shows a quarter too little sun there.
 //
 // Light reaches a facet by the same two ways. Smith's hides from the eye and the sun by the same heights,

@@ -1,5 +1,5 @@
 // quality.level, resolved into knobs: the one place that says what a level means, for the waves and for the
-// light. Errors and times of each row: tests/bench, "sampling" and "optics".
+// light. Errors and times of each row: `pelagic accuracy --rows interpolation,sky`.
 #pragma once
 
 #include <span>

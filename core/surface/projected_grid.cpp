@@ -43,8 +43,8 @@ constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
 constexpr double kPixel = 0.6;
 // Rows are so close together that the heights which cells of their length leave unresolved look kHeight_px high
 // (standard deviation), where cells are no larger than kHeightCell_px across; larger ones leave more in proportion.
-// The skyline of a gale is then within a pixel of the sea's own in 99 % of a picture's columns (tests/bench,
-// "skyline"). Rows that heights alone ask for are no more than kHigh diagonals have cells: a telephoto lens sees
+// The skyline of a gale is then within a pixel of the sea's own in 99 % of a picture's columns
+// (skyline_test.cpp). Rows that heights alone ask for are no more than kHigh diagonals have cells: a telephoto lens sees
 // crests behind crests for tens of kilometres.
 constexpr double kHeight_px = 0.3, kHeightCell_px = 8.0, kHigh = 6.0;
 // Counts are multiples of kCountStep. The largest serves an 8K picture with one cell per pixel.

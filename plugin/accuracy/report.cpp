@@ -166,24 +166,26 @@ std::string text_of_parts(const ApproximationRow& row, const MeasuredRow& measur
     return text;
 }
 
+// What the table says of a row, below its title.
+std::string text_of(const MeasuredRow& measured, std::string_view now, const std::string& shot) {
+    const ApproximationRow& row = row_of(measured);
+    std::string text = std::string("  knob       ") + row.knob + "\n";
+    if (!measured.why_none.empty()) return text + "  " + measured.why_none + "\n\n";
+    text += std::string("  against    ") + row.reference + "\n  time       " + row.time + "\n";
+    for (std::size_t e = 0; e < row.errors.size(); ++e)
+        text += "  error " + std::to_string(e + 1) + "    " + row.errors[e] + "\n";
+    text += "  " + age_text(measured, now, shot) + ", " + measured.machine + "\n\n";
+    text += row.kind == RowKind::Parts ? text_of_parts(row, measured) : text_of_sweep(row, measured);
+    return text + "\n  " + row.lesson + "\n\n";
+}
+
 }  // namespace
 
 std::string text_report(const std::vector<MeasuredRow>& rows, std::string_view now, const std::string& shot) {
     std::string text;
-    for (const MeasuredRow& measured : rows) {
-        const ApproximationRow& row = row_of(measured);
-        text += std::string(row.title) + " (" + row.name + ")\n  knob       " + row.knob + "\n";
-        if (!measured.why_none.empty()) {
-            text += "  " + measured.why_none + "\n\n";
-            continue;
-        }
-        text += std::string("  against    ") + row.reference + "\n  time       " + row.time + "\n";
-        for (std::size_t e = 0; e < row.errors.size(); ++e)
-            text += "  error " + std::to_string(e + 1) + "    " + row.errors[e] + "\n";
-        text += "  " + age_text(measured, now, shot) + ", " + measured.machine + "\n\n";
-        text += row.kind == RowKind::Parts ? text_of_parts(row, measured) : text_of_sweep(row, measured);
-        text += std::string("\n  ") + row.lesson + "\n\n";
-    }
+    for (const MeasuredRow& measured : rows)
+        text +=
+            std::string(row_of(measured).title) + " (" + measured.name + ")\n" + text_of(measured, now, shot);
     return text + "* the shot's own setting\n";
 }
 
@@ -449,40 +451,6 @@ std::string drawing(const ApproximationRow& row, const MeasuredRow& measured) {
     return row.kind == RowKind::Parts ? bars(row, measured) : plot(row, measured);
 }
 
-std::string page_table(const ApproximationRow& row, const MeasuredRow& measured) {
-    const bool is_of_parts = row.kind == RowKind::Parts;
-    const auto head = [](const std::string& text) { return "<th class=\"number\">" + text + "</th>"; };
-    const auto cell = [](const std::string& text) { return "<td class=\"number\">" + text + "</td>"; };
-    std::string table =
-        std::string("<table><thead><tr><th>") + (is_of_parts ? "Part" : "Setting") + "</th>" + head("ms");
-    if (is_of_parts) table += head("of the shot") + head("transforms") + head(escaped(row.bytes));
-    for (const char* error : row.errors) table += head(escaped(error));
-    if (!is_of_parts && row.bytes) table += head(escaped(row.bytes));
-    table += "</tr></thead><tbody>\n";
-    const auto begin = [&](bool is_bold, const std::string& name) {
-        table += (is_bold ? "<tr class=\"own\"><td>" : "<tr><td>") + escaped(name) + "</td>";
-    };
-    if (is_of_parts)
-        for (const Price& price : prices_of(measured)) {
-            begin(!price.is_part, price.name);
-            table += cell(print("%.3f", price.ms)) +
-                     cell(print("%.1f %%", 100.0 * price.ms / measured.settings.front().ms)) +
-                     cell(print("%d", price.transforms)) +
-                     cell(price.bytes == 0 ? "0" : bytes_of(price.bytes));
-            for (const double error : price.errors) table += cell(error_text(error));
-            table += "</tr>\n";
-        }
-    else
-        for (const MeasuredSetting& setting : measured.settings) {
-            begin(setting.is_shots, setting.setting);
-            table += cell(print("%.3f", setting.ms));
-            for (const double error : setting.errors) table += cell(error_text(error));
-            if (row.bytes) table += cell(bytes_of(setting.bytes));
-            table += "</tr>\n";
-        }
-    return table + "</tbody></table>\n";
-}
-
 std::string setting_text(const MeasuredSetting& setting) {
     return escaped(setting.setting) + ": " + error_text(setting.errors[0]) + ", " +
            print("%.3g ms", setting.ms);
@@ -516,8 +484,7 @@ constexpr const char* kStyle = R"css(
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 56rem; margin: 2rem auto; padding: 0 1rem; color: #1c2b36; }
 h1, h2 { line-height: 1.2; } h2 { margin-top: 3rem; border-top: 1px solid #ccd6dd; padding-top: 1.5rem; }
 table { border-collapse: collapse; margin: 1rem 0; width: 100%; } th, td { text-align: left; padding: .2rem .7rem .2rem 0; vertical-align: top; }
-td.number { white-space: nowrap; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; } tr.own td { font-weight: 600; }
-tbody tr { border-top: 1px solid #e4eaee; } .old { color: #8a5a00; } .what { color: #4d6272; margin: .2rem 0; }
+tbody tr { border-top: 1px solid #e4eaee; } pre { font-size: 12px; white-space: pre-wrap; }
 svg { width: 100%; height: auto; }
 )css";
 constexpr const char* kPlotStyle = R"css(
@@ -542,18 +509,8 @@ std::string html_report(const std::vector<MeasuredRow>& rows, std::string_view n
     for (const MeasuredRow& measured : rows) {
         const ApproximationRow& row = row_of(measured);
         page += "<h2 id=\"" + std::string(row.name) + "\">" + escaped(row.title) + "</h2>\n";
-        if (!measured.why_none.empty()) {
-            page += "<p>It " + escaped(measured.why_none) + ".</p>\n";
-            continue;
-        }
-        const bool is_old = measured.shot != shot;
-        page += "<p>" + escaped(row.lesson) + "</p>\n<p class=\"what\">Knob: " + escaped(row.knob) +
-                ". Reference: " + escaped(row.reference) +
-                (row.kind == RowKind::Parts ? std::string()
-                                            : std::string(". Error drawn: ") + escaped(row.errors[0])) +
-                ".</p>\n<p class=\"what" + (is_old ? " old" : "") + "\">" +
-                escaped(age_text(measured, now, shot)) + ", " + escaped(measured.machine) + "</p>\n" +
-                drawing(row, measured) + page_table(row, measured);
+        if (measured.why_none.empty()) page += drawing(row, measured);
+        page += "<pre>" + escaped(text_of(measured, now, shot)) + "</pre>\n";
     }
     return page + "</body></html>\n";
 }

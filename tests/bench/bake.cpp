@@ -1,4 +1,4 @@
-// A bake: what its overlap gains, and what each way of packing a map costs.
+// A bake: what its overlap gains, and what its checksums and going on cost.
 //   bake [FRAMES [ROUNDS [DIR]]]      default 100 4, into the system's folder for temporary files
 //
 // Three ways to spend time, in turn: computing alone; encoding and writing alone, of values that are there
@@ -20,14 +20,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/waves/whitecaps.h"
 #include "plugin/bake/bake.h"
-#include "plugin/bake/maps.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/files.h"
 #include "plugin/files/read.h"
-#include "plugin/format/exr/exr.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {
@@ -57,99 +54,6 @@ double processor_s() {
         return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
     };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-// A map as a bake writes it: one level by scan lines, or all levels in tiles.
-struct PackedMap {
-    const char* name;
-    exr::PixelType type;
-    std::vector<MipLevel<glm::vec3>> levels;
-
-    std::size_t bytes(exr::Compression compression) const {
-        std::vector<exr::Image> images;
-        for (const MipLevel<glm::vec3>& level : levels) {
-            exr::Image& image = images.emplace_back(exr::Image{level.n, level.n, {}});
-            for (int c = 0; c < 3; ++c)
-                image.channels.push_back({.name = std::string(1, "RGB"[c]),
-                                          .data = &level.texels.data()->x + c,
-                                          .pixel_stride_bytes = sizeof(glm::vec3),
-                                          .type = type});
-        }
-        const exr::Header header{.attributes = {}, .compression = compression};
-        return (images.size() == 1 ? exr::encode_scanline(header, images[0])
-                                   : exr::encode_mipmapped(header, images))
-            .size();
-    }
-};
-
-std::vector<PackedMap> maps_to_pack() {
-    Scene scene = million_vertices(1);
-    scene.output.mesh = MeshFormat::None;
-    scene.output.maps = {MapKind::Displacement, MapKind::Normal, MapKind::Whitecaps, MapKind::SlopeVariance};
-    const Plan plan = plan_bake(scene);
-    const std::unique_ptr<Sequence> sequence = make_sequence(plan);
-    FrameSlot slot;
-    sequence->compute(1, slot);
-
-    std::vector<PackedMap> maps{{"displacement, float", exr::PixelType::Float, {}},
-                                {"normal, half, levels", exr::PixelType::Half, {}},
-                                {"whitecaps, float, levels", exr::PixelType::Float, {}},
-                                {"slope variance, float, levels", exr::PixelType::Float, {}}};
-    maps[0].levels.push_back({kN, slot.outputs[0]->values.vectors(Product::Displacement)});
-    const std::vector<glm::vec3>& normal = slot.outputs[1]->values.vectors(Product::Normal);
-    maps[1].levels = normal_mips({.n = kN, .texels = normal, .periodic = true});
-    maps[1].levels.insert(maps[1].levels.begin(), {kN, normal});
-
-    std::vector<JacobianMoments<float>> full;
-    for (const glm::vec3& j : slot.outputs[2]->values.vectors(Product::JacobianMoments))
-        full.push_back({j.x, j.y, j.z});
-    auto moments = moment_mips({.n = kN, .texels = full, .periodic = true});
-    moments.insert(moments.begin(), {kN, full});
-    const auto threshold = static_cast<float>(Sea<float>(plan).whitecap_threshold());
-    for (const auto& level : moments) {
-        auto& texels = maps[2].levels.emplace_back(MipLevel<glm::vec3>{level.n, {}}).texels;
-        for (const JacobianMoments<float>& j : level.texels)
-            texels.emplace_back(coverage(j, threshold, plan.knobs.third_moment), j.mean, j.variance);
-    }
-    // One value for all texels of a level.
-    const glm::vec3 unresolved = slot.outputs[3]->values.vectors(Product::SlopeVariance).front();
-    for (int n = kN; n >= 1; n /= 2)
-        maps[3].levels.push_back({n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, unresolved)});
-    return maps;
-}
-
-void packing_table() {
-    using exr::Compression;
-    constexpr std::array<std::pair<const char*, Compression>, 5> kPackings{{{"none", Compression::None},
-                                                                            {"RLE", Compression::Rle},
-                                                                            {"ZIPS", Compression::Zips},
-                                                                            {"ZIP", Compression::Zip},
-                                                                            {"PIZ", Compression::Piz}}};
-    const std::vector<PackedMap> maps = maps_to_pack();
-    std::vector<std::size_t> bytes(maps.size() * kPackings.size());
-    std::vector<Timed> timed;
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-        timed.push_back({"", [&, i] {
-                             bytes[i] =
-                                 maps[i / kPackings.size()].bytes(kPackings[i % kPackings.size()].second);
-                         }});
-    interleave(timed, 5);
-    std::printf(
-        "OpenEXR's lossless packings, maps of %d^2, one thread, medians of 5 interleaved repeats;\n"
-        "the last column: a disk slower than this gains by the packing\n"
-        "  %-32s %-6s %8s %8s %8s %12s\n",
-        kN, "", "", "MB", "of none", "ms", "MB/s a core");
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        const std::size_t none = i / kPackings.size() * kPackings.size();
-        const double saved_bytes = static_cast<double>(bytes[none]) - static_cast<double>(bytes[i]);
-        const double more_ms = timed[i].median() - timed[none].median();
-        std::printf("  %-32s %-6s %8.2f %8.2f %8.1f", maps[i / kPackings.size()].name,
-                    kPackings[i % kPackings.size()].first, 1e-6 * static_cast<double>(bytes[i]),
-                    static_cast<double>(bytes[i]) / static_cast<double>(bytes[none]), timed[i].median());
-        if (saved_bytes > 0.0 && more_ms > 0.0) std::printf(" %12.0f", 1e-3 * saved_bytes / more_ms);
-        if (saved_bytes > 0.0 && more_ms <= 0.0) std::printf(" %12s", "any");
-        std::printf("\n");
-    }
 }
 
 // A way to spend time on all frames, which says how long they took, and the processor's time beside.
@@ -279,7 +183,6 @@ int run(int argc, char** argv) {
     }
     const Scene scene = million_vertices(frames);
     const std::unique_ptr<Sequence> sequence = make_sequence(plan_bake(scene));
-    packing_table();
     overlap_table(scene, *sequence, rounds, folder);
     resume_table(scene, rounds, folder);
     std::printf("  peak memory of this process: %.0f MiB\n", peak_mib());

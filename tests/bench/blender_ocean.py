@@ -7,9 +7,8 @@ Blender's time: scene.frame_set() with the modifier's time keyframed (set from P
 and the evaluated mesh: simulation, normals and foam on, and the mesh that the modifier generates anew with edges,
 faces and foam as vertex colours, which is most of it. Blender leaves the mesh's own normals to whoever asks for
 them; nobody does here. Ours: Frame.set() and Frame.evaluate() of positions, normals, slope variance and whitecap
-coverage into arrays that are made once. No mesh: what it takes to hand arrays to one is in
-examples/blender-buffers.md. Both: one square of N × N waves, (N + 1)² vertices on its own grid, nothing filtered, all
-the threads that the machine has. "in new arrays": where evaluate() must make its arrays each time.
+coverage into arrays that are made once. No mesh: blender_played.py has one. Both: one square of N × N waves, (N + 1)² vertices
+on its own grid, nothing filtered, all the threads that the machine has. "in new arrays": where evaluate() must make its arrays each time.
 """
 
 import os

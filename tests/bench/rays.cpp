@@ -154,11 +154,10 @@ void print(const char* name, const Side& side) {
 }
 
 // A mesh of the camera, which is refitted frame after frame; its first pixel takes a build.
-Side mesh_side(RTCDevice device, const Shot& shot, double cell_px, double error_px) {
+Side mesh_side(RTCDevice device, const Shot& shot, double error_px) {
     Side side;
     pelagic_error error;
     pelagic_expand_options options = PELAGIC_INIT(pelagic_expand_options);
-    options.cell_px = cell_px;
     options.error_px = error_px;
     options.triangles = 1;
     pelagic_mesh_size size = PELAGIC_INIT(pelagic_mesh_size);
@@ -270,47 +269,6 @@ Side tiles_side(RTCDevice device, const Shot& shot, double tolerance) {
     return side;
 }
 
-// Some of the camera's rays [µs each], one thread: each refining the surface by itself, and with what the others left.
-void compare_ways(const std::string& text, const Shot& shot) {
-    constexpr std::size_t kEvery = 149;
-    std::vector<glm::vec3> direction;
-    for (std::size_t i = 0; i < shot.direction.size(); i += kEvery) direction.push_back(shot.direction[i]);
-    std::vector<float> spread(direction.size(), static_cast<float>(shot.spread)), distance(direction.size());
-    const auto us = [&](pelagic_frame* frame, std::size_t together) {
-        const auto begin = std::chrono::steady_clock::now();
-        for (std::size_t i = 0; i < direction.size(); i += together) {
-            pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
-            std::copy_n(shot.camera.position_m, 3, rays.origin_m);
-            rays.count = std::min(together, direction.size() - i);
-            rays.direction = &direction[i].x;
-            rays.spread = &spread[i];
-            pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
-            hits.distance = &distance[i];
-            pelagic_error error;
-            check(pelagic_intersect(frame, &rays, &hits, &error), error);
-        }
-        return 1e3 * since_ms(begin) / static_cast<double>(direction.size());
-    };
-    pelagic_error error;
-    pelagic_source source = PELAGIC_INIT(pelagic_source);
-    source.text = text.c_str();
-    pelagic_open_options forgetful = PELAGIC_INIT(pelagic_open_options);
-    forgetful.finest_cell_m = forgetful.finest_pixel_m = 0.002;
-    forgetful.ray_cache_bytes = 1;
-    pelagic_sea* sea = nullptr;
-    pelagic_frame* frame = nullptr;
-    check(pelagic_open(&source, &forgetful, &sea, &error), error);
-    check(pelagic_frame_create(sea, kOpen_s, kOpen_s, &frame, &error), error);
-    us(frame, direction.size());  // what a frame works out once
-    const double alone = us(frame, 1), alone_again = us(frame, 1), kept = us(shot.frame, direction.size()),
-                 one_by_one = us(shot.frame, 1);
-    std::printf(
-        "  a ray: refining by itself %.1f us; on tiles that are there %.1f us, in calls of one %.1f us\n",
-        std::min(alone, alone_again), kept, one_by_one);
-    pelagic_frame_release(frame);
-    pelagic_close(sea);
-}
-
 void run(RTCDevice device, const char* name, const std::string& text, int width, int height,
          double shutter_s) {
     Shot shot;
@@ -340,14 +298,13 @@ void run(RTCDevice device, const char* name, const std::string& text, int width,
     std::printf("\n%s, %d x %d%s\n  %-26s %8s   %6s + %5s + %5s %9s %9s   %s\n", name, width, height,
                 shutter_s > 0.0 ? ", 16 times over a shutter of 1/48 s" : "", "", "ms", "mesh", "refit",
                 "rays", "MiB", "first ms", "error in pixels: median, 95 %, 99 %");
-    Side mesh = mesh_side(device, shot, 2.0, 0.0);
-    print("mesh, cells of 2 px", mesh);
+    Side mesh;
     for (const double error_px : {kMost, 0.95 * kMost, 0.9 * kMost}) {
-        mesh = mesh_side(device, shot, 0.0, error_px);
+        mesh = mesh_side(device, shot, error_px);
         print(("mesh, error " + std::to_string(error_px).substr(0, 5) + " px").c_str(), mesh);
         if (mesh.errors.most95 <= kMost) break;
     }
-    for (const double tolerance : {2.0, 1.0, 0.5}) {
+    for (const double tolerance : {1.0, 0.5}) {
         const Side tiles = tiles_side(device, shot, tolerance);
         print(("tiles, tolerance " + std::to_string(tolerance).substr(0, 4)).c_str(), tiles);
         const double time = tiles.frame_ms() / mesh.frame_ms(), memory = tiles.mib / mesh.mib;
@@ -356,7 +313,6 @@ void run(RTCDevice device, const char* name, const std::string& text, int width,
                         time, pelagic::bench::verdict(time <= 1.5), memory,
                         pelagic::bench::verdict(memory <= 0.25), tiles.first_pixel_ms / mesh.first_pixel_ms);
     }
-    if (shutter_s == 0.0) compare_ways(text, shot);
     pelagic_frame_release(shot.frame);
     pelagic_close(shot.sea);
 }

@@ -1,6 +1,6 @@
 // The lighting against the waves themselves: facets of a real surface, each a mirror weighted by its area
 // projected towards the eye, unless another hides it (Bruneton, Neyret, Holzschuch 2010, Eq. 5 as a sum instead
-// of a Gaussian). tests/bench/reference is the same with choppy waves and several reflections.
+// of a Gaussian). With choppy waves and several reflections: tests/bench/README.md, Fig. 10.
 #include <gtest/gtest.h>
 
 #include <algorithm>

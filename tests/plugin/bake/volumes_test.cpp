@@ -224,7 +224,7 @@ TEST_F(Volumes, TheRecordSaysWhatTheFileHolds) {
     }
 }
 
-// tests/bench/spray.cpp has winds and eight seas; here a fifth of the area. The border's waves come from outside of it, and
+// Four winds and eight seas agreed to 1 % (tests/bench/README.md); here a fifth of the area. The border's waves come from outside of it, and
 // move less of the whole in than a twentieth.
 TEST_F(Volumes, SprayIsAsMuchAsBreaksByAnotherCount) {
     double thickness = 0.0, flux = 0.0, breaking = 0.0;

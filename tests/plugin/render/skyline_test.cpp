@@ -1,4 +1,4 @@
-// The skyline of pictures is the sea's own: tests/bench, "skyline", has more of them, and larger ones.
+// The skyline of pictures is the sea's own.
 #include "tests/plugin/render/skyline.h"
 
 #include <gtest/gtest.h>

@@ -41,6 +41,17 @@ void include(DisplacementBounds& bounds, const DisplacementBounds& other) {
     for (const auto axis : axes()) include(bounds.*axis, other.*axis);
 }
 
+// How far bounds lie beyond what is surely reached, relative to that.
+double excess(const DisplacementBounds& bounds, const DisplacementBounds& reached) {
+    double most = 0.0;
+    for (const auto axis : axes()) {
+        const Interval &is = bounds.*axis, &sure = reached.*axis;
+        const double beyond = std::max(is.hi - sure.hi, sure.lo - is.lo);
+        if (beyond > 0.0) most = std::max(most, beyond / std::max(sure.hi - sure.lo, 1e-3 * beyond));
+    }
+    return most;
+}
+
 // cos of a phase [cycles] that lies within `by` of `cycles`.
 Interval cosine(double cycles, double by) {
     if (by >= 0.5) return {-1.0, 1.0};
@@ -444,8 +455,7 @@ template <class T>
 DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blocks) const {
     constexpr double kTolerance = 0.05;  // of what is surely reached
     constexpr std::size_t kAtOnce = 32;
-    if (!is_current())
-        throw std::logic_error("the frame was set to another time: refresh() makes the bounds valid again");
+    check_current();
     for (int axis = 0; axis < 2; ++axis)
         if (!(region.min_m[axis] <= region.max_m[axis]) || !std::isfinite(region.min_m[axis]) ||
             !std::isfinite(region.max_m[axis]))
@@ -465,15 +475,6 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
         bool operator<(const Part& other) const { return excess < other.excess; }
     };
     DisplacementBounds settled, reached;
-    const auto excess_of = [&](const DisplacementBounds& bounds) {
-        double most = 0.0;
-        for (const auto axis : axes()) {
-            const Interval &is = bounds.*axis, &sure = reached.*axis;
-            const double beyond = std::max(is.hi - sure.hi, sure.lo - is.lo);
-            if (beyond > 0.0) most = std::max(most, beyond / std::max(sure.hi - sure.lo, 1e-3 * beyond));
-        }
-        return most;
-    };
     std::priority_queue<Part> parts;
     const PreparedQuery<T> query(*frame_, query_, products(sampled_), origin_m);
     std::vector<Block> blocks{whole};
@@ -501,7 +502,7 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
         }
         for (const Block& block : blocks) {
             const DisplacementBounds bounds = bounds_of(block, cycles, origin_m);
-            parts.push({block, bounds, excess_of(bounds)});
+            parts.push({block, bounds, excess(bounds, reached)});
         }
         blocks.clear();
     };
@@ -513,7 +514,7 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
             const glm::dvec2 side = part.block.max_m - part.block.min_m;
             const int longer = side.y > side.x ? 1 : 0;
             if (count >= most_blocks || side[longer] <= smallest_block_m_ ||
-                excess_of(part.bounds) <= kTolerance) {
+                excess(part.bounds, reached) <= kTolerance) {
                 include(settled, part.bounds);
                 continue;
             }
@@ -531,8 +532,7 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
 
 template <class T>
 DisplacementBounds FrameBounds<T>::everywhere() const {
-    if (!is_current())
-        throw std::logic_error("the frame was set to another time: refresh() makes the bounds valid again");
+    check_current();
     constexpr double kAll_m = 1e300;  // longer than every tile and every wave
     return bounds_of({glm::dvec2(-kAll_m), glm::dvec2(kAll_m)}, std::vector<double>(finest_weight_.size()),
                      glm::dvec2(0.0));

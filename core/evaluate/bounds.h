@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "core/plan/plan.h"
@@ -86,6 +87,12 @@ class FrameBounds {
         std::array<Pyramid, 3> fields;     // height, Dx, Dy
     };
     using Block = RestRegion;
+
+    void check_current() const {
+        if (!is_current())
+            throw std::logic_error(
+                "the frame was set to another time: refresh() makes the bounds valid again");
+    }
 
     // Of the periodic grid's field over a block that begins and ends there [m], from its origin.
     static DisplacementBounds::Interval interval_of(const GridBounds& grid, const Pyramid& field,

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/pack-inl.h"
 #include "core/evaluate/grids-inl.h"
@@ -271,11 +272,12 @@ void Derive(const DeriveArgs<T>& args) {
     if (results.holds(Product::JacobianMoments) || results.holds(Product::Breaking)) DeriveWhitecaps(args);
 }
 
-EvaluateKernels<float> TableOfFloat() {
-    return {&grids_detail::AddGrid<float>, &Derive<float>, &SpanOf<float>, &PlaceTiles<float>};
+template <class T>
+EvaluateKernels<T> Table() {
+    return {&grids_detail::AddGrid<T>, &Derive<T>, &SpanOf<T>, &PlaceTiles<T>};
 }
-EvaluateKernels<double> TableOfDouble() {
-    return {&grids_detail::AddGrid<double>, &Derive<double>, &SpanOf<double>, &PlaceTiles<double>};
+std::pair<EvaluateKernels<float>, EvaluateKernels<double>> Tables() {
+    return {Table<float>(), Table<double>()};
 }
 
 }  // namespace
@@ -285,17 +287,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace pelagic {
-HWY_EXPORT(TableOfFloat);
-HWY_EXPORT(TableOfDouble);
+HWY_EXPORT(Tables);
 
-template <>
-EvaluateKernels<float> evaluate_kernels() {
-    return HWY_DYNAMIC_DISPATCH(TableOfFloat)();
+template <class T>
+EvaluateKernels<T> evaluate_kernels() {
+    return std::get<EvaluateKernels<T>>(HWY_DYNAMIC_DISPATCH(Tables)());
 }
-template <>
-EvaluateKernels<double> evaluate_kernels() {
-    return HWY_DYNAMIC_DISPATCH(TableOfDouble)();
-}
+template EvaluateKernels<float> evaluate_kernels();
+template EvaluateKernels<double> evaluate_kernels();
 
 }  // namespace pelagic
 #endif

@@ -160,7 +160,24 @@ struct Ellipses {
     HWY_INLINE hn::Vec<D> longest() const {
         return are_round ? width_m : hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(width_m, width_m))));
     }
+    template <class T>
+    HWY_INLINE void move(Zone<T>& zone) const {
+        const D d;
+        zone.move_to(hn::GetLane(hn::MinOfLanes(d, width_m)), hn::GetLane(hn::MaxOfLanes(d, longest())));
+    }
 };
+
+// Those of a chunk's points in `valid`, from `base` on; without any of their own all have the same.
+template <class T, class D, class Valid>
+HWY_INLINE Ellipses<D> EllipsesOf(D d, const T* of, T uniform_m,
+                                  const typename TrainArgs<T>::Stretch& stretch, std::size_t base,
+                                  Valid valid) {
+    const auto footprint = [&](const T* each, T only) {
+        return each ? hn::IfThenElse(valid, hn::LoadU(d, each + base), hn::Set(d, each[base]))
+                    : hn::Set(d, only);
+    };
+    return {footprint(of, uniform_m), footprint(stretch.x, T(0)), footprint(stretch.y, T(0)), !stretch.x};
+}
 
 // What the footprints leave unresolved, for the points of one vector. Each point's trains beyond its own end come as
 // one sum, looked up, and those of the blend one by one.
@@ -208,7 +225,7 @@ HWY_INLINE void UnresolvedOf(D d, const Trains<T>& trains, const Zone<T>& zone, 
 // See add_trains() in core/evaluate/trains.h.
 template <class T>
 std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
-    namespace hn = hwy::HWY_NAMESPACE;
+    using namespace trains_detail;
     const hn::ScalableTag<T> d;
     using V = hn::Vec<decltype(d)>;
     const std::size_t lanes = hn::Lanes(d);
@@ -223,98 +240,65 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
     const bool cell_wanted = height || horizontal || rise || drift,
                pixel_wanted = slope || gradient || args.breaking;
 
-    trains_detail::Zone<T> cell(trains, args.filter), pixel(trains, args.filter);
+    Zone<T> cell(trains, args.filter), pixel(trains, args.filter);
     std::size_t evaluated = 0;
     for (std::size_t base = 0; base < chunk.count; base += lanes) {
         const std::size_t points = std::min(lanes, chunk.count - base);
         const auto valid = hn::FirstN(d, points);
-        const auto footprint = [&](const T* of, T uniform_m) {
-            return of ? hn::IfThenElse(valid, hn::LoadU(d, of + base), hn::Set(d, of[base]))
-                      : hn::Set(d, uniform_m);
-        };
-        const auto smallest = [&](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
-        const auto largest = [&](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
-        const auto ellipses = [&](const T* of, T uniform_m, const typename TrainArgs<T>::Stretch& stretch) {
-            return trains_detail::Ellipses<std::remove_const_t<decltype(d)>>{
-                footprint(of, uniform_m), footprint(stretch.x, T(0)), footprint(stretch.y, T(0)), !stretch.x};
-        };
-        const auto cells = ellipses(args.cell_of, args.cell_m, args.cell_stretch),
-                   pixels = ellipses(args.pixel_of, args.pixel_m, args.pixel_stretch);
-        if (cell_wanted) cell.move_to(smallest(cells.width_m), largest(cells.longest()));
-        if (pixel_wanted || args.unresolved)
-            pixel.move_to(smallest(pixels.width_m), largest(pixels.longest()));
-        if (args.unresolved) trains_detail::UnresolvedOf(d, trains, pixel, pixels, *args.unresolved, base);
+        const auto cells = EllipsesOf<T>(d, args.cell_of, args.cell_m, args.cell_stretch, base, valid),
+                   pixels = EllipsesOf<T>(d, args.pixel_of, args.pixel_m, args.pixel_stretch, base, valid);
+        if (cell_wanted) cells.move(cell);
+        if (pixel_wanted || args.unresolved) pixels.move(pixel);
+        if (args.unresolved) UnresolvedOf(d, trains, pixel, pixels, *args.unresolved, base);
 
         const std::size_t cell_end = cell_wanted ? cell.any() : 0, pixel_end = pixel_wanted ? pixel.any() : 0;
         const std::size_t end = std::max(cell_end, pixel_end);
         if (end == 0) continue;
         evaluated += end * points;
 
-        const trains_detail::Phases<decltype(d)> phases(d, hn::Load(d, &chunk.rest_x[base]),
-                                                        hn::Load(d, &chunk.rest_y[base]));
-        V sum[kFieldCount], breaking[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-        for (std::size_t f = 0; f < kFieldCount; ++f) sum[f] = hn::Zero(d);
+        const Phases<decltype(d)> phases(d, hn::Load(d, &chunk.rest_x[base]),
+                                         hn::Load(d, &chunk.rest_y[base]));
+        V sum[kFieldCount], breaking[kFieldCount];
+        for (std::size_t f = 0; f < kFieldCount; ++f) sum[f] = breaking[f] = hn::Zero(d);
         for (std::size_t i = 0; i < end; ++i) {
             V sine, cosine;
             SinCosCycles(d,
                          phases(args.start_cycles[i], trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]),
                          sine, cosine);
-            const auto add = [&](Field field, V wave) {
-                V& of = sum[index(field)];
-                of = hn::MulAdd(hn::Set(d, trains.amplitude[index(field)][i]), wave, of);
+            const auto add = [&](V* to, V wave, auto... field) {
+                ((to[index(field)] =
+                      hn::MulAdd(hn::Set(d, trains.amplitude[index(field)][i]), wave, to[index(field)])),
+                 ...);
+            };
+            const auto weigh = [&](V weight, V& s, V& c) {
+                s = hn::Mul(weight, s);
+                c = hn::Mul(weight, c);
             };
             if (i < cell_end) {
                 V s = sine, c = cosine;
-                if (i >= cell.full()) {
-                    const V w = cell.weight(d, i, cells.along(d, trains, i));
-                    s = hn::Mul(w, s);
-                    c = hn::Mul(w, c);
-                }
-                if (height) add(Field::Height, c);
-                if (horizontal) {
-                    add(Field::Dx, s);
-                    add(Field::Dy, s);
-                }
-                if (drift) {
-                    add(Field::VelocityX, c);
-                    add(Field::VelocityY, c);
-                }
-                if (rise) add(Field::VelocityZ, s);
+                if (i >= cell.full()) weigh(cell.weight(d, i, cells.along(d, trains, i)), s, c);
+                if (height) add(sum, c, Field::Height);
+                if (horizontal) add(sum, s, Field::Dx, Field::Dy);
+                if (drift) add(sum, c, Field::VelocityX, Field::VelocityY);
+                if (rise) add(sum, s, Field::VelocityZ);
             }
             if (i < pixel_end) {
                 V s = sine, c = cosine, most = hn::Set(d, trains.breaking[i]);
                 if (i >= pixel.full()) {
                     const V w = pixel.weight(d, i, pixels.along(d, trains, i));
-                    s = hn::Mul(w, s);
-                    c = hn::Mul(w, c);
+                    weigh(w, s, c);
                     most = hn::Min(w, most);
                 }
-                if (args.breaking) {
-                    most = hn::Mul(most, cosine);
-                    for (std::size_t f = 0; f < 3; ++f)
-                        breaking[f] = hn::MulAdd(hn::Set(d, trains.amplitude[index(Field::Dxx) + f][i]), most,
-                                                 breaking[f]);
-                }
-                if (slope) {
-                    add(Field::SlopeX, s);
-                    add(Field::SlopeY, s);
-                }
-                if (gradient) {
-                    add(Field::Dxx, c);
-                    add(Field::Dyy, c);
-                    add(Field::Dxy, c);
-                }
+                if (args.breaking) add(breaking, hn::Mul(most, cosine), Field::Dxx, Field::Dyy, Field::Dxy);
+                if (slope) add(sum, s, Field::SlopeX, Field::SlopeY);
+                if (gradient) add(sum, c, Field::Dxx, Field::Dyy, Field::Dxy);
             }
         }
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            if (!args.wanted[f]) continue;
-            T* const out = &chunk.sums[f][base];
-            hn::Store(hn::Add(hn::Load(d, out), sum[f]), d, out);
-        }
-        for (std::size_t f = 0; args.breaking && f < 3; ++f) {
-            T* const out = &args.breaking->sums[index(Field::Dxx) + f][base];
-            hn::Store(hn::Add(hn::Load(d, out), breaking[f]), d, out);
-        }
+        const auto store = [&](V value, T* to) { hn::Store(hn::Add(hn::Load(d, to), value), d, to); };
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (args.wanted[f]) store(sum[f], &chunk.sums[f][base]);
+        for (const Field field : {Field::Dxx, Field::Dyy, Field::Dxy})
+            if (args.breaking) store(breaking[index(field)], &args.breaking->sums[index(field)][base]);
     }
     return evaluated;
 }

@@ -286,12 +286,7 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
 }
 
 ProjectedGridOptions projected_grid_options(const PreparedScene& prepared) {
-    const Extent& extent = prepared.extent;
-    return {.cell_px = prepared.scene.surface.cell_px,
-            .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
-            .significant_height_m = extent.significant_height_m,
-            .unresolved = extent.unresolved,
-            .curvature_per_m = prepared.scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0};
+    return projected_grid_options(prepared.scene, prepared.extent);
 }
 
 namespace {

@@ -185,5 +185,15 @@ struct DescribedKey {
 // The keys that these parts depend on and that have a value. A measured spectrum is described by its station and
 // time, a cage by its content (Cage::content), not by their files.
 std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts);
+// The same as attributes of a file's header: {"pelagic.sea.fetch_m", a number or a text}.
+template <class Attribute>
+void describe(const Scene& scene, KeyPartSet parts, std::vector<Attribute>& attributes) {
+    for (const DescribedKey& key : described(scene, parts))
+        std::visit(
+            [&](const auto& value) {
+                attributes.push_back({"pelagic." + key.path, value});
+            },
+            key.number_or_text());
+}
 
 }  // namespace pelagic

@@ -1,6 +1,9 @@
 // The projected grid. See projected_grid.h.
 #include "core/surface/projected_grid.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +12,9 @@
 #include <optional>
 
 #include "core/base/constants.h"
+#include "core/surface/earth.h"
 #include "core/surface/earth_view.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -496,10 +501,12 @@ double cell_width_m(const Station& at, double cell_angle, double radius_m) {
 
 }  // namespace
 
-ProjectedGridNeeds together(const ProjectedGridNeeds& a, const ProjectedGridNeeds& b) {
-    return {.size = {std::max(a.size.columns, b.size.columns), std::max(a.size.rows, b.size.rows)},
-            .finest_cell_m = std::min(a.finest_cell_m, b.finest_cell_m),
-            .finest_pixel_m = std::min(a.finest_pixel_m, b.finest_pixel_m)};
+ProjectedGridOptions projected_grid_options(const Scene& scene, const Extent& extent) {
+    return {.cell_px = scene.surface.cell_px,
+            .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
+            .significant_height_m = extent.significant_height_m,
+            .unresolved = extent.unresolved,
+            .curvature_per_m = scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0};
 }
 
 ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOptions& options) {
@@ -525,6 +532,23 @@ ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOpt
                 pixel_width_m(view, at, nearest_seen_m(view, options, at, rows[0].radius_m), at.corner_cos)};
 }
 
+ProjectedGridNeeds projected_grid_needs(std::span<const View> views, const ProjectedGridOptions& options) {
+    const auto together = [](const ProjectedGridNeeds& a, const ProjectedGridNeeds& b) -> ProjectedGridNeeds {
+        return {.size = {std::max(a.size.columns, b.size.columns), std::max(a.size.rows, b.size.rows)},
+                .finest_cell_m = std::min(a.finest_cell_m, b.finest_cell_m),
+                .finest_pixel_m = std::min(a.finest_pixel_m, b.finest_pixel_m)};
+    };
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(1, views.size()), projected_grid_needs(views.front(), options),
+        [&](const tbb::blocked_range<std::size_t>& range, ProjectedGridNeeds sum) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                if (views[i] != views[i - 1])  // the camera moves
+                    sum = together(sum, projected_grid_needs(views[i], options));
+            return sum;
+        },
+        together);
+}
+
 PixelFootprint<double> pixel_at_rest(const View& view, const ProjectedGridOptions& options,
                                      glm::dvec2 rest_m) {
     const Station at = station_of(view, options);
@@ -538,8 +562,10 @@ PixelFootprint<double> pixel_at_rest(const View& view, const ProjectedGridOption
 ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options) {
     const Station at = station_of(view, options);
     ProjectedGridOptions sized = options;
-    if (sized.size.columns <= 0 || sized.size.rows <= 0)
-        sized.size = projected_grid_needs(view, options).size;
+    ProjectedGridNeeds own;
+    const bool is_sized = options.size.columns > 0 && options.size.rows > 0;
+    if (!is_sized || options.has_levels) own = projected_grid_needs(view, options);
+    if (!is_sized) sized.size = own.size;
     const auto [columns, row_count] = sized.size;
     const double cell_angle = cell_angle_of(view, options, at);
     const std::vector<Row> rows = rows_of(view, sized, at, cell_angle, row_count);
@@ -592,6 +618,14 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
             grid.cell_axis_m[i] =
                 static_cast<float>(long_m) * (away_m[i] >= across_m[j] ? away : glm::vec2(-away.y, away.x));
         }
+    }
+    const auto keep_to_levels = [](std::vector<float>& footprints_m, double finest_m) {
+        const auto first_m = static_cast<float>(first_level_m(finest_m));
+        for (float& footprint_m : footprints_m) footprint_m = std::max(footprint_m, first_m);
+    };
+    if (options.has_levels) {
+        keep_to_levels(grid.cell_m, own.finest_cell_m);
+        keep_to_levels(grid.pixel_m, own.finest_pixel_m);
     }
     return grid;
 }

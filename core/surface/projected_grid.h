@@ -18,8 +18,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
+#include "core/surface/extent.h"
 #include "core/surface/pixel_footprint.h"
 #include "core/surface/unresolved_height.h"
 #include "core/surface/view.h"
@@ -54,7 +56,12 @@ struct ProjectedGridOptions {
     double curvature_per_m = 0.0;       // of the earth on which the sea lies (earth.h); 0: flat
     // 0: as many as this pose needs (projected_grid_needs). Others, for poses that are to share a topology.
     ProjectedGridSize size{};
+    // Footprints finer than this pose's own first level count as that level (levels.h). So a plan that has finer levels, for
+    // other poses, gives this one the same bits. Wave trains alone need no levels: they use each point's own footprints.
+    bool has_levels = false;
 };
+// Of a scene's camera.
+ProjectedGridOptions projected_grid_options(const Scene& scene, const Extent& extent);
 
 // Points by row, from the innermost row outwards; columns fastest.
 struct ProjectedGrid {
@@ -79,8 +86,8 @@ struct ProjectedGridNeeds {
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
 };
 ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOptions& options);
-// The smallest requirements that cover both.
-ProjectedGridNeeds together(const ProjectedGridNeeds& a, const ProjectedGridNeeds& b);
+// The smallest requirements that cover all of these poses, at least one.
+ProjectedGridNeeds projected_grid_needs(std::span<const View> views, const ProjectedGridOptions& options);
 
 // Covers every point at rest whose displaced position may be in view. Where none is (looking up from above
 // the crests), the grid is valid and lies at the horizon.

@@ -1,8 +1,5 @@
 #include "core/surface/rest_surface.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
@@ -101,13 +98,10 @@ class CameraGrid : public RestSurface {
   public:
     CameraGrid(const Scene& scene, const Extent& extent)
         : camera_(scene.camera),
-          has_levels_(scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty()),
           first_frame_(scene.shot.first_frame),
-          options_{.cell_px = scene.surface.cell_px,
-                   .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
-                   .significant_height_m = extent.significant_height_m,
-                   .unresolved = extent.unresolved,
-                   .curvature_per_m = scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0} {}
+          options_(projected_grid_options(scene, extent)) {
+        options_.has_levels = scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty();
+    }
 
     std::string describe() const override {
         const ProjectedGridSize size = projected_grid_needs(seen(first_frame_), options_).size;
@@ -126,21 +120,9 @@ class CameraGrid : public RestSurface {
 
     SurfaceNeeds needs(std::span<const int> frames) const override {
         if (frames.empty()) return {.own_footprints = true};
-        const auto needs_at = [&](std::size_t i) { return projected_grid_needs(seen(frames[i]), options_); };
-        // Where the camera stands still, one frame answers for its neighbours.
-        const auto still = [&](std::size_t i) {
-            const auto& keys = camera_.keys;
-            return i > 0 &&
-                   (keys.empty() || frames[i] <= keys.front().frame || frames[i - 1] >= keys.back().frame);
-        };
-        const ProjectedGridNeeds all = tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, frames.size()), needs_at(0),
-            [&](const tbb::blocked_range<std::size_t>& range, ProjectedGridNeeds sum) {
-                for (std::size_t i = range.begin(); i != range.end(); ++i)
-                    if (!still(i)) sum = together(sum, needs_at(i));
-                return sum;
-            },
-            together);
+        std::vector<View> views;
+        for (const int frame : frames) views.push_back(seen(frame));
+        const ProjectedGridNeeds all = projected_grid_needs(views, options_);
         // A file's vertices are its only samples: cells filter normals, too, as in a patch.
         return {.finest_cell_m = all.finest_cell_m,
                 .finest_pixel_m = all.finest_cell_m,
@@ -160,9 +142,7 @@ class CameraGrid : public RestSurface {
 
     template <class T>
     void lay_out(int frame, RestPoints<T>& points) const {
-        const View view = seen(frame);
-        ProjectedGrid grid = projected_grid(view, options_);
-        if (has_levels_) keep_to_levels(grid, projected_grid_needs(view, options_));
+        const ProjectedGrid grid = projected_grid(seen(frame), options_);
         points.origin_m = grid.origin_m;
         points.curvature_per_m = grid.curvature_per_m;
         points.touches_at_m = grid.origin_m;
@@ -176,7 +156,6 @@ class CameraGrid : public RestSurface {
     Camera camera_;
 
   private:
-    bool has_levels_;  // wave trains alone need no levels: they use each point's own footprints
     int first_frame_;
 
   protected:

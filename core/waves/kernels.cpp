@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include <cstring>
+#include <utility>
 
 #include "core/base/pack-inl.h"
 #include "core/base/sincos-inl.h"
@@ -297,11 +298,8 @@ template <class T>
 Kernels<T> Table() {
     return {&Advance<T>, &Through<T>, &Line<T>, &Scatter<T>, &Pair<T>, &Realise<T>};
 }
-Kernels<float> TableOfFloat() {
-    return Table<float>();
-}
-Kernels<double> TableOfDouble() {
-    return Table<double>();
+std::pair<Kernels<float>, Kernels<double>> Tables() {
+    return {Table<float>(), Table<double>()};
 }
 
 }  // namespace
@@ -311,17 +309,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace pelagic {
-HWY_EXPORT(TableOfFloat);
-HWY_EXPORT(TableOfDouble);
+HWY_EXPORT(Tables);
 
-template <>
-Kernels<float> kernels() {
-    return HWY_DYNAMIC_DISPATCH(TableOfFloat)();
+template <class T>
+Kernels<T> kernels() {
+    return std::get<Kernels<T>>(HWY_DYNAMIC_DISPATCH(Tables)());
 }
-template <>
-Kernels<double> kernels() {
-    return HWY_DYNAMIC_DISPATCH(TableOfDouble)();
-}
+template Kernels<float> kernels();
+template Kernels<double> kernels();
 
 }  // namespace pelagic
 #endif

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/random-inl.h"
@@ -201,11 +202,8 @@ template <class T>
 ModeKernels<T> Table() {
     return {&Amplitudes<T>, &Frequencies<T>, &Column, &Moments};
 }
-ModeKernels<float> TableOfFloat() {
-    return Table<float>();
-}
-ModeKernels<double> TableOfDouble() {
-    return Table<double>();
+std::pair<ModeKernels<float>, ModeKernels<double>> Tables() {
+    return {Table<float>(), Table<double>()};
 }
 
 }  // namespace
@@ -215,17 +213,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace pelagic {
-HWY_EXPORT(TableOfFloat);
-HWY_EXPORT(TableOfDouble);
+HWY_EXPORT(Tables);
 
-template <>
-ModeKernels<float> mode_kernels() {
-    return HWY_DYNAMIC_DISPATCH(TableOfFloat)();
+template <class T>
+ModeKernels<T> mode_kernels() {
+    return std::get<ModeKernels<T>>(HWY_DYNAMIC_DISPATCH(Tables)());
 }
-template <>
-ModeKernels<double> mode_kernels() {
-    return HWY_DYNAMIC_DISPATCH(TableOfDouble)();
-}
+template ModeKernels<float> mode_kernels();
+template ModeKernels<double> mode_kernels();
 
 SpectralMoments sum_of_lanes(const MomentLanes& lanes) {
     SpectralMoments out;

@@ -43,6 +43,16 @@ struct ColumnScratch {
     // By my from −H up: E(k) and E(−k).
     double* forward() { return modes_.data(); }
     double* backward() { return modes_.data() + modes_.size() / 2; }
+    // From the energies.
+    void lay_out(int height) {
+        const FourWays energy = energies();
+        for (int my = 0; my <= height; ++my) {
+            forward()[height - my] = energy.below[my];
+            backward()[height - my] = energy.above[my];
+        }
+        std::copy_n(energy.same, height + 1, forward() + height);
+        std::copy_n(energy.opposite, height + 1, backward() + height);
+    }
 
   private:
     double* row(std::size_t i) { return values_.data() + i * stride_; }
@@ -50,6 +60,25 @@ struct ColumnScratch {
     std::size_t stride_;
     std::vector<double> values_, modes_;
 };
+
+// With room for its modes.
+template <class T>
+Cascade<T> empty_cascade(const CascadePlan& planned, bool has_gradients) {
+    Cascade<T> cascade;
+    cascade.size_m = planned.size_m;
+    cascade.radius = planned.grid_radius();
+    for (int mx = 0; mx < cascade.radius; ++mx) {
+        if (mx == 0) cascade.columns.push_back(0);
+        cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));
+    }
+    const std::size_t count = lattice_modes(cascade.radius);
+    for (Buffer<T>* values :
+         {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
+        *values = Buffer<T>::uncleared(count);
+    cascade.cycles_per_s = Buffer<double>::uncleared(count);
+    if (has_gradients) cascade.chop = Buffer<T>::uncleared(count);
+    return cascade;
+}
 
 }  // namespace
 
@@ -142,24 +171,8 @@ Whitecaps Sea<T>::whitecaps(const FoamLife& life) const {
 }
 
 template <class T>
-Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress& progress) {
-    const Scene& scene = plan_.from->scene;
-    const Dispersion& dispersion = plan_.from->spectrum.dispersion();
+std::vector<FootprintPair> Sea<T>::pairs_of(int c, std::vector<QueryStatistics>& breaking) {
     const CascadePlan& planned = plan_.cascades[c];
-    Cascade<T> cascade;
-    cascade.size_m = planned.size_m;
-    cascade.radius = planned.grid_radius();
-    for (int mx = 0; mx < cascade.radius; ++mx) {
-        if (mx == 0) cascade.columns.push_back(0);
-        cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));
-    }
-    const std::size_t count = lattice_modes(cascade.radius);
-    for (Buffer<T>* values :
-         {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
-        *values = Buffer<T>::uncleared(count);
-    cascade.cycles_per_s = Buffer<double>::uncleared(count);
-    if (plan_.has_gradients()) cascade.chop = Buffer<T>::uncleared(count);
-
     std::vector<FootprintPair> pairs;
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
         const Query& query = plan_.queries[q].query;
@@ -179,7 +192,16 @@ Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress
         add(plan_.queries[q].pixel_levels, statistics_[q]);
         add(plan_.queries[q].breaking_levels, breaking[q]);
     }
-    const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, std::move(pairs));
+    return pairs;
+}
+
+template <class T>
+Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress& progress) {
+    const Scene& scene = plan_.from->scene;
+    const Dispersion& dispersion = plan_.from->spectrum.dispersion();
+    const CascadePlan& planned = plan_.cascades[c];
+    Cascade<T> cascade = empty_cascade<T>(planned, plan_.has_gradients());
+    const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, pairs_of(c, breaking));
     const CellEnergies energies(*table_, planned.size_m, planned.k_lower, planned.k_upper);
     const ModeKernels<T> kernels = mode_kernels<T>();
     const double step = kTwoPi / planned.size_m;
@@ -217,12 +239,7 @@ Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress
                     if (mx >= cascade.radius) continue;
 
                     const int height = half_height(cascade.radius, mx);
-                    for (int my = 0; my <= height; ++my) {
-                        scratch.forward()[height - my] = energy.below[my];
-                        scratch.backward()[height - my] = energy.above[my];
-                    }
-                    std::copy_n(energy.same, height + 1, scratch.forward() + height);
-                    std::copy_n(energy.opposite, height + 1, scratch.backward() + height);
+                    scratch.lay_out(height);
                     const std::size_t at = cascade.columns[mx], length = cascade.columns[mx + 1] - at;
                     kernels.amplitudes({.energy = scratch.forward(),
                                         .opposite = scratch.backward(),

@@ -19,6 +19,8 @@
 
 namespace pelagic {
 
+struct FootprintPair;
+
 struct FoamLife;  // core/waves/whitecaps.h
 
 // The FFT component: the modes of one cascade (core/plan/mode_lattice.h gives their order), of its own band
@@ -101,6 +103,7 @@ class Sea {
 
   private:
     class Progress;
+    std::vector<FootprintPair> pairs_of(int cascade, std::vector<QueryStatistics>& breaking);
     Cascade<T> build(int cascade, std::vector<QueryStatistics>& breaking, Progress&);
 
     Plan plan_;

@@ -140,6 +140,19 @@ double fraction_of_product(double a, double b) {
     return (product - std::round(product)) + std::fma(a, b, -product);
 }
 
+// The sums over all trains before and from each.
+template <class T>
+void add_up(Trains<T>& trains) {
+    trains.before.resize(trains.count() + 1);
+    for (std::size_t i = 0; i < trains.count(); ++i)
+        (trains.before[i + 1] = trains.before[i]) += trains.alone[i];
+    trains.from.resize(trains.count() + 1);
+    trains.from.back() = trains.outside;
+    for (std::size_t i = trains.count(); i-- > 0;) (trains.from[i] = trains.from[i + 1]) += trains.alone[i];
+    for (const SpectralMoments& moments : trains.from)
+        trains.unresolved_from.push_back(unresolved_moments<T>(moments));
+}
+
 }  // namespace
 
 template <class T>
@@ -217,14 +230,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
     trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);
     trains.outside += moments_with_breaking(spectrum, kTwoPi / plan.shortest_m,
                                             std::numeric_limits<double>::infinity(), breaking);
-    trains.before.resize(trains.count() + 1);
-    for (std::size_t i = 0; i < trains.count(); ++i)
-        (trains.before[i + 1] = trains.before[i]) += trains.alone[i];
-    trains.from.resize(trains.count() + 1);
-    trains.from.back() = trains.outside;
-    for (std::size_t i = trains.count(); i-- > 0;) (trains.from[i] = trains.from[i + 1]) += trains.alone[i];
-    for (const SpectralMoments& moments : trains.from)
-        trains.unresolved_from.push_back(unresolved_moments<T>(moments));
+    add_up(trains);
     return trains;
 }
 

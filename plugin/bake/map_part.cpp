@@ -404,12 +404,7 @@ class MapPart final : public OutputPart {
                 {"copiesKey", static_cast<int>(tiling_key(scene().shot.seed, *output_.cascade))});
         }
         if (scene().shot.loop_s > 0.0) header.attributes.push_back({"loop", scene().shot.exact_loop_s()});
-        for (const DescribedKey& key : described(scene(), output_.key_parts))
-            std::visit(
-                [&](const auto& value) {
-                    header.attributes.push_back({"pelagic." + key.path, value});
-                },
-                key.number_or_text());
+        describe(scene(), output_.key_parts, header.attributes);
         return header;
     }
 

@@ -106,12 +106,7 @@ std::string dome_file(const Scene& scene, const Sky& sky) {
         .compression = exr::Compression::Zip};
     for (exr::Attribute& attribute : radiance_attributes(scene))
         header.attributes.push_back(std::move(attribute));
-    for (const DescribedKey& key : described(portable(scene), key_parts(KeyPart::Light)))
-        std::visit(
-            [&](const auto& value) {
-                header.attributes.push_back({"pelagic." + key.path, value});
-            },
-            key.number_or_text());
+    describe(portable(scene), key_parts(KeyPart::Light), header.attributes);
     return exr::encode_scanline(header, image);
 }
 

@@ -90,12 +90,7 @@ class VolumePart : public OutputPart {
             {"frame", std::int64_t{frame}},
             {"fingerprint", fingerprint(frame)},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
-        for (const DescribedKey& key : described(scene(), output_.key_parts))
-            std::visit(
-                [&](const auto& value) {
-                    all.push_back({"pelagic." + key.path, value});
-                },
-                key.number_or_text());
+        describe(scene(), output_.key_parts, all);
         return all;
     }
     // Of a grid, which programs copy without what its file says.

@@ -59,22 +59,15 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     Scene shown = scene;
     if (!options.lighting.spray) row_of(Effect::Spray).turn_off(shown);
     auto prepared = prepare(std::move(shown));
-    const ProjectedGridOptions grid = projected_grid_options(*prepared);
-    std::optional<ProjectedGridNeeds> needs;
-    std::optional<View> before;
+    if (frames.empty()) throw std::invalid_argument("a plan of pictures needs at least one frame");
+    std::vector<View> views;
     for (const int frame : frames)
-        for (const double moment : moments_of(frame, options)) {
-            const View view = view_at(scene.camera, moment);
-            if (before && *before == view) continue;  // the camera stands still
-            const ProjectedGridNeeds own = projected_grid_needs(view, grid);
-            needs = needs ? together(*needs, own) : own;
-            before = view;
-        }
-    if (!needs) throw std::invalid_argument("a plan of pictures needs at least one frame");
+        for (const double moment : moments_of(frame, options)) views.push_back(view_at(scene.camera, moment));
+    const ProjectedGridNeeds needs = projected_grid_needs(views, projected_grid_options(*prepared));
     Query query = view_query(*prepared, {.products = {},
-                                         .finest_cell_m = needs->finest_cell_m,
-                                         .finest_pixel_m = needs->finest_pixel_m,
-                                         .points = points_of(needs->size),
+                                         .finest_cell_m = needs.finest_cell_m,
+                                         .finest_pixel_m = needs.finest_pixel_m,
+                                         .points = points_of(needs.size),
                                          .filter = options.filter});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);

@@ -117,12 +117,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
-    for (const DescribedKey& key : described(scene, parts_beside_the_view(context.options)))
-        std::visit(
-            [&](const auto& value) {
-                attributes.push_back({"pelagic." + key.path, value});
-            },
-            key.number_or_text());
+    describe(scene, parts_beside_the_view(context.options), attributes);
     return attributes;
 }
 

@@ -52,7 +52,9 @@ class RendererOf final : public Impl {
         : scene_(plan.from->scene),
           options_(options),
           sea_(plan, options.lighting, std::move(sky), watch),
-          grid_options_(projected_grid_options(*plan.from)) {}
+          grid_options_(projected_grid_options(*plan.from)) {
+        grid_options_.has_levels = plan.queries[kQuery].query.pixel_m.size() > 1;
+    }
 
     const Plan& plan() const override { return sea_.plan(); }
     const Sky& sky() const override { return sea_.sky(); }
@@ -169,12 +171,10 @@ class RendererOf final : public Impl {
     void lay_out_grid(const BuildWatch& watch) {
         grid_ = projected_grid(view_, grid_options_);
         stop_if(watch.cancel);
-        first_pixel_m_ = T(0);
-        if (plan().queries[kQuery].query.pixel_m.size() > 1) {
-            const ProjectedGridNeeds own = projected_grid_needs(view_, grid_options_);
-            keep_to_levels(grid_, own);
-            first_pixel_m_ = static_cast<T>(first_level_m(own.finest_pixel_m));
-        }
+        first_pixel_m_ =
+            grid_options_.has_levels
+                ? static_cast<T>(first_level_m(projected_grid_needs(view_, grid_options_).finest_pixel_m))
+                : T(0);
         const std::size_t count = grid_.rest_m.size();
         rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());

@@ -155,9 +155,7 @@ int run(const AccuracyArguments& arguments) {
 }  // namespace
 
 Verb add_accuracy(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("accuracy", help::kAccuracy);
-    command->group(help::kVerbs);
-    command->footer(help::kAccuracyFooter);
+    CLI::App* command = program.add_subcommand("accuracy", help::kAccuracy)->footer(help::kAccuracyFooter);
     auto arguments = std::make_shared<AccuracyArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kAccuracyShot)->type_name("");
     command->add_option("--out", arguments->out, help::kAccuracyOut)->type_name("DIR");

@@ -82,9 +82,7 @@ int run(const RunArguments& arguments) {
 }  // namespace
 
 Verb add_bake(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("bake", help::kBake);
-    command->group(help::kVerbs);
-    command->footer(help::kBakeFooter);
+    CLI::App* command = program.add_subcommand("bake", help::kBake)->footer(help::kBakeFooter);
     auto arguments = std::make_shared<RunArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");

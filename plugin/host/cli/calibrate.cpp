@@ -47,9 +47,7 @@ int run(const std::string& threads) {
 }  // namespace
 
 Verb add_calibrate(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("calibrate", help::kCalibrate);
-    command->group(help::kVerbs);
-    command->footer(help::kCalibrateFooter);
+    CLI::App* command = program.add_subcommand("calibrate", help::kCalibrate)->footer(help::kCalibrateFooter);
     auto threads = std::make_shared<std::string>();
     add_threads(*command, *threads, help::kThreads);
     return {command, [threads] { return run(*threads); }};

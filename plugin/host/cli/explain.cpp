@@ -147,9 +147,7 @@ void print_memory(const Scene& scene, const RenderOptions& options, const Plan& 
 }  // namespace
 
 Verb add_explain(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("explain", help::kExplain);
-    command->group(help::kVerbs);
-    command->footer(help::kExplainFooter);
+    CLI::App* command = program.add_subcommand("explain", help::kExplain)->footer(help::kExplainFooter);
     auto arguments = std::make_shared<ExplainArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);

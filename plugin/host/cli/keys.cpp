@@ -9,9 +9,7 @@
 namespace pelagic::cli {
 
 Verb add_keys(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("keys", help::kKeys);
-    command->group(help::kVerbs);
-    command->footer(help::kKeysFooter);
+    CLI::App* command = program.add_subcommand("keys", help::kKeys)->footer(help::kKeysFooter);
     return {command, [] {
                 std::cout << describe_keys() << std::flush;
                 return kDone;

@@ -9,7 +9,6 @@ namespace pelagic::cli {
 
 Verb add_preview(CLI::App& program) {
     CLI::App* command = program.add_subcommand("preview", help::kNoPreview);
-    command->group(help::kVerbs);
     command->allow_extras();  // whatever it is asked for, the answer is the same
     return {command, [] {
                 std::cerr << "pelagic: " << help::kNoPreview << '\n';

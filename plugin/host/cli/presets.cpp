@@ -48,9 +48,7 @@ int print_one(const std::string& name) {
 }  // namespace
 
 Verb add_presets(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("presets", help::kPresets);
-    command->group(help::kVerbs);
-    command->footer(help::kPresetsFooter);
+    CLI::App* command = program.add_subcommand("presets", help::kPresets)->footer(help::kPresetsFooter);
     auto name = std::make_shared<std::string>();
     command->add_option("NAME", *name, help::kPresetName)->type_name("");
     return {command, [name] {

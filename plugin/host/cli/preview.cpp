@@ -145,9 +145,7 @@ int run(const PreviewArguments& arguments) {
 }  // namespace
 
 Verb add_preview(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("preview", help::kPreview);
-    command->group(help::kVerbs);
-    command->footer(help::kPreviewFooter);
+    CLI::App* command = program.add_subcommand("preview", help::kPreview)->footer(help::kPreviewFooter);
     auto arguments = std::make_shared<PreviewArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* offscreen =

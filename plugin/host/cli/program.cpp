@@ -120,6 +120,7 @@ int run(int argc, const char* const* argv) {
                                   add_calibrate(program)};
 
     if (argc < 2) return usage_error("a verb is missing", "pelagic");
+    for (const Verb& verb : verbs) verb.command->group(help::kVerbs);
     if (const std::string problem = refuse_verb(argc, argv, verbs); !problem.empty())
         return usage_error(problem, "pelagic");
     try {

@@ -150,9 +150,7 @@ int run(const RenderArguments& arguments) {
 }  // namespace
 
 Verb add_render(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("render", help::kRender);
-    command->group(help::kVerbs);
-    command->footer(help::kRenderFooter);
+    CLI::App* command = program.add_subcommand("render", help::kRender)->footer(help::kRenderFooter);
     auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");

@@ -45,9 +45,7 @@ std::string summary(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 Verb add_validate(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("validate", help::kValidate);
-    command->group(help::kVerbs);
-    command->footer(help::kValidateFooter);
+    CLI::App* command = program.add_subcommand("validate", help::kValidate)->footer(help::kValidateFooter);
     auto files = std::make_shared<std::vector<std::string>>();
     command->add_option("SHOT.toml", *files, help::kShots)->required()->type_name("");
     return {command, [files] {

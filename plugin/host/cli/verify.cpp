@@ -77,9 +77,7 @@ int run(const VerifyArguments& arguments) {
 }  // namespace
 
 Verb add_verify(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("verify", help::kVerify);
-    command->group(help::kVerbs);
-    command->footer(help::kVerifyFooter);
+    CLI::App* command = program.add_subcommand("verify", help::kVerify)->footer(help::kVerifyFooter);
     auto arguments = std::make_shared<VerifyArguments>();
     command->add_option("DIR", arguments->folders, help::kFolders)->required()->type_name("");
     add_threads(*command, arguments->threads, help::kVerifyThreads);

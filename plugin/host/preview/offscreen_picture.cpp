@@ -151,7 +151,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
 
     const auto prepared = prepare(planned.scene);
     const View view = view_at(planned.scene.camera, frame);
-    const ProjectedGridOptions options = projected_grid_options(*prepared);
+    ProjectedGridOptions options = projected_grid_options(*prepared);
     const ProjectedGridNeeds needs = projected_grid_needs(view, options);
     const auto plan_for = [&](ProductSet wanted, double finest_pixel_m) {
         const Query query = view_query(*prepared, {.products = wanted,
@@ -168,11 +168,10 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     add_sea(first, of_points, threads);
     first.add("the camera's grid of points", points_of(needs.size) * kPointBytes, smaller());
     require_memory(first, limit, run, "at least");
+    options.has_levels = of_points.queries.front().query.cell_m.size() > 1;
     planned.grid = projected_grid(view, options);
-    const bool has_levels = of_points.queries.front().query.cell_m.size() > 1;
-    if (has_levels) keep_to_levels(planned.grid, needs);
     double finest_pixel_m = needs.finest_pixel_m;
-    if (has_levels) {
+    if (options.has_levels) {
         const auto sea = std::make_shared<const Sea<float>>(of_points);
         const double in_view_m = finest_pixel_in_view(
             view, planned.grid, positions_of(sea, planned.scene.shot.time_s(frame), planned.grid));

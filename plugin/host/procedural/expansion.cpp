@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/surface/earth.h"
-#include "core/surface/footprint_levels.h"
 
 namespace pelagic::procedural {
 namespace {
@@ -19,11 +18,9 @@ constexpr double kCoarsestCell_px = 8.0;  // as those of our own pictures
 
 Expansion expansion_with(const ShotFrame& frame, const View& view, const ExpansionChoice& choice,
                          double cell_px) {
-    Expansion expansion{
-        .view = view, .options = grid_options(frame, cell_px), .needs = {}, .triangles = choice.triangles};
+    Expansion expansion{.view = view, .options = grid_options(frame, cell_px), .triangles = choice.triangles};
     expansion.options.curvature_per_m = choice.on_earth ? kEarthCurvature_per_m : 0.0;
-    expansion.needs = projected_grid_needs(view, expansion.options);
-    expansion.options.size = expansion.needs.size;
+    expansion.options.size = projected_grid_needs(view, expansion.options).size;
     return expansion;
 }
 
@@ -65,13 +62,6 @@ Samples samples_of(const ProjectedGrid& grid, std::size_t count) {
 
 }  // namespace
 
-ProjectedGrid grid_of(const ShotFrame& frame, const Expansion& expansion) {
-    ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
-    // Trains need no levels: they use each point's own footprints.
-    if (frame.shot().query().cell_m.size() > 1) keep_to_levels(grid, expansion.needs);
-    return grid;
-}
-
 Points<float> points_of(const ProjectedGrid& grid) {
     return {.origin_m = grid.origin_m,
             .count = grid.rest_m.size(),
@@ -84,7 +74,7 @@ Points<float> points_of(const ProjectedGrid& grid) {
 
 double mesh_error_px(const ShotFrame& frame, const Expansion& expansion) {
     constexpr std::size_t kSamples = 32768;
-    const ProjectedGrid grid = grid_of(frame, expansion);
+    const ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
     const Samples samples = samples_of(grid, kSamples);
     std::vector<glm::vec3> corner_m(samples.rest_m.size()), exact_m(kSamples), normal(kSamples);
     Results<float> corners, exact;

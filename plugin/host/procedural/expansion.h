@@ -20,13 +20,11 @@ struct ExpansionChoice {
 struct Expansion {
     View view;
     ProjectedGridOptions options;
-    ProjectedGridNeeds needs;
     bool triangles = false;
 };
 
 // In the frame's arena.
 Expansion expansion_of(const ShotFrame& frame, const View& view, const ExpansionChoice& choice);
-ProjectedGrid grid_of(const ShotFrame& frame, const Expansion& expansion);
 Points<float> points_of(const ProjectedGrid& grid);
 
 // The distance of the mesh's faces from the surface of the finest cells, along its normal, in pixels there: 95 % of

@@ -36,13 +36,10 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
     if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
         ProjectedGridOptions grid = projected_grid_options(*prepared);
         grid.cell_px = kCell_px;
-        ProjectedGridNeeds needs;
-        bool is_first = true;
-        for (const int frame : representative_frames(scene, 16)) {
-            const ProjectedGridNeeds own = projected_grid_needs(view_at(scene.camera, frame), grid);
-            needs = is_first ? own : together(needs, own);
-            is_first = false;
-        }
+        std::vector<View> views;
+        for (const int frame : representative_frames(scene, 16))
+            views.push_back(view_at(scene.camera, frame));
+        const ProjectedGridNeeds needs = projected_grid_needs(views, grid);
         if (!(cell_m > 0.0)) cell_m = needs.finest_cell_m;
         if (!(pixel_m > 0.0)) pixel_m = needs.finest_pixel_m;
     }
@@ -294,6 +291,7 @@ ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px) {
     ProjectedGridOptions options = projected_grid_options(*frame.shot().sea->plan().from);
     options.cell_px = cell_px;
     options.bounds = frame.everywhere();
+    options.has_levels = frame.shot().query().cell_m.size() > 1;
     return options;
 }
 

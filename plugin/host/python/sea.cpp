@@ -86,9 +86,7 @@ Query plain_query(const Scene& scene, const SeaRequest& request) {
 
 // The levels of footprints that the views' projected grids need.
 Query query_of_views(const PreparedScene& prepared, const SeaRequest& request, ProductSet products) {
-    const ProjectedGridOptions options = projected_grid_options(prepared);
-    ProjectedGridNeeds needs = projected_grid_needs(request.views.front(), options);
-    for (const View& view : request.views) needs = together(needs, projected_grid_needs(view, options));
+    const ProjectedGridNeeds needs = projected_grid_needs(request.views, projected_grid_options(prepared));
     return view_query(prepared,
                       {.products = products,
                        .finest_cell_m = needs.finest_cell_m,

@@ -126,11 +126,8 @@ ProjectedGridOptions options_of(const PythonSea& sea) {
 PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<std::array<int, 2>>& size) {
     ProjectedGridOptions options = options_of(sea);
     options.size = checked_size(size);
-    ProjectedGrid grid = beside_others([view, options, has_levels = sea.query().cell_m.size() > 1] {
-        ProjectedGrid made = projected_grid(view, options);
-        if (has_levels) keep_to_levels(made, projected_grid_needs(view, options));
-        return made;
-    });
+    options.has_levels = sea.query().cell_m.size() > 1;
+    ProjectedGrid grid = beside_others([view, options] { return projected_grid(view, options); });
     return {.columns = grid.columns,
             .rows = grid.rows,
             .origin_m = grid.origin_m,

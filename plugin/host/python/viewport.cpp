@@ -282,11 +282,11 @@ class GpuSea {
         std::vector<std::array<float, 8>> vertices;
         {
             const OthersMayRun others_may_run;
-            const ProjectedGridNeeds needs = projected_grid_needs(view, options);
-            options.size = {.columns = std::min(needs.size.columns, kMostCells),
-                            .rows = std::min(needs.size.rows, kMostCells)};
+            const ProjectedGridSize size = projected_grid_needs(view, options).size;
+            options.size = {.columns = std::min(size.columns, kMostCells),
+                            .rows = std::min(size.rows, kMostCells)};
+            options.has_levels = packed_.layout()->pixels().footprints_m.size() > 1;
             grid = projected_grid(view, options);
-            if (packed_.layout()->pixels().footprints_m.size() > 1) keep_to_levels(grid, needs);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
                 vertices[i] = {grid.rest_m[i].x,       grid.rest_m[i].y,      grid.cell_m[i],

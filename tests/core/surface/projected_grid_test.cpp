@@ -428,11 +428,10 @@ TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
 // The frames of a shot, each in the common size.
 TEST(ProjectedGrid, TakesAGivenSizeInEveryPose) {
     ProjectedGridOptions options{.bounds = {.height_m = 2.0, .reach_m = 2.0}, .significant_height_m = 2.0};
-    const View level = view_of({.pitch_deg = 0.0}), down = view_of({.pitch_deg = -80.0});
-    const ProjectedGridNeeds needs =
-        together(projected_grid_needs(level, options), projected_grid_needs(down, options));
+    const std::array views{view_of({.pitch_deg = 0.0}), view_of({.pitch_deg = -80.0})};
+    const ProjectedGridNeeds needs = projected_grid_needs(views, options);
     options.size = needs.size;
-    for (const View& view : {level, down}) {
+    for (const View& view : views) {
         const ProjectedGrid grid = projected_grid(view, options);
         EXPECT_EQ((ProjectedGridSize{grid.columns, grid.rows}), needs.size);
         EXPECT_EQ(grid.rest_m.size(), points_of(needs.size));

@@ -115,7 +115,8 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
     const Plan plan = plan_bake(scene);
     const auto sequence = make_sequence(plan);
     Frame<float> frame(std::make_shared<const Sea<float>>(plan));
-    const ProjectedGridOptions options = projected_grid_options(*prepare(scene));
+    ProjectedGridOptions options = projected_grid_options(*prepare(scene));
+    options.has_levels = true;
     const auto alone = [&](int f) { return projected_grid_needs(view_at(scene.camera, f), options).size; };
     ASSERT_FALSE(alone(1) == alone(2));
     EXPECT_EQ(plan.queries.front().query.points, points_of({std::max(alone(1).columns, alone(2).columns),
@@ -125,8 +126,7 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
         sequence->compute(f, slot);
         const Values& mesh = slot.outputs.front()->values;
         const ProjectedGridSize size = alone(f);
-        ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
-        keep_to_levels(grid, projected_grid_needs(view_at(scene.camera, f), options));
+        const ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
         const std::size_t count = points_of(size);
         ASSERT_EQ(grid.rest_m.size(), count);
         for (const std::size_t got :

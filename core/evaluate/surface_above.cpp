@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
@@ -21,6 +22,9 @@ namespace {
 // footprint lets only longer waves through, this part of the footprint: forty cells to the shortest wave. Extremely
 // choppy waves may fold within less. For many places the cells are five times as long: eight to the shortest wave.
 constexpr int kCells = 32;
+// Of these, blocks of so many a side are looked at first by their corners alone: those whose corners, and as far again as
+// these lie apart, don't surround the point have no sheet over it.
+constexpr int kBlock = 4;
 constexpr double kFinestSpacing_m = 0.02, kSpacingOfCell = 0.05, kCoarser = 5.0;
 
 // A place at rest, and where it is displaced to, both relative to the point's place.
@@ -89,23 +93,51 @@ class Surroundings {
 
     // Finds the triangles of a fine mesh of the square that cover the place.
     void sample(const RestRegion& square) {
-        constexpr int kSide = kCells + 1;
-        rest_m_.resize(kSide * kSide);
+        constexpr int kBlocks = kCells / kBlock, kCorners = kBlocks + 1, kSide = kBlock + 1;
         const glm::dvec2 step = (square.max_m - square.min_m) / static_cast<double>(kCells);
-        for (int j = 0; j < kSide; ++j)
-            for (int i = 0; i < kSide; ++i)
-                rest_m_[j * kSide + i] = glm::vec<2, T>(square.min_m + step * glm::dvec2(i, j));
+        const auto add = [&](int i, int j) {
+            rest_m_.push_back(glm::vec<2, T>(square.min_m + step * glm::dvec2(i, j)));
+        };
+        rest_m_.clear();
+        for (int j = 0; j < kCorners; ++j)
+            for (int i = 0; i < kCorners; ++i) add(i * kBlock, j * kBlock);
+        evaluate();
+        rest_m_.clear();
+        for (int j = 0; j < kBlocks; ++j)
+            for (int i = 0; i < kBlocks; ++i)
+                if (may_cover(&position_m_[j * kCorners + i], kCorners))
+                    for (int y = 0; y < kSide; ++y)
+                        for (int x = 0; x < kSide; ++x) add(i * kBlock + x, j * kBlock + y);
+        if (rest_m_.empty()) return;
         evaluate();
         const std::vector<glm::vec<3, T>> corners = position_m_;
         const std::vector<glm::vec<2, T>> rests = rest_m_;
-        const auto node = [&](int i, int j) {
-            return Node{glm::dvec2(rests[j * kSide + i]), glm::dvec3(corners[j * kSide + i])};
-        };
-        for (int j = 0; j < kCells; ++j)
-            for (int i = 0; i < kCells; ++i) {
-                consider(node(i, j), node(i + 1, j), node(i, j + 1));
-                consider(node(i + 1, j + 1), node(i, j + 1), node(i + 1, j));
-            }
+        for (std::size_t first = 0; first < rests.size(); first += kSide * kSide) {
+            const auto node = [&](int i, int j) {
+                const std::size_t at = first + static_cast<std::size_t>(j * kSide + i);
+                return Node{glm::dvec2(rests[at]), glm::dvec3(corners[at])};
+            };
+            for (int j = 0; j < kBlock; ++j)
+                for (int i = 0; i < kBlock; ++i) {
+                    consider(node(i, j), node(i + 1, j), node(i, j + 1));
+                    consider(node(i + 1, j + 1), node(i, j + 1), node(i + 1, j));
+                }
+        }
+    }
+
+    // Whether a sheet over the place, higher than those found, may lie within a block whose first corner this is.
+    bool may_cover(const glm::vec<3, T>* corner, int row) const {
+        const std::array corners{glm::dvec3(corner[0]), glm::dvec3(corner[1]), glm::dvec3(corner[row]),
+                                 glm::dvec3(corner[row + 1])};
+        glm::dvec3 low = corners[0], high = corners[0];
+        for (const glm::dvec3& at : corners) {
+            low = glm::min(low, at);
+            high = glm::max(high, at);
+        }
+        const glm::dvec3 beyond(glm::length(high - low));
+        low -= beyond;
+        high += beyond;
+        return low.x <= 0.0 && high.x >= 0.0 && low.y <= 0.0 && high.y >= 0.0 && high.z > highest_m_;
     }
 
     // A sheet where the triangle covers the place: its height there, and then that of the surface itself.

@@ -22,7 +22,7 @@ std::optional<double> surface_above(const Frame<T>& frame, int query, glm::dvec3
 
 // As find_rest(), but where the surface has folded over itself, the point at rest of its highest sheet there. Round the
 // one that find_rest() finds 24 points say whether the surface has folded nearby, which takes as long as finding it;
-// where it has, all that may be displaced to the place is searched as above, which takes some milliseconds, and for the
+// where it has, all that may be displaced to the place is searched as above, which takes up to a millisecond, and for the
 // first such place of a time some 50 more. Cells are taken as round. `bounds`: those of the prepared query.
 template <class T>
 void find_highest_rest(const BoundsByLevel<T>& bounds, const PreparedQuery<T>& query, const Points<T>& places,

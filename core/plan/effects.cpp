@@ -84,8 +84,8 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .turn_off = [](Scene& scene) { scene.effects.foam_structure = 0.0; }},
     {.effect = Effect::Spray,
      .name = "spray",
-     .is_asked_for = [](const Scene& scene) { return scene.effects.spray; },
-     .why_not = "effects.spray is false",
+     .is_asked_for = [](const Scene& scene) { return scene.effects.spray && scene.effects.spray_gain > 0.0; },
+     .why_not = "effects.spray is false, or effects.spray_gain is 0",
      .depends_on = {Effect::Whitecaps},
      .turn_off =
          [](Scene& scene) {

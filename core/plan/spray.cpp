@@ -45,8 +45,10 @@ SprayLaw spray_law(const Scene& scene) {
 }
 
 std::string spray_warning(const Scene& scene) {
-    if (!is_on(Effect::Spray, scene) || !(scene.sea.wind_speed_mps > 0.0)) return {};
-    if (!(scene.effects.spray_gain > 0.0)) return "effects.spray_gain = 0 leaves no spray";
+    Scene natural = scene;
+    natural.effects.spray_gain = 1.0;
+    if (!is_on(Effect::Spray, natural) || !(scene.sea.wind_speed_mps > 0.0)) return {};
+    if (!is_on(Effect::Spray, scene)) return "effects.spray_gain = 0 leaves no spray";
     constexpr double kSeen = 0.01;  // of the light straight up, on average: over crests it is ten times that
     const double seen_thickness = -std::log1p(-kSeen), thickness = spray_law(scene).optical_thickness();
     if (thickness >= seen_thickness) return {};

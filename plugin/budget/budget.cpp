@@ -286,21 +286,30 @@ std::unique_ptr<Choices> choices(const Scene& scene, Purpose purpose, const Sett
     return std::make_unique<Pictures>(settled.scene, fixed, errors, rates);
 }
 
-// Whether the folder says of its files that they were chosen so.
-std::function<bool(const std::string& chosen)> said_in(const std::filesystem::path& folder, const Shot& shot,
-                                                       Purpose purpose, const std::string& budget) {
+// What the folder says of how its files were chosen.
+struct Said {
+    std::string record{};  // for whatever budget
+    std::string words{};   // for this one, for people; empty: nothing
+    std::function<bool(const std::string& chosen)> is{};
+};
+
+Said said_in(const std::filesystem::path& folder, const Shot& shot, Purpose purpose,
+             const std::string& budget) {
     if (purpose == Purpose::Mesh) {
         const auto record = read_record(folder / (shot.name + ".json"), [](int, const FrameRecord&) {}).shot;
-        return [said = record ? record->chosen : std::string()](const std::string& chosen) {
-            return said == chosen;
-        };
+        Said said{.record = record ? record->chosen : std::string()};
+        if (said.record.starts_with(budget + ": ")) said.words = line_text(said.record);
+        said.is = [words = said.record](const std::string& chosen) { return words == chosen; };
+        return said;
     }
     for (const int frame : frames_in(folder, {shot.name + '.', ".exr"})) {
         const auto file = folder / picture_file(shot, frame, "exr");
         if (files::carries(file, budget + ": "))
-            return [file](const std::string& chosen) { return files::carries(file, chosen); };
+            return {.words = budget + ": … (\"chosen\" in the header of " +
+                             line_text(file.filename().string()) + ')',
+                    .is = [file](const std::string& chosen) { return files::carries(file, chosen); }};
     }
-    return [](const std::string&) { return false; };
+    return {};
 }
 
 // Where files in `folder` (null: none) say what was chosen for this budget, that.
@@ -332,12 +341,16 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
              ? "; measured on a small picture, which held about " + bytes_text(settled.measuring_bytes)
              : std::string());
     if (!folder) return settled;
-    const auto is_said = said_in(*folder, scene.shot, purpose, settled.budget);
+    const Said said = said_in(*folder, scene.shot, purpose, settled.budget);
+    settled.before = said.record;
+    if (said.words.empty()) return settled;
     Settled recorded = settled;
+    bool is_known = false;
     for (std::size_t row = 0; row < from->rows; ++row)
         for (std::size_t step = 0; step < from->steps; ++step) {
             from->apply(row, step, recorded);
-            if (!is_said(recorded.chosen())) continue;
+            if (!said.is(recorded.chosen())) continue;
+            is_known = true;
             // Of another shot than today's, perhaps, for which it was enough.
             if (budget.max_error && from->error(row, step) > *budget.max_error) continue;
             take({row, step, from->error(row, step), from->ms(row, step)}, recorded);
@@ -348,6 +361,11 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
             }
             return recorded;
         }
+    if (!is_known)
+        throw std::invalid_argument(
+            "in " + line_text(folder->string()) + " files were made with " + said.words +
+            ", which isn't among what this budget is given today: choose another folder, or "
+            "put plain settings in the budget's place");
     return settled;
 }
 

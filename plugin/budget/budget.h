@@ -53,14 +53,20 @@ struct Settled {
     bool holds = true;  // false: nothing holds the budget, and these settings come nearest
     std::string
         budget{};  // "quality.max_error = 0.05"; empty: nothing was left to choose, and nothing was chosen
-    std::string what{}, settings{};   // "mesh is", "quality.level = \"final\", surface.resolution = 384"
-    std::string text{};               // for people: what was chosen, and why
-    bool is_recorded = false;         // settle_for(): they are what the folder's files say
-    std::string note{};               // settle_for(): where today's choice would be another; otherwise empty
+    std::string what{}, settings{};  // "mesh is", "quality.level = \"final\", surface.resolution = 384"
+    std::string text{};              // for people: what was chosen, and why
+    bool is_recorded = false;        // settle_for(): they are what the folder's files say
+    std::string before{};  // settle_for(): what the folder's record said was chosen, for whatever budget
+    std::string note{};    // settle_for(): where today's choice would be another; otherwise empty
     std::size_t measuring_bytes = 0;  // that measuring the shot held; 0 where nothing was measured
 
     // Of pictures: puts what was chosen into what is ordered.
     void apply(PictureOrder& order) const;
+    // Puts it into the run that settle_for() was asked for.
+    void apply(RunOptions& run) const {
+        run.chosen = chosen();
+        run.chosen_before = before;
+    }
     // What files say of it (RunOptions::chosen): "quality.max_error = 0.05: quality.level = …"
     std::string chosen() const { return budget.empty() ? "" : budget + ": " + settings; }
 };
@@ -76,8 +82,9 @@ Settled settle(const Scene& scene, Purpose purpose, const SettleOptions& with = 
 Settled held(Settled settled, const std::string& or_else = {});
 
 // The settings that hold the budget, for a run into a folder: those that its record, or one of its pictures, says were chosen for the
-// same budget, so that all tasks that fill it agree, unless they err by more than max_error in today's shot; otherwise today's. Throws as settle() and held(), and std::invalid_argument
-// for a part of the shot's frames where the folder says nothing yet.
+// same budget, so that all tasks that fill it agree, unless they err by more than max_error in today's shot; otherwise today's.
+// Throws as settle() and held(), and std::invalid_argument for a part of the shot's frames where the folder says nothing yet, and
+// where what it says is none of what is chosen from today.
 Settled settle_for(const RunOptions& run, const Scene& scene, Purpose purpose, const SettleOptions& with = {},
                    const std::string& or_else = {});
 

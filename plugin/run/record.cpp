@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 #include <sstream>
+#include <stdexcept>
 #include <streambuf>
 #include <system_error>
 #include <thread>
@@ -16,6 +17,7 @@
 
 #include "core/base/build_watch.h"
 #include "core/base/constants.h"
+#include "core/base/text.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/random_tiling.h"
@@ -357,13 +359,28 @@ void Record::set(const std::string& path, const files::FileState& file) {
     shot_["files"][path] = to_json(FileRecord{.bytes = file.bytes, .checksum = file.checksum});
 }
 
-void Record::save(const std::filesystem::path& file, const files::LockWatch& waiting) {
+void Record::refuse_other_choice(const std::filesystem::path& former) const {
+    if (choices_.empty() || written_) return;
+    const auto shot = read_record(former, [](int, const FrameRecord&) {}).shot;
+    if (!shot || shot->chosen.empty() ||
+        std::find(choices_.begin(), choices_.end(), shot->chosen) != choices_.end())
+        return;
+    throw std::invalid_argument("another run into " + line_text(former.parent_path().string()) +
+                                " has begun meanwhile, with other settings (" + line_text(shot->chosen) +
+                                "; here it would be " + choices_.front() +
+                                "): run the same command again, and it takes those");
+}
+
+void Record::save(const std::filesystem::path& file, const files::LockWatch& waiting,
+                  const std::function<void()>& begin) {
     const files::FolderLock lock(file.parent_path(), waiting);
     unlocked_ = lock.problem();
     std::vector<int> found;
     // With a lock that holds, once.
     for (bool is_done = false; !is_done;) {
         const files::FileIdentity former = files::identity_of(file);
+        refuse_other_choice(file);
+        if (begin) begin();
         const bool is_ours = written_ && former == *written_;
         const auto made = files::replace_if_same(
             file, former, [&](const files::ByteSink& sink) { found = write(file, sink); });

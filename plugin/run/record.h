@@ -86,9 +86,11 @@ class Record {
     // the record from now on. whitecap_threshold: without gusts.
     void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold,
                   double residual_coverage);
-    // After describe(): RunOptions::chosen.
-    void set_chosen(const std::string& chosen) {
-        if (!chosen.empty()) shot_["chosen"] = chosen;
+    // After describe(): RunOptions::chosen and chosen_before.
+    void set_chosen(const std::string& chosen, const std::string& before) {
+        if (chosen.empty()) return;
+        shot_["chosen"] = chosen;
+        choices_ = {chosen, before};
     }
     // Whether a frame that an earlier run recorded is of another version of the shot; may be empty.
     void mark_stale(std::function<bool(int, const FrameRecord&)> is_stale) {
@@ -103,7 +105,11 @@ class Record {
     // another run has written it meanwhile. Holds one frame of others at a time, and of ours those that weren't found in the
     // record since they were saved: memory doesn't grow with the shot. Throws files::FileError, and what `waiting` throws;
     // then what was set is kept for the next time.
-    void save(const std::filesystem::path& file, const files::LockWatch& waiting = {});
+    //
+    // The first time it throws std::invalid_argument where the record says that another run has chosen otherwise. `begin`:
+    // what is written, and set, before the record and under its lock; not called where that throws.
+    void save(const std::filesystem::path& file, const files::LockWatch& waiting = {},
+              const std::function<void()>& begin = {});
 
     // The last save() of a run: where other runs write as well, looks whether what was set last is still there some moments
     // later, and saves it again where another one, whose lock was none, has written over it.
@@ -117,9 +123,12 @@ class Record {
     // Returns those of saved_ that `former` has.
     std::vector<int> write(const std::filesystem::path& former,
                            const std::function<void(std::string_view)>& sink) const;
+    void refuse_other_choice(const std::filesystem::path& former) const;
     bool is_all_in(const std::filesystem::path& file) const;
 
     nlohmann::ordered_json shot_;
+    std::vector<std::string>
+        choices_;  // that the record may have when the run begins, beside none; empty: any
     int first_frame_ = 0, last_frame_ = 0;
     std::function<bool(int, const FrameRecord&)> is_stale_;
     std::map<int, FrameRecord> unsaved_;

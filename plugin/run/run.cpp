@@ -280,21 +280,23 @@ class Run {
     // The shot's part, the files that belong to no frame, and the entries of whole frames that list other files as well.
     void begin_record() {
         sequence_->describe(record_);
-        record_.set_chosen(options_.chosen);
+        record_.set_chosen(options_.chosen, options_.chosen_before);
         record_.mark_stale(
             [this](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts_); });
-        sequence_->write_static(named_, [this](const FileJob& file) {
-            stop_if(options_.cancel);
-            static_files_.push_back(file.path);
-            record_.set(file.path, files::write_if_different(options_.out / file.path, file.content));
-        });
+        const auto write_static = [this] {
+            sequence_->write_static(named_, [this](const FileJob& file) {
+                stop_if(options_.cancel);
+                static_files_.push_back(file.path);
+                record_.set(file.path, files::write_if_different(options_.out / file.path, file.content));
+            });
+        };
         static_files_.push_back(report_.record.filename().string());
         for (const FrameJob& job : mended_) {
             FrameRecord mended = job.kept;
             complete(mended, job, parts_);
             record_.set(job.frame, mended);
         }
-        record_.save(report_.record, waiting_);
+        record_.save(report_.record, waiting_, write_static);
     }
 
     void compute(const FrameJob& job, RunSlot& slot) {

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 table=core/plan/effects.cpp
-switches=$(grep -oP 'return scene\.\K[a-z.]+(?=;)' $table | sed 's/\./\\./' | paste -sd'|')
+switches=$(grep -oP 'return scene\.\K[a-z.]+(?=;| &&)' $table | sed 's/\./\\./' | paste -sd'|')
 strengths=$(grep -oP 'scene\.[a-z]+\.\K[a-z_]+(?= > 0)' $table | grep -v '^wind' | paste -sd'|')
 [ -n "$switches" ] && [ -n "$strengths" ]
 found=$(grep -rnE "($switches)\b *([^= ]|==|\$)|\b($strengths) *([<>!=]=|[<>])" core plugin --include='*.h' --include='*.cpp' --include='*.inl' |

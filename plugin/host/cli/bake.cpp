@@ -73,7 +73,7 @@ int run(const RunArguments& arguments) {
                                print_warnings(arguments.shot, scene);
                                const Settled settled = settled_for(options, asked, Purpose::Mesh, session);
                                scene = settled.scene;
-                               options.chosen = settled.chosen();
+                               settled.apply(options);
                                return bake(scene, options);
                            },
                        .report = print_done});

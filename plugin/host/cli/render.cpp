@@ -136,7 +136,7 @@ int run(const RenderArguments& arguments) {
             std::cerr << line_text(arguments.shot) << ": note: " << thin << std::endl;
         const Settled settled = settled_for(watched, order.scene, Purpose::Pictures, session, fixed);
         settled.apply(order);
-        watched.chosen = settled.chosen();
+        settled.apply(watched);
         return render_files(order, watched);
     };
     return run_frames(arguments, options,

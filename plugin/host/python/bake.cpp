@@ -98,7 +98,7 @@ RunReport settled_run(RunOptions options, const Scene& scene, Purpose purpose, c
                                             .max_memory_bytes = options.max_memory_bytes,
                                             .watch = {.progress = {}, .cancel = options.cancel}},
                                            purpose == Purpose::Pictures ? kByName : "");
-        options.chosen = settled.chosen();
+        settled.apply(options);
         RunReport report = work(settled, options);
         report.note = settled.note;
         return report;

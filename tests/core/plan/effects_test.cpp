@@ -21,6 +21,17 @@ Scene with_all() {
     return scene;
 }
 
+// Of all, that one and those on which it depends.
+Scene with_only(Effect effect) {
+    Scene scene = with_all();
+    for (const EffectRow& row : effect_table()) {
+        bool stays = row.effect == effect;
+        for (const Effect on : row_of(effect).depends_on) stays |= on == row.effect;
+        if (!stays) row.turn_off(scene);
+    }
+    return scene;
+}
+
 std::string page_of(const Scene& scene) {
     return explain(plan_bake(scene));
 }
@@ -43,24 +54,41 @@ TEST(Effects, EachIsTurnedOffByItsOwnRow) {
 }
 
 TEST(Effects, AQueryHasWhatThoseThatAreOnAddAndNothingOfTheOthers) {
-    // Whatever others add.
     const auto of = [](const Scene& scene, const Query& query) {
-        return with_effects(scene, query).products &
-               (query.products | foam_products() | products(Product::Displacement));
+        return with_effects(scene, query).products;
     };
     Query picture;
     picture.is_picture = true;
     picture.products = products(Product::Coverage, Product::JacobianMoments, Product::Normal);
-    EXPECT_EQ(of(with_all(), picture), picture.products | foam_products() | products(Product::Displacement));
     Query mesh = picture;
     mesh.is_picture = false;
-    EXPECT_EQ(of(with_all(), mesh), picture.products | foam_products());
     Query tile = mesh;
     tile.only_cascade = 0;
-    EXPECT_EQ(of(with_all(), tile), tile.products);
-    Scene dry = with_all();
-    dry.effects.whitecaps = false;
-    EXPECT_EQ(of(dry, picture), products(Product::Normal));
+    for (const EffectRow& row : effect_table()) {
+        SCOPED_TRACE(row.name);
+        const Scene with = with_only(row.effect);
+        Scene without = with;
+        row.turn_off(without);
+        for (const Query& query : {picture, mesh, tile}) {
+            const ProductSet added = row.adds_to ? row.adds_to(query) : ProductSet();
+            EXPECT_EQ(of(with, query), of(without, query) | (query.products & row.products) | added);
+            EXPECT_EQ(of(without, query) & row.products, ProductSet());
+        }
+    }
+    const Scene living = with_only(Effect::LivingFoam), spray = with_only(Effect::Spray);
+    EXPECT_EQ(of(living, picture), picture.products | foam_products());
+    EXPECT_EQ(of(living, mesh), mesh.products | foam_products());
+    EXPECT_EQ(of(living, tile), tile.products);
+    EXPECT_EQ(of(spray, picture), picture.products | products(Product::Displacement));
+    EXPECT_EQ(of(spray, mesh), mesh.products);
+    EXPECT_EQ(of(with_only(Effect::Gusts), picture), products(Product::Normal));
+}
+
+TEST(Effects, SprayOfNoGainIsNone) {
+    Scene scene = with_all();
+    scene.effects.spray_gain = 0.0;
+    EXPECT_FALSE(is_on(Effect::Spray, scene));
+    EXPECT_NE(page_of(scene).find("\n  no spray: "), std::string::npos);
 }
 
 TEST(Effects, ThePageListsEachWithItsCostOrWhyItIsOff) {

@@ -51,7 +51,10 @@ class FolderOf : public testing::TestWithParam<Purpose> {
     // As hosts do.
     void make(const RunOptions& asked, const Settled& settled) const {
         RunOptions options = asked;
-        options.chosen = settled.chosen();
+        settled.apply(options);
+        make_of(settled, options);
+    }
+    void make_of(const Settled& settled, const RunOptions& options) const {
         if (GetParam() == Purpose::Mesh) {
             bake(settled.scene, options);
         } else {
@@ -99,10 +102,64 @@ TEST_P(FolderOf, KeepsWhatItsFilesSay) {
     EXPECT_EQ(settled(first_).chosen(), "");
 }
 
+// Another version's words, or those of another kind of surface.
+TEST_P(FolderOf, IsRefusedWhereItsWordsAreUnknown) {
+    const Settled begun = settled(whole_);
+    RunOptions options = whole_;
+    options.chosen = begun.budget + ": quality.level = \"dreadful\"";
+    make_of(begun, options);
+    for (const RunOptions& run : {whole_, first_}) {
+        const std::string refused = refusal([&] { settled(run); });
+        for (const std::string& part : {GetParam() == Purpose::Mesh ? options.chosen : "s.0001.exr",
+                                        begun.budget, std::string("choose another folder")})
+            EXPECT_TRUE(has(refused, part)) << refused;
+    }
+    // Of another budget they are no answer.
+    *scene_.quality.frame_ms *= 3.0;
+    EXPECT_FALSE(settled(whole_).is_recorded);
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, FolderOf, testing::Values(Purpose::Mesh, Purpose::Pictures),
                          [](const auto& purpose) {
                              return purpose.param == Purpose::Mesh ? "Bakes" : "Pictures";
                          });
+
+// Two machines settle in an empty folder before either has begun.
+TEST(Budget, OfTwoRunsThatBeginAtOnceIsTheFirstOnes) {
+    const TempFolder folder;
+    RunOptions run;
+    run.out = folder.path() / "s";
+    Scene scene = small_shot();
+    scene.quality.frame_ms = 2.0;
+    const auto settled = [&](double times) {
+        return settle_for(run, scene, Purpose::Mesh, on_machine(times));
+    };
+    const auto make = [&](const Settled& with) {
+        RunOptions options = run;
+        with.apply(options);
+        return bake(with.scene, options);
+    };
+    const Settled fast = settled(1.0), slow = settled(3.0);
+    ASSERT_NE(fast.settings, slow.settings);
+    make(fast);
+    const auto file_state = [&] {
+        return std::pair(read_file(run.out / "s.json"), read_file(run.out / "s.usda"));
+    };
+    const auto before = file_state();
+    const std::string refused = refusal([&] { make(slow); });
+    for (const std::string& part : {fast.chosen(), slow.settings, std::string("run the same command again")})
+        EXPECT_TRUE(has(refused, part)) << refused;
+    EXPECT_EQ(file_state(), before);
+    const Settled again = settled(3.0);
+    EXPECT_EQ(again.settings, fast.settings);
+    EXPECT_EQ(make(again).kept, 3);
+    // Another budget replaces what was chosen, unless another run has done so since.
+    scene.quality.frame_ms = 6.0;
+    const Settled more = settled(1.0), less = settled(3.0);
+    ASSERT_NE(more.settings, less.settings);
+    make(less);
+    EXPECT_TRUE(has(refusal([&] { make(more); }), "has begun meanwhile"));
+}
 
 // The short waves of less wind need finer quads than the folder has.
 TEST(Budget, OfAnErrorIsHeldByANewShotInAnOldFolder) {
@@ -113,7 +170,7 @@ TEST(Budget, OfAnErrorIsHeldByANewShotInAnOldFolder) {
     scene.quality.max_error = 0.1;
     scene.sea.wind_speed_mps = 20.0;
     const Settled strong = settle_for(run, scene, Purpose::Mesh);
-    run.chosen = strong.chosen();
+    strong.apply(run);
     bake(strong.scene, run);
     EXPECT_TRUE(settle_for(run, scene, Purpose::Mesh).is_recorded);
     scene.sea.wind_speed_mps = 6.0;

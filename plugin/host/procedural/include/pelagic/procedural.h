@@ -245,7 +245,7 @@ typedef struct pelagic_water {
  * displaced to the places are found by iteration, to a millimetre but for a few places of a sea that folds much; where the surface has folded over itself its highest sheet counts.
  * footprint_m: about the width of what floats; waves shorter than twice that are left out; 0: the finest there is. `water`: an array as
  * long as the places, each as large as the size of the first says. Each answer depends on its place alone, and is finite; what is no
- * place is refused. Some 10 us a place and, where the surface has folded nearby, some milliseconds. */
+ * place is refused. Some 10 us a place and, where the surface has folded nearby, up to a millisecond. */
 PELAGIC_API pelagic_status pelagic_water_at(const pelagic_frame* frame, const double* places_m, size_t count,
                                             double footprint_m, pelagic_water* water, pelagic_error* error);
 

@@ -8,8 +8,8 @@
 
 #include "core/plan/choppiness.h"
 #include "core/plan/filter.h"
-#include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

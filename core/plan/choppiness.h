@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/scene/scene.h"
 #include "core/spectrum/directional_spectrum.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -10,7 +10,7 @@
 #include "core/plan/products.h"
 #include "core/plan/query.h"
 #include "core/scene/keys.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

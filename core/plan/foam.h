@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/plan/query.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <glm/vec2.hpp>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -22,8 +22,8 @@
 #include "core/plan/products.h"
 #include "core/plan/query.h"
 #include "core/plan/trains.h"
-#include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

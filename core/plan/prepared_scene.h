@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/plan/extent.h"
-#include "core/scene/scene.h"
 #include "core/spectrum/directional_spectrum.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

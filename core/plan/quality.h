@@ -5,7 +5,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -2,7 +2,7 @@
 // (plugin/budget), or leaves it out where it asks for points of its own; nothing that is planned has one.
 #pragma once
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

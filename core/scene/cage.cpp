@@ -1,4 +1,4 @@
-#include "core/scene/cage.h"
+#include "pelagic/cage.h"
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/scene/keys.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

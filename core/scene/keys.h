@@ -20,7 +20,7 @@
 
 #include "core/scene/limits.h"
 #include "core/scene/problem.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

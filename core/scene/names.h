@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

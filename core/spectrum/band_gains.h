@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/scene.h"
 #include "core/spectrum/dispersion.h"
 #include "core/spectrum/wave_system.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

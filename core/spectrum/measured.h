@@ -18,8 +18,8 @@
 
 #include <vector>
 
-#include "core/scene/scene.h"
 #include "core/spectrum/angular.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -13,8 +13,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/scene/scene.h"
 #include "core/spectrum/angular.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/scene/scene.h"
 #include "core/spectrum/angular.h"
 #include "core/spectrum/band_gains.h"
 #include "core/spectrum/cosine.h"
@@ -25,6 +24,7 @@
 #include "core/spectrum/swell.h"
 #include "core/spectrum/tma.h"
 #include "core/spectrum/wave_point.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/cage.h"
 #include "core/surface/faces.h"
+#include "pelagic/cage.h"
 
 namespace pelagic {
 

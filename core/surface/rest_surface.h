@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "core/scene/keys.h"
-#include "core/scene/scene.h"
 #include "core/surface/extent.h"
 #include "core/surface/faces.h"
 #include "core/surface/fitted_cage.h"
 #include "core/surface/view.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -16,10 +16,10 @@
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
 #include "core/plan/trains.h"
-#include "core/scene/scene.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/waves/realisation.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -16,8 +16,8 @@
 
 #include "core/base/constants.h"
 #include "core/base/number.h"
-#include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

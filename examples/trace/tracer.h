@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/render/render.h"
 #include "scene.h"
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/base/build_watch.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

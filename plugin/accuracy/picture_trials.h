@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/lighting/sky.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/accuracy/accuracy.h"
 #include "plugin/render/render.h"
 

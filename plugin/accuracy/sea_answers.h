@@ -12,9 +12,9 @@
 #include "core/evaluate/evaluate.h"
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

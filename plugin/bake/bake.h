@@ -10,7 +10,7 @@
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/run/run.h"
 
 namespace pelagic {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/bake/output_part.h"
 
 namespace pelagic {

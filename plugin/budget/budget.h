@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/build_watch.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/budget/cost.h"
 #include "plugin/render/render_files.h"
 #include "plugin/run/run.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/build_watch.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/lighting/sky.h"
-#include "core/scene/scene.h"
 #include "core/surface/view.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -8,7 +8,7 @@
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "core/scene/problem.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/format/exr/exr.h"
 
 namespace pelagic {

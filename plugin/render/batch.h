@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/lighting/lighting.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
 

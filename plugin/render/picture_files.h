@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {

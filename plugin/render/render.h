@@ -25,8 +25,8 @@
 #include "core/lighting/sky.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
 #include "core/waves/sea.h"
+#include "pelagic/scene.h"
 #include "plugin/render/layers.h"
 
 namespace pelagic {

@@ -2,7 +2,7 @@
 // themselves what they were made of: plugin/run keeps those that are as they would be made now.
 #pragma once
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/render/render.h"
 #include "plugin/run/run.h"
 

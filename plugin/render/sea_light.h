@@ -19,9 +19,9 @@
 #include "core/lighting/spray.h"
 #include "core/lighting/water.h"
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
 #include "core/waves/frame.h"
+#include "pelagic/scene.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/run/part.h"
 
 namespace pelagic {

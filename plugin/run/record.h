@@ -17,8 +17,8 @@
 
 #include "core/base/instruction_set.h"
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
+#include "pelagic/scene.h"
 #include "plugin/files/files.h"
 #include "plugin/run/spray_record.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/run/pipeline.h"
 
 namespace pelagic {

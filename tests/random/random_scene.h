@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/scene/keys.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/scene/cage.h"
+#include "pelagic/cage.h"
 
 namespace pelagic {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

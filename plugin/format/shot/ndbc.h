@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

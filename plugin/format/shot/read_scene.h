@@ -3,7 +3,7 @@
 
 #include <toml++/toml.h>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/format/shot/reader.h"
 
 namespace pelagic {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/scene/problem.h"
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 

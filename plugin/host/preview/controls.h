@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/host/preview/sea_renderer.h"
 
 namespace pelagic {

@@ -16,10 +16,10 @@
 
 #include "core/lighting/spray.h"
 #include "core/plan/memory.h"
-#include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/sea.h"
+#include "pelagic/scene.h"
 #include "plugin/host/gpu/live_worker.h"
 #include "plugin/host/preview/sea_renderer.h"
 

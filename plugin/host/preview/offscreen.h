@@ -9,9 +9,9 @@
 #include "core/lighting/lighting.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
-#include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
 #include "core/waves/sea.h"
+#include "pelagic/scene.h"
 #include "plugin/host/preview/sea_renderer.h"
 #include "plugin/render/render.h"
 

@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 #include "plugin/host/preview/sea_renderer.h"
 
 namespace pelagic {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic::python {
 

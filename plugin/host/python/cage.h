@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/scene/cage.h"
+#include "pelagic/cage.h"
 
 namespace pelagic::python {
 

@@ -12,10 +12,10 @@
 #include <optional>
 #include <thread>
 
-#include "core/scene/cage.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
+#include "pelagic/cage.h"
 #include "tests/core/waves/samples.h"
 
 namespace pelagic {

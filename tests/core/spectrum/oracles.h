@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "pelagic/scene.h"
 
 namespace pelagic::oracle {
 

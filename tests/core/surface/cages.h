@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/cage.h"
+#include "pelagic/cage.h"
 
 namespace pelagic::test {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/cage.h"
+#include "pelagic/cage.h"
 #include "plugin/accuracy/report.h"
 
 namespace pelagic {

@@ -14,8 +14,8 @@
 
 #include "core/scene/budget.h"
 #include "core/scene/keys.h"
-#include "core/scene/scene.h"
 #include "core/scene/validate.h"
+#include "pelagic/scene.h"
 #include "plugin/budget/budget.h"
 #include "plugin/format/shot/ndbc.h"
 #include "tests/core/scene/key_samples.h"

@@ -1,5 +1,5 @@
-// What evaluate() gives at a point, described once: everything that lists products iterates this table. A new
-// product is an enumerator, a row and the formula in core/evaluate/kernels.cpp.
+// What evaluate() gives at a point, described once: everything that lists products iterates this table. How to add
+// one: core/README.md.
 #pragma once
 
 #include <array>

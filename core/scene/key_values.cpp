@@ -13,6 +13,7 @@ namespace {
 constexpr std::array<std::string_view, kKeyParts> kKeyPartWords{
     "name", "range", "clock", "waves",   "foam", "gusts", "surface", "cage",  "grid",
     "view", "light", "water", "quality", "mesh", "maps",  "volumes", "spray", "choice"};
+static_assert(!kKeyPartWords.back().empty(), "each part has a word");
 
 constexpr std::array<std::string_view, 11> kTypeWords{"truth",   "integer",   "number",   "text",
                                                       "word",    "point",     "pair",     "words",

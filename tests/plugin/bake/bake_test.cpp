@@ -85,6 +85,24 @@ TEST_F(Bakes, FramesOfAnotherVersionAreReportedAsStale) {
     EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
 }
 
+// A product's row names its attribute; the writer's lists know it as well, or it would be missing in silence.
+TEST_F(Bakes, AMeshHasEachAttributeOfTheProductsThatItAsksFor) {
+    Scene scene = small_scene();
+    scene.shot.last_frame = 1;
+    scene.output.mesh = MeshFormat::Usda;
+    bake_and_read(scene);
+    std::ifstream stream(folder_ / "mesh" / (scene.shot.name + ".0001.usda"));
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const Plan plan = plan_bake(prepare(scene));
+    const ProductSet asked = plan.queries[plan.outputs.front().query].query.products;
+    for (const ProductRow& row : kProductTable)
+        if (asked[index(row.product)] && row.in_meshes) {
+            EXPECT_NE(text.find(std::string(" ") + row.in_meshes + ".timeSamples"), std::string::npos)
+                << row.in_meshes;
+        }
+    EXPECT_EQ(asked.count(), 7u);  // those of a default mesh
+}
+
 // A map of another size leaves the mesh as it is: the frames that weren't asked for are stale all the same.
 TEST_F(Bakes, FramesWithOneStaleOutputAreReported) {
     Scene scene = small_scene();

@@ -270,6 +270,7 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
         except (OSError, ValueError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        context.scene.render.use_lock_interface = True  # in a render frames change on its own thread
         obj = bpy.data.objects.new(bake.name, bpy.data.meshes.new(bake.name))
         context.collection.objects.link(obj)
         obj.pelagic_baked.halvings = _at_most(obj.pelagic_baked.halvings, bake.scene.surface.resolution, EASY_QUADS)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A surface as a Blender mesh, and a frame's buffers in it."""
 
+import threading
 import zlib
 
 import numpy as np
@@ -132,6 +133,15 @@ def attribute(mesh, name, kind):
     return found or mesh.attributes.new(name, kind, "POINT")
 
 
+def _tell(mesh):
+    """Says that the mesh's numbers are others. update() also leaves a note for the window, whose loop reads and frees such notes
+    meanwhile, its interface locked or not: from a render's own thread that ended Blender now and then. There the tag alone does."""
+    if threading.get_ident() == threading.main_thread().ident:
+        mesh.update()
+    else:
+        mesh.update_tag()
+
+
 def put_frame(mesh, arrays):
     """arrays: each product's, contiguous float32. Attributes whose products aren't there are taken away."""
     for name, kind, numbers, product in ATTRIBUTES:
@@ -140,4 +150,4 @@ def put_frame(mesh, arrays):
         elif name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])
     compat.set_positions(mesh, arrays["position"])
-    mesh.update()
+    _tell(mesh)

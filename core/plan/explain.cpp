@@ -96,8 +96,10 @@ std::string cost_text(const Plan& plan, const EffectRow& row) {
     std::vector<Query> queries;
     for (const PlannedQuery& planned : plan.queries)
         queries.push_back(with_effects(from->scene, planned.query));
+    // No effect shapes the surface, but for how far the waves go.
     const Plan without = plan.surface
-                             ? plan_bake(from, representative_frames(from->scene, 64))
+                             ? plan_bake(from, representative_frames(from->scene, 64),
+                                         from->extent == plan.from->extent ? &plan : nullptr)
                              : make_plan(from, queries, {.knobs = plan.knobs, .filter = plan.filter});
     const auto held = [](const Plan& of) {
         return static_cast<double>(of.sea_bytes() + of.frame_bytes() + of.output_bytes() + of.effect_bytes());

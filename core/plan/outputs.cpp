@@ -35,7 +35,7 @@ void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<Ou
             if (at.attribute == attribute) query.products.set(index(at.product));
     if (context.surface.fitted())
         query.products.reset(index(Product::Normal));  // a limit surface has its own
-    const SurfaceNeeds needs = context.surface.needs(context.frames);
+    const SurfaceNeeds needs = context.needs ? *context.needs : context.surface.needs(context.frames);
     if (needs.own_footprints) {
         query = view_query(context.prepared, {.products = query.products,
                                               .finest_cell_m = needs.finest_cell_m,
@@ -47,7 +47,7 @@ void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<Ou
     query.name = "mesh";
     query.points = needs.points;
     query.lattice = needs.lattice;
-    requests.push_back({.row = &row, .surface = &context.surface, .query = std::move(query)});
+    requests.push_back({.row = &row, .needs = needs, .query = std::move(query)});
 }
 
 // Each level of a map leaves more unresolved: the footprints of its mip pyramid, halved sizes rounded down as OpenEXR

@@ -25,17 +25,18 @@ enum class OutputKind { Mesh, Map, Tile, Volume };
 // One output of a scene, and what it asks of the sea.
 struct OutputRequest {
     const OutputRow* row = nullptr;
-    std::optional<MapKind> map{};          // of maps and tiles
-    std::optional<int> cascade{};          // of a tile: which, counting from the largest
-    std::optional<VolumeKind> volume{};    // of volumes
-    const RestSurface* surface = nullptr;  // of the mesh
+    std::optional<MapKind> map{};         // of maps and tiles
+    std::optional<int> cascade{};         // of a tile: which, counting from the largest
+    std::optional<VolumeKind> volume{};   // of volumes
+    std::optional<SurfaceNeeds> needs{};  // of the mesh's surface
     Query query;
 };
 
 struct OutputContext {
     const PreparedScene& prepared;
     const RestSurface& surface;
-    std::span<const int> frames;  // that will be baked
+    std::span<const int> frames;          // that will be baked
+    std::optional<SurfaceNeeds> needs{};  // of the surface, where they are known
 };
 
 // A row here and a part in plugin/bake are all that a kind of output is.

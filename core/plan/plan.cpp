@@ -396,9 +396,12 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     return own;
 }
 
-Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames) {
-    const std::shared_ptr<const RestSurface> surface = make_surface(prepared->scene, prepared->extent);
-    const OutputContext context{.prepared = *prepared, .surface = *surface, .frames = frames};
+Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames, const Plan* like) {
+    const std::shared_ptr<const RestSurface> surface =
+        like ? like->surface : make_surface(prepared->scene, prepared->extent);
+    std::optional<SurfaceNeeds> needs;
+    if (like) needs = like->surface_needs;
+    const OutputContext context{.prepared = *prepared, .surface = *surface, .frames = frames, .needs = needs};
     std::vector<OutputRequest> requests;
     for (const OutputRow& row : output_table()) row.add(row, context, requests);
     std::vector<Query> queries;
@@ -410,9 +413,12 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
                              .cascade = request.cascade,
                              .volume = request.volume,
                              .query = static_cast<int>(queries.size()),
-                             .has_surface = request.surface != nullptr,
+                             .has_surface = request.needs.has_value(),
                              .key_parts = request.row->key_parts};
-        if (output.has_surface) output.key_parts |= surface->key_parts();
+        if (output.has_surface) {
+            needs = request.needs;
+            output.key_parts |= surface->key_parts();
+        }
         for (const VolumeRow& row : volume_table())
             if (output.volume == row.volume) output.key_parts |= row.key_parts;
         for (const EffectRow& row : effect_table())
@@ -423,6 +429,7 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
     Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);
     plan.surface = surface;
+    plan.surface_needs = needs;
     return plan;
 }
 

@@ -115,6 +115,7 @@ struct Plan {
     FieldSet dropped;                    // fields that are zero in this scene, whoever asks: never computed
     std::vector<PlannedOutput> outputs;  // of a bake; each has a query
     std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are
+    std::optional<SurfaceNeeds> surface_needs;   // and what they ask for, where there is a mesh
 
     // Whether modes have horizontal displacements, or a displacement gradient that decides about breaking.
     bool has_gradients() const;
@@ -167,8 +168,9 @@ Plan make_plan(const Scene&, const std::vector<Query>&, const PlanOptions& = {})
 Plan plan_of_foam_level(const Plan&, double cell_m);
 
 // The plan of a bake of these frames: its outputs, in the order of the table, each with its query. The frames decide
-// how fine the levels for the camera's own surfaces are, and nothing about any frame's bits.
-Plan plan_bake(std::shared_ptr<const PreparedScene>, std::span<const int> frames);
+// how fine the levels for the camera's own surfaces are, and nothing about any frame's bits. `like`: a plan of the same frames
+// and of a surface that is the same, and isn't laid out again.
+Plan plan_bake(std::shared_ptr<const PreparedScene>, std::span<const int> frames, const Plan* like = nullptr);
 // Of representative frames (core/surface/rest_surface.h), for estimates of a bake.
 Plan plan_bake(const Scene&);
 

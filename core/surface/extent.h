@@ -11,6 +11,8 @@ struct Extent {
     double reach_m = 0.0;               // of the horizontal displacement, choppiness included
     double significant_height_m = 0.0;  // Hs = 4 √m0
     UnresolvedHeight unresolved{};      // by the length of a mesh's cells
+
+    bool operator==(const Extent&) const = default;
 };
 
 }  // namespace pelagic

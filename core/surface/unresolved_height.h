@@ -14,6 +14,7 @@ struct UnresolvedHeight {
     static constexpr std::size_t kCells = 24;
     // The standard deviation of the waves that cells of cell_m(i) leave unresolved [m]: rising. All 0: a calm.
     std::array<double, kCells> deviation_m{};
+    bool operator==(const UnresolvedHeight&) const = default;
 
     // Powers of two, from 4 mm to 32 km.
     static double cell_m(std::size_t i) { return std::ldexp(1.0, static_cast<int>(i) - 8); }

@@ -8,7 +8,7 @@ from harness import *  # noqa: F403
 
 enable()
 import pelagic
-from pelagic_ocean import ocean, play
+from pelagic_ocean import meshes, ocean, play
 
 scene = bpy.context.scene
 
@@ -222,3 +222,24 @@ with checking("a loop is a loop"):
     assert not np.array_equal(numbers(obj.data), first)
     scene.frame_set(49)
     assert np.abs(numbers(obj.data) - first).max() < 1e-3
+
+with checking("on a render's own thread a frame is tagged, and the window gets no note that its loop may be reading"):
+    class Told:
+        attributes, vertices = {}, type("Vertices", (), {"foreach_set": lambda *_: None})()
+
+        def __init__(self):
+            self.how = []
+
+        def update(self):
+            self.how.append("update")
+
+        def update_tag(self):
+            self.how.append("update_tag")
+
+    for own_thread, how in ((False, "update"), (True, "update_tag")):
+        told = Told()
+        put = threading.Thread(target=meshes.put_frame, args=(told, {"position": np.zeros((1, 3), np.float32)}))
+        put.start() if own_thread else put.run()
+        if own_thread:
+            put.join()
+        assert told.how == [how], told.how

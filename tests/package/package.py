@@ -130,6 +130,11 @@ for option in ("PREVIEW", "PYTHON", "TESTS", "BLENDER_TESTS", "INSTALL"):
     expect(f"PELAGIC_{option}:BOOL=OFF" in cache, f"PELAGIC_{option} is on inside another project")
 for word in ("GLFW", "IMGUI", "EPOXY", "EGL", "GTest", "pybind11", "PELAGIC_BLENDER:", "PELAGIC_CLANG_FORMAT"):
     expect("\n" + word not in cache, f"{word} is looked for inside another project")  # a line's begin: not in help texts
+without = folder / "without_cages"
+said = run(cmake, "-S", CONSUMER, "-B", without, "-G", "Ninja", f"-DPELAGIC_SOURCE={SOURCE}", "-DOPENSUBDIV_INCLUDE_DIR=", "-DOPENSUBDIV_CPU_LIBRARY=")
+expect("without cages" in said, f"nobody says what is left out without OpenSubdiv:\n{said}")
+targets = run("ninja", "-C", without, "-t", "targets", "all")
+expect("libpelagic.so" in targets and "pelagic_accuracy" not in targets, "without OpenSubdiv there is what doesn't link, or no libpelagic")
 commands = json.loads((part / "compile_commands.json").read_text())
 (theirs,) = [c["command"] for c in commands if c["file"].endswith("consumer.cpp")]
 expect(not any(flag in theirs for flag in OWN_FLAGS), f"our rules in their build: {theirs}")

@@ -73,6 +73,22 @@ glm::dvec3 on_limit(const std::vector<glm::vec3>& cage, int per_side, const InQu
     return sum;
 }
 
+// Cells of so many points a side: the cell of each point, and the cells' middles.
+std::size_t cell_of(const SweepPoints& fine, int parts, std::size_t i) {
+    const auto side = static_cast<std::size_t>(fine.per_side), p = static_cast<std::size_t>(parts);
+    return i / side / p * (side / p) + i % side / p;
+}
+SweepPoints cells_of(const SweepPoints& fine, int parts) {
+    const int cells = fine.per_side / parts;
+    SweepPoints at{
+        .rest_m = {}, .per_side = cells, .spacing_m = fine.spacing_m * parts, .time_s = fine.time_s};
+    for (int c = 0; c < cells * cells; ++c)
+        at.rest_m.push_back(
+            fine.rest_m[static_cast<std::size_t>((c / cells * fine.per_side + c % cells) * parts)] +
+            0.5 * (parts - 1) * fine.spacing_m);
+    return at;
+}
+
 // The sea as it is, without any footprint.
 struct ExactSea {
     SweepPoints at;
@@ -91,63 +107,55 @@ std::shared_ptr<const ExactSea> exact_sea(const Scene& shot) {
 
 constexpr int kVertexBytes = 12;
 
-}  // namespace
-
-Trials mesh_spacing(const Scene& shot) {
-    const auto exact = exact_sea(shot);
-    Trials trials;
-    for (const int quads : kQuads) {
-        const SweepPoints at = mesh_points(shot, quads, 0);
-        const auto sea = std::make_shared<SeaAnswers>(shot, products(Product::Position, Product::Normal),
-                                                      at.spacing_m, at);
-        trials.trials.push_back(
-            {.setting = std::to_string(quads) + " quads a side",
-             .is_shots = shot.surface.kind == SurfaceKind::Patch && quads == shot.surface.resolution,
-             .run = [sea] { sea->run(); },
-             .errors =
-                 [=, size_m = shot.surface.size_m] {
-                     const std::vector<glm::dvec3> vertices = sea->vectors(Product::Position);
-                     std::vector<glm::dvec3> drawn;
-                     for (const glm::dvec2& rest_m : exact->at.rest_m)
-                         drawn.push_back(on_mesh(vertices, quads, in_quad(rest_m, size_m, quads)));
-                     return std::vector<double>{rms(drawn, exact->position) / exact->height_m};
-                 },
-             .bytes = at.rest_m.size() * kVertexBytes});
-    }
-    return trials;
-}
-
-Trials fitted_cages(const Scene& shot) {
+// Meshes, or cages' limit surfaces, of the shot's patch. Each run() is a frame of its vertices.
+Trials of_patches(const Scene& shot, bool is_cage) {
     const auto exact = exact_sea(shot);
     Trials trials;
     for (const int quads : kQuads) {
         const FittedCage cage{quads};
-        const SweepPoints at = mesh_points(shot, quads, FittedCage::kMargin);
-        const auto sea = std::make_shared<SeaAnswers>(shot, products(Product::Position), at.spacing_m, at);
+        const SweepPoints at = mesh_points(shot, quads, is_cage ? FittedCage::kMargin : 0);
+        const auto sea = std::make_shared<SeaAnswers>(
+            shot, is_cage ? products(Product::Position) : products(Product::Position, Product::Normal),
+            at.spacing_m, at);
         const auto vertices = std::make_shared<std::vector<glm::vec3>>();
-        trials.trials.push_back({.setting = std::to_string(quads) + " quads a side",
-                                 .is_shots = shot.output.mesh_scheme == MeshScheme::CatmullClark &&
-                                             quads == shot.surface.resolution,
-                                 .run =
-                                     [=] {
-                                         sea->run();
-                                         const std::vector<glm::dvec3> wide = sea->vectors(Product::Position);
-                                         const std::vector<glm::vec3> points(wide.begin(), wide.end());
-                                         cage.fit(points, *vertices);
-                                     },
-                                 .errors =
-                                     [=, size_m = shot.surface.size_m] {
-                                         std::vector<glm::dvec3> drawn;
-                                         for (const glm::dvec2& rest_m : exact->at.rest_m)
-                                             drawn.push_back(on_limit(*vertices, cage.vertices_per_side(),
-                                                                      in_quad(rest_m, size_m, quads)));
-                                         return std::vector<double>{rms(drawn, exact->position) /
-                                                                    exact->height_m};
-                                     },
-                                 .bytes = static_cast<std::size_t>(cage.vertices_per_side()) *
-                                          static_cast<std::size_t>(cage.vertices_per_side()) * kVertexBytes});
+        const int per_side = is_cage ? cage.vertices_per_side() : at.per_side;
+        const bool is_kind = is_cage ? shot.output.mesh_scheme == MeshScheme::CatmullClark
+                                     : shot.surface.kind == SurfaceKind::Patch;
+        trials.trials.push_back(
+            {.setting = std::to_string(quads) + " quads a side",
+             .is_shots = is_kind && quads == shot.surface.resolution,
+             .run =
+                 [=] {
+                     sea->run();
+                     if (!is_cage) return;
+                     const std::vector<glm::dvec3> wide = sea->vectors(Product::Position);
+                     cage.fit(std::vector<glm::vec3>(wide.begin(), wide.end()), *vertices);
+                 },
+             .errors =
+                 [=, size_m = shot.surface.size_m] {
+                     const std::vector<glm::dvec3> mesh = sea->vectors(Product::Position);
+                     std::vector<glm::dvec3> drawn;
+                     for (const glm::dvec2& rest_m : exact->at.rest_m) {
+                         const InQuad in = in_quad(rest_m, size_m, quads);
+                         drawn.push_back(is_cage ? on_limit(*vertices, per_side, in)
+                                                 : on_mesh(mesh, quads, in));
+                     }
+                     return std::vector<double>{rms(drawn, exact->position) / exact->height_m};
+                 },
+             .bytes =
+                 static_cast<std::size_t>(per_side) * static_cast<std::size_t>(per_side) * kVertexBytes});
     }
     return trials;
+}
+
+}  // namespace
+
+Trials mesh_spacing(const Scene& shot) {
+    return of_patches(shot, false);
+}
+
+Trials fitted_cages(const Scene& shot) {
+    return of_patches(shot, true);
 }
 
 namespace {
@@ -205,32 +213,21 @@ Trials mesh_variance(const Scene& shot) {
     Trials trials;
     for (const int cells : {8, 16, 32, kCells}) {
         square.surface.resolution = cells;
-        SweepPoints at = sweep_points(square, cells);
         const int ratio = kCells * kParts / cells;
-        // The middles of the cells that the parts make up.
+        const SweepPoints at = cells_of(fine, ratio);
         std::vector<double> mean(at.rest_m.size(), 0.0), weight(at.rest_m.size(), 0.0);
-        for (int y = 0; y < fine.per_side; ++y)
-            for (int x = 0; x < fine.per_side; ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.per_side) +
-                                      static_cast<std::size_t>(x),
-                                  c = static_cast<std::size_t>(y / ratio) * static_cast<std::size_t>(cells) +
-                                      static_cast<std::size_t>(x / ratio);
-                const double seen = std::max(glm::dot(normal[i], glm::dvec3(patch->to_eye)), 0.0) /
-                                    std::max(normal[i].z, 1e-3);
-                mean[c] += seen * light[i];
-                weight[c] += seen;
-            }
+        for (std::size_t i = 0; i < fine.rest_m.size(); ++i) {
+            const std::size_t c = cell_of(fine, ratio, i);
+            const double seen =
+                std::max(glm::dot(normal[i], glm::dvec3(patch->to_eye)), 0.0) / std::max(normal[i].z, 1e-3);
+            mean[c] += seen * light[i];
+            weight[c] += seen;
+        }
         double all = 0.0;
         for (std::size_t c = 0; c < mean.size(); ++c) {
             mean[c] /= std::max(weight[c], 1e-12);
             all += mean[c] / static_cast<double>(mean.size());
         }
-        for (std::size_t c = 0; c < at.rest_m.size(); ++c)
-            at.rest_m[c] =
-                fine.rest_m[(c / static_cast<std::size_t>(cells) * static_cast<std::size_t>(ratio)) *
-                                static_cast<std::size_t>(fine.per_side) +
-                            c % static_cast<std::size_t>(cells) * static_cast<std::size_t>(ratio)] +
-                0.5 * (ratio - 1) * fine.spacing_m;
         for (const bool with_variance : {true, false}) {
             const auto sea = std::make_shared<SeaAnswers>(square, wanted, at.spacing_m, at);
             const auto seen = std::make_shared<std::vector<double>>();
@@ -323,22 +320,13 @@ Trials whitecap_moments(const Scene& shot) {
     SeaAnswers parts(square, products(Product::Breaking), fine.spacing_m, fine);
     parts.run();
     const std::vector<double> whitecaps = parts.numbers(Product::Breaking);
-    const auto mean = std::make_shared<std::vector<double>>(static_cast<std::size_t>(kCells) * kCells, 0.0);
-    SweepPoints at = fine;
-    at.per_side = kCells;
-    at.spacing_m = fine.spacing_m * kParts;
-    at.rest_m.clear();
+    const SweepPoints at = cells_of(fine, kParts);
+    const auto mean = std::make_shared<std::vector<double>>(at.rest_m.size(), 0.0);
     double all = 0.0;
-    for (int y = 0; y < fine.per_side; ++y)
-        for (int x = 0; x < fine.per_side; ++x) {
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.per_side) +
-                                  static_cast<std::size_t>(x);
-            if (x % kParts == 0 && y % kParts == 0)
-                at.rest_m.push_back(fine.rest_m[i] + 0.5 * (kParts - 1) * fine.spacing_m);
-            (*mean)[static_cast<std::size_t>(y / kParts) * kCells + static_cast<std::size_t>(x / kParts)] +=
-                whitecaps[i] / (kParts * kParts);
-            all += whitecaps[i] / static_cast<double>(whitecaps.size());
-        }
+    for (std::size_t i = 0; i < whitecaps.size(); ++i) {
+        (*mean)[cell_of(fine, kParts, i)] += whitecaps[i] / (kParts * kParts);
+        all += whitecaps[i] / static_cast<double>(whitecaps.size());
+    }
     const Knobs own = make_plan(shot, {}).knobs;
     Trials trials;
     for (const bool third : {true, false}) {

@@ -93,12 +93,6 @@ SweepPoints some_of(const SweepPoints& all, std::size_t most) {
     return some;
 }
 
-std::vector<glm::dvec3> positions_at(const Scene& scene, const SweepPoints& at, const PlanOptions& options) {
-    SeaAnswers sea(scene, products(Product::Position), 0.0, at, options);
-    sea.run();
-    return sea.vectors(Product::Position);
-}
-
 // Relative errors of the mean square slope and of the significant height.
 std::vector<double> moment_errors(const SpectralMoments& resolved, const SpectralMoments& whole) {
     const auto off = [](double is, double should_be) {
@@ -108,13 +102,6 @@ std::vector<double> moment_errors(const SpectralMoments& resolved, const Spectra
             off(resolved.significant_height_m(), whole.significant_height_m())};
 }
 
-// Of a frame of the grid of points: positions, against a reference at some of them.
-struct AgainstSum {
-    SweepPoints all, some;
-    std::vector<glm::dvec3> exact;
-    double height_m;
-};
-
 }  // namespace
 
 Trials cascade_resolution(const Scene& shot) {
@@ -123,31 +110,31 @@ Trials cascade_resolution(const Scene& shot) {
     constexpr int kReference = 4096;
     Scene fine = own;
     fine.waves.cascades.back().resolution = std::max(kReference, own.waves.cascades.back().resolution);
-    const auto at = std::make_shared<AgainstSum>();
-    at->all = sweep_points(own);
-    at->some = some_of(at->all, 64);
-    at->exact = summed_positions(fine, at->some.rest_m, at->all.time_s);
-    const auto prepared = prepare(own);
-    const SpectralMoments whole = moments(prepared->spectrum, 0.0, std::numeric_limits<double>::infinity());
-    at->height_m = std::max(whole.significant_height_m(), 1e-12);
+    const SweepPoints at = sweep_points(own), some = some_of(at, 64);
+    const auto exact =
+        std::make_shared<const std::vector<glm::dvec3>>(summed_positions(fine, some.rest_m, at.time_s));
+    const SpectralMoments whole =
+        moments(prepare(own)->spectrum, 0.0, std::numeric_limits<double>::infinity());
+    const double height_m = std::max(whole.significant_height_m(), 1e-12);
     Trials trials;
     for (const int resolution : {32, 64, 128, 256, 512, 1024, 2048}) {
         Scene scene = own;
         scene.waves.cascades.back().resolution = resolution;
-        const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at->all);
-        trials.trials.push_back(
-            {.setting = std::to_string(resolution) + "²",
-             .is_shots = resolution == own.waves.cascades.back().resolution,
-             .run = [sea] { sea->run(); },
-             .errors =
-                 [=] {
-                     const double rms_m = rms(positions_at(scene, at->some, {}), at->exact);
-                     const SpectralMoments resolved = sea->resolved_moments();
-                     return std::vector<double>{rms_m / at->height_m,
-                                                1.0 - resolved.significant_height_m() / at->height_m,
-                                                whole.mss() > 0.0 ? 1.0 - resolved.mss() / whole.mss() : 0.0};
-                 },
-             .bytes = sea->bytes()});
+        const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at);
+        trials.trials.push_back({.setting = std::to_string(resolution) + "²",
+                                 .is_shots = resolution == own.waves.cascades.back().resolution,
+                                 .run = [sea] { sea->run(); },
+                                 .errors =
+                                     [=] {
+                                         SeaAnswers there(scene, products(Product::Position), 0.0, some);
+                                         there.run();
+                                         const SpectralMoments resolved = sea->resolved_moments();
+                                         return std::vector<double>{
+                                             rms(there.vectors(Product::Position), *exact) / height_m,
+                                             1.0 - resolved.significant_height_m() / height_m,
+                                             whole.mss() > 0.0 ? 1.0 - resolved.mss() / whole.mss() : 0.0};
+                                     },
+                                 .bytes = sea->bytes()});
     }
     return trials;
 }
@@ -191,32 +178,41 @@ Trials cascade_number(const Scene& shot) {
 
 namespace {
 
+// The sea in double precision, read as exactly as it can be.
+struct InDouble {
+    Scene scene;
+    SweepPoints at;
+    std::vector<glm::dvec3> position, normal;
+    double height_m;
+
+    explicit InDouble(Scene of) : scene(std::move(of)), at(sweep_points(scene)) {
+        SeaAnswers exact(scene, kShape, 0.0, at,
+                         {.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true}});
+        exact.run();
+        position = exact.vectors(Product::Position);
+        normal = exact.vectors(Product::Normal);
+        height_m = std::max(exact.significant_height_m(), 1e-12);
+    }
+    std::shared_ptr<SeaAnswers> sea(const Knobs& knobs) const {
+        return std::make_shared<SeaAnswers>(scene, kShape, 0.0, at, PlanOptions{.knobs = knobs});
+    }
+    std::vector<double> errors(const SeaAnswers& of) const {
+        return {rms(of.vectors(Product::Position), position) / height_m,
+                rms(of.vectors(Product::Normal), normal)};
+    }
+};
+
 Trials against_double(const Scene& shot, const std::vector<std::pair<std::string, Knobs>>& settings) {
-    const Scene scene = resolved(shot);
-    const auto at = std::make_shared<AgainstSum>();
-    at->all = sweep_points(scene);
-    at->height_m = 1.0;
-    SeaAnswers exact(scene, kShape, 0.0, at->all,
-                     {.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true}});
-    exact.run();
-    at->exact = exact.vectors(Product::Position);
-    at->height_m = std::max(exact.significant_height_m(), 1e-12);
-    const auto normals = std::make_shared<std::vector<glm::dvec3>>(exact.vectors(Product::Normal));
-    Knobs shots = make_plan(scene, {}).knobs;
+    const auto exact = std::make_shared<const InDouble>(resolved(shot));
+    Knobs shots = make_plan(exact->scene, {}).knobs;
     shots.light_oversampling = Knobs().light_oversampling;  // these points are no picture's
     Trials trials;
     for (const auto& [name, knobs] : settings) {
-        const auto sea =
-            std::make_shared<SeaAnswers>(scene, kShape, 0.0, at->all, PlanOptions{.knobs = knobs});
+        const auto sea = exact->sea(knobs);
         trials.trials.push_back({.setting = name,
                                  .is_shots = knobs == shots,
                                  .run = [sea] { sea->run(); },
-                                 .errors =
-                                     [=] {
-                                         return std::vector<double>{
-                                             rms(sea->vectors(Product::Position), at->exact) / at->height_m,
-                                             rms(sea->vectors(Product::Normal), *normals)};
-                                     },
+                                 .errors = [=] { return exact->errors(*sea); },
                                  .bytes = sea->bytes()});
     }
     return trials;
@@ -285,39 +281,21 @@ class OnlyTarget {
 }  // namespace
 
 Trials instruction_sets(const Scene& shot) {
-    const Scene scene = plain_tiles(shot);
-    const SweepPoints at = sweep_points(scene);
-    const auto exact = std::make_shared<SeaAnswers>(
-        scene, kShape, 0.0, at,
-        PlanOptions{.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true}});
-    exact->run();
-    const auto positions = std::make_shared<std::vector<glm::dvec3>>(exact->vectors(Product::Position));
-    const auto normals = std::make_shared<std::vector<glm::dvec3>>(exact->vectors(Product::Normal));
-    const double height_m = std::max(exact->significant_height_m(), 1e-12);
+    const auto exact = std::make_shared<const InDouble>(plain_tiles(shot));
     const std::string best = instruction_set();
     Trials trials;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        std::shared_ptr<SeaAnswers> sea;
-        std::string name;
-        {
-            const OnlyTarget only(target);
-            name = instruction_set();
-            sea = std::make_shared<SeaAnswers>(
-                scene, kShape, 0.0, at, PlanOptions{.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0}});
-        }
+        const OnlyTarget only(target);
+        const std::string name = instruction_set();
+        const auto sea = exact->sea({.spline_taps = 6, .oversampling = 4.0});
         trials.trials.push_back({.setting = name,
                                  .is_shots = name == best,
                                  .run =
                                      [=] {
-                                         const OnlyTarget only(target);
+                                         const OnlyTarget again(target);
                                          sea->run();
                                      },
-                                 .errors =
-                                     [=] {
-                                         return std::vector<double>{
-                                             rms(sea->vectors(Product::Position), *positions) / height_m,
-                                             rms(sea->vectors(Product::Normal), *normals)};
-                                     }});
+                                 .errors = [=] { return exact->errors(*sea); }});
     }
     return trials;
 }

@@ -85,30 +85,6 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
     }
 }
 
-// Coarser ones as well, and none of a point's answers depends on its neighbours in a chunk.
-TEST(Breaking, APointDependsOnNothingButThePoint) {
-    for (const SeaKind& sea : kSeas) {
-        SCOPED_TRACE(sea.name);
-        Query query = filtered(kFoam | products(Position, Normal, SlopeVariance), 0.0);
-        query.pixel_m = {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
-        const auto frame = frame_of<float>(scene_of(sea), {query}, 4.0);
-        const auto points = random_points<float>(200.0, 200);
-        Where<float> where;
-        for (std::size_t i = 0; i < points.size(); ++i)
-            where.pixel_m.push_back(0.1f * std::exp2(static_cast<float>(i % 7)));
-        const auto together = sample(frame, 0, points, where);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const auto alone = sample<float>(frame, 0, {points[i]},
-                                             {.origin_m = {}, .cell_m = {}, .pixel_m = {where.pixel_m[i]}});
-            ASSERT_EQ(alone.vectors(Product::JacobianMoments)[0],
-                      together.vectors(Product::JacobianMoments)[i])
-                << i;
-            ASSERT_EQ(alone.numbers(Product::Breaking)[0], together.numbers(Product::Breaking)[i]) << i;
-            ASSERT_EQ(alone.vectors(Normal)[0], together.vectors(Normal)[i]) << i;
-        }
-    }
-}
-
 // An ellipse that is longer than what breaks, and finer across.
 TEST(Breaking, LongPixelsHideAlongTheirAxisAlone) {
     for (const SeaKind& sea : {kSeas[0], kSeas[5]}) {

@@ -100,19 +100,6 @@ TEST(Query, RefusesWhatItDoesNotHold) {
     EXPECT_NO_THROW(evaluate(frame, 0, {}, {}));
 }
 
-// A point's answer depends on the point alone: alone or among others.
-TEST(Query, AnswersEachPointByItself) {
-    const auto frame = frame_of<float>(small_sea(), {filtered(all_products(), 1.0)}, 1.0);
-    const auto points = random_points<float>(100.0, 2000);
-    const auto together = sample(frame, 0, points);
-    for (std::size_t i = 0; i < points.size(); i += 191) {
-        const auto alone = sample(frame, 0, {points[i]});
-        EXPECT_EQ(alone.vectors(Position)[0], together.vectors(Position)[i]);
-        EXPECT_EQ(alone.vectors(Normal)[0], together.vectors(Normal)[i]);
-        EXPECT_EQ(alone.numbers(Product::Breaking)[0], together.numbers(Product::Breaking)[i]);
-    }
-}
-
 Query levels(ProductSet wanted) {
     Query query = unfiltered(wanted);
     query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};

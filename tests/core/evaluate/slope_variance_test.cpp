@@ -89,22 +89,6 @@ TEST(SlopeVariance, TurnsWithTheWind) {
     EXPECT_NEAR(between.z / (0.5 * (along.x - along.y)), 1.0, 0.02);
 }
 
-// What is unresolved at rest depends on the footprint alone, not on what else is asked for.
-TEST(SlopeVariance, IsTheSameAskedForAloneOrTogether) {
-    const Scene scene;
-    const std::vector<glm::dvec2> origin{{0.0, 0.0}};
-    const auto of = [&](ProductSet wanted) {
-        const auto frame = frame_of<double>(scene, {filtered(wanted, 0.4)});
-        return sample(frame, 0, origin).vectors(SlopeVarianceAtRest)[0];
-    };
-    const auto alone = of(products(Product::SlopeVarianceAtRest));
-    EXPECT_EQ(alone, of(products(Product::SlopeVarianceAtRest, Product::Normal)));
-    EXPECT_EQ(alone, of(products(Product::SlopeVarianceAtRest, Product::Position)));
-    // And it is not everything: waves of more than 1.6 m show.
-    const auto all = frame_of<double>(scene, {filtered(products(Product::SlopeVarianceAtRest), 1e6)});
-    EXPECT_LT(alone.x, 0.8 * sample(all, 0, origin).vectors(SlopeVarianceAtRest)[0].x);
-}
-
 // A cascade's own tile hides its own band: what the tiles hide adds up to what the sea hides at rest.
 TEST(SlopeVariance, OfTheTilesAddsUp) {
     Scene scene;

@@ -240,65 +240,10 @@ TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
     EXPECT_GT(change / static_cast<double>(points.size()), frame.realisation(0).m0);  // 2 m0 in expectation
 }
 
-TEST(LateTimes, AreAsExactAsEarlyOnes) {
-    Scene scene;
-    scene.waves.cascades = {{150.0, 64}};
-    const auto plan =
-        make_plan(scene, {tile(products(Product::Displacement, Product::Velocity), 0, 150.0, 64)});
-    auto single = frame_of<float>(scene, plan);
-    auto reference = frame_of<double>(scene, plan);
-    const auto points = tile_points<float>(150.0, 64);
-    const auto points_d = tile_points<double>(150.0, 64);
-    for (double t : {0.0, -12.25, 1e7, -1e7, 1e7 + 1.0 / 3.0}) {
-        single.set(t);
-        reference.set(t);
-        const auto modes = modes_of(reference.sea(), 0, t);
-        const auto map = sample(single, 0, points).vectors(Displacement);
-        const auto map_d = sample(reference, 0, points_d).vectors(Displacement);
-        const double hs = 4.0 * std::sqrt(reference.realisation(0).m0);
-        for (std::size_t i = 0; i < points.size(); i += 97) {
-            const double height = direct_height(modes, 150.0, points_d[i]);
-            // Single precision: sums of some hundred large terms, rounded by 6e-8 each. Double: phases of 1e6
-            // … 1e7 cycles are exact to 1e-9 of a cycle.
-            EXPECT_NEAR(map[i].z, height, 1e-5 * hs) << t;
-            EXPECT_NEAR(map_d[i].z, height, 1e-8 * hs) << t;
-        }
-        const double variance = mean_of(map, [](auto d) { return double(d.z) * d.z; });
-        EXPECT_NEAR(variance / single.realisation(0).m0, 1.0, 1e-5) << t;
-        // Opposite waves exchange energy in time: some per cent.
-        EXPECT_NEAR(variance / frame_of<float>(scene, plan).realisation(0).m0, 1.0, 0.2) << t;
-    }
-    EXPECT_THROW(single.set(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
-    EXPECT_THROW(single.set(std::numeric_limits<double>::infinity()), std::invalid_argument);
-}
-
-TEST(FarFromTheOrigin, NothingIsLost) {
-    Scene scene;
-    scene.waves.cascades = {{125.0, 72}, {31.25, 48}};  // both divide 1e6 m exactly
-    scene.waves.tiling = Tiling::Periodic;
-    const auto frame = frame_of<float>(
-        scene,
-        {unfiltered(products(Product::Displacement, Product::Normal, Product::Velocity, Product::Breaking))},
-        2.0);
-    const auto points = random_points<float>(60.0, 400);
-    const auto near = sample(frame, 0, points);
-    const auto far = sample(frame, 0, points, {.origin_m = {1e6, -1e6}, .cell_m = {}, .pixel_m = {}});
-    // An origin apart from the points: the same places, expressed differently (1e6 + 17.25 is exact in
-    // double).
-    auto moved = points;
-    for (auto& point : moved) point -= glm::vec2(17.25f, -8.5f);
-    const auto told =
-        sample(frame, 0, moved, {.origin_m = {1e6 + 17.25, -1e6 - 8.5}, .cell_m = {}, .pixel_m = {}});
-    for (std::size_t i = 0; i < points.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_NEAR(far.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-6);
-            EXPECT_NEAR(far.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-6);
-            EXPECT_NEAR(far.vectors(Velocity)[i][axis], near.vectors(Velocity)[i][axis], 1e-6);
-            // Rounding a position of 30 m to single precision moves it by 2e-6 m; slopes and velocities
-            // change by less than 10 per metre.
-            EXPECT_NEAR(told.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-5);
-            EXPECT_NEAR(told.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-4);
-        }
+TEST(Frames, RefuseATimeThatIsNone) {
+    auto frame = frame_of<float>(Scene(), {unfiltered(products(Product::Displacement))});
+    EXPECT_THROW(frame.set(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+    EXPECT_THROW(frame.set(std::numeric_limits<double>::infinity()), std::invalid_argument);
 }
 
 }  // namespace

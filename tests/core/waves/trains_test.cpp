@@ -402,23 +402,6 @@ TEST(Trains, LoopExactly) {
     EXPECT_EQ(time_within_loop_s(7.25, 0.0), 7.25);
 }
 
-// Against a mantissa of 64 bits, where the products round by 4e8 cycles · 2⁻⁶⁴ = 2e-11.
-TEST(Trains, PhasesAreExactFarAwayAndLate) {
-    const auto trains = trains_of(trochoid(), 0.01);
-    const glm::dvec2 origin_m(1e6 + 0.3, -987654.321);
-    const double t_s = 1e7 + 1.0 / 24.0;
-    const auto phases = phases_at(trains, origin_m, t_s);
-    for (std::size_t i = 0; i < trains.count(); ++i) {
-        const long double exact = static_cast<long double>(trains.start_cycles[i]) +
-                                  static_cast<long double>(trains.cycles_per_s[i]) * t_s -
-                                  static_cast<long double>(trains.kx_cycles_per_m[i]) * origin_m.x -
-                                  static_cast<long double>(trains.ky_cycles_per_m[i]) * origin_m.y;
-        const long double off = exact - static_cast<long double>(phases[i]);
-        EXPECT_LT(std::abs(static_cast<double>(off - std::round(off))), 1e-10);
-        EXPECT_LE(std::abs(phases[i]), 0.5);
-    }
-}
-
 TEST(TrainRealisation, IsThatOfTheTrains) {
     const auto trains = trains_of(trochoid());
     const Realisation all = realisation(trains, {}, {});

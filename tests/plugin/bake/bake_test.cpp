@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -74,15 +73,6 @@ TEST_F(Bakes, FramesOutsideTheShotAreRefused) {
     EXPECT_THROW(bake_and_read(small_scene(), {4}), std::invalid_argument);
     EXPECT_THROW(bake_and_read(small_scene(), {2, 1}), std::invalid_argument);
     EXPECT_FALSE(fs::exists(folder_));
-}
-
-TEST_F(Bakes, FramesOfAnotherVersionAreReportedAsStale) {
-    Scene scene = small_scene();
-    bake_and_read(scene);
-    scene.sea.wind_speed_mps = 5.0;
-    const RunReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
-    EXPECT_EQ(report.kept, 0);
-    EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
 }
 
 // A product's row names its attribute; the writer's lists know it as well, or it would be missing in silence.
@@ -299,37 +289,9 @@ TEST_F(Bakes, AMadeUpBuoysSeaComesBack) {
                          "2024-10-03T06:00:00Z");
 }
 
-// Two shots in one folder leave each other's files alone, and each names the other's.
-TEST_F(Bakes, TwoShotsShareAFolder) {
-    Scene one = small_scene(), two = small_scene();
-    one.output.mesh = two.output.mesh = MeshFormat::None;
-    one.output.maps = two.output.maps = {MapKind::Displacement};
-    one.output.map_resolution = two.output.map_resolution = 8;
-    one.shot.name = "one";
-    two.shot.name = "two";
-    two.shot.seed = 2;
-    const auto baked = [&](const Scene& scene) {
-        return bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
-    };
-    EXPECT_EQ(baked(one).kept, 0);
-    EXPECT_EQ(baked(one).kept, 3);
-    EXPECT_EQ(baked(two).kept, 0);
-    const RunReport again = baked(one);
-    EXPECT_EQ(again.kept, 3);
-    EXPECT_EQ(again.foreign, std::vector<std::string>()) << "the other one has its own record";
-}
-
 std::string bytes_of(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::vector<std::string> frames_in(const fs::path& record) {
-    std::ifstream stream(record);
-    const nlohmann::json json = nlohmann::json::parse(stream);
-    std::vector<std::string> frames;
-    for (const auto& [frame, entry] : json.at("frames").items()) frames.push_back(frame);
-    return frames;
 }
 
 TEST_F(Bakes, MeshesAreInTheFormatThatIsAskedForAndThePagesAreText) {
@@ -368,55 +330,6 @@ TEST_F(Bakes, CratesThatAnUnrecordedRunHasReplacedAreBakedAgain) {
     scene.shot.seed = 1;
     EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 0);
     EXPECT_EQ(bytes_of(folder_ / "mesh/sea.0002.usdc"), first);
-}
-
-TEST_F(Bakes, CancelledInTheMiddleTheRecordHoldsWhatIsWholeAndTheNextRunTheRest) {
-    Scene scene = small_scene();
-    scene.shot.last_frame = 40;
-    scene.output.maps = {MapKind::Displacement};
-    scene.output.map_resolution = 8;
-    std::atomic<bool> cancel{false};
-    int told = 0;
-    const auto stop_at_seven = [&](const RunProgress& progress) {
-        told = progress.done;
-        if (progress.done == 7) cancel = true;
-    };
-    const RunReport report =
-        bake(scene, {.out = folder_, .frames = {}, .progress = stop_at_seven, .cancel = &cancel});
-    EXPECT_TRUE(report.cancelled);
-    EXPECT_EQ(report.done, told);
-    EXPECT_GE(report.done, 7);
-    EXPECT_LE(report.done, 7 + kFramesInFlight) << "nothing new is begun";
-    const std::vector<std::string> recorded = frames_in(report.record);
-    ASSERT_EQ(static_cast<int>(recorded.size()), report.done);
-    for (int frame = 1; frame <= report.done; ++frame)
-        EXPECT_EQ(std::count(recorded.begin(), recorded.end(), std::to_string(frame)), 1) << frame;
-    EXPECT_EQ(time_text(report), "") << "of frames that nobody waited for there is nothing to say";
-    const RunReport rest = bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
-    EXPECT_EQ(rest.kept, report.done);
-    EXPECT_EQ(frames_in(rest.record).size(), 40u);
-}
-
-TEST_F(Bakes, AFileThatCantBeWrittenEndsTheBakeWithAllBeforeItRecordedAndNothingBehind) {
-    Scene scene = small_scene();
-    scene.shot.last_frame = 20;
-    scene.output.mesh = MeshFormat::Usdc;
-    scene.output.maps = {MapKind::Displacement, MapKind::Normal};
-    scene.output.map_resolution = 8;
-    const fs::path in_the_way = folder_ / "maps/sea.normal.0006.exr";
-    fs::create_directories(in_the_way);
-    const RunOptions options{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
-    try {
-        bake(scene, options);
-        ADD_FAILURE() << "no error";
-    } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("normal.0006.exr"), std::string::npos) << error.what();
-    }
-    EXPECT_EQ(frames_in(folder_ / "sea.json"), (std::vector<std::string>{"1", "2", "3", "4", "5"}));
-    EXPECT_FALSE(fs::exists(folder_ / "mesh/sea.0007.usdc"));
-    fs::remove(in_the_way);
-    EXPECT_EQ(bake(scene, options).kept, 5);
-    EXPECT_EQ(frames_in(folder_ / "sea.json").size(), 20u);
 }
 
 TEST(TimeText, SaysWhichStageWasBusyAndWhoWasWaitedFor) {
@@ -459,13 +372,6 @@ TEST_F(Bakes, RecordKeepsEveryOneOfAList) {
     const auto settings = bake_and_read(scene).at("settings");
     EXPECT_EQ(settings.at("sea.swell").size(), 2u);
     EXPECT_EQ(settings.at("sea.wind_speed_mps"), 10);
-}
-
-TEST_F(Bakes, AnotherLensKeepsTheFrames) {
-    Scene scene = small_scene();
-    bake_and_read(scene);
-    scene.camera.fov_deg = 35.0;
-    EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 3);
 }
 
 TEST_F(Bakes, TheBuoysSeaComesBack) {

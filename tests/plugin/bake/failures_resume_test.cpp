@@ -53,51 +53,6 @@ TEST_F(BakeResume, WholeFramesAreKept) {
     expect_as_new();
 }
 
-TEST_F(BakeResume, AMissingOrTruncatedFileIsMadeAgain) {
-    fs::remove(folder() / "out/mesh/small.0002.usda");
-    fs::remove(folder() / "out/maps/small.whitecaps.0004.exr");
-    fs::resize_file(folder() / "out/maps/small.displacement.0006.exr", 200);
-    fs::resize_file(folder() / "out/mesh/small.0007.usda", 0);
-    const Ended ended = bake();
-    EXPECT_EQ(ended.status, 0);
-    EXPECT_NE(ended.out.find("4 frames baked, 4 kept as they were"), std::string::npos) << ended.out;
-    expect_as_new();
-}
-
-TEST_F(BakeResume, AMissingOrTruncatedStageIsMadeAgain) {
-    fs::remove(folder() / "out/small.usda");
-    fs::resize_file(folder() / "out/mesh/small.topology.usda", 10);
-    fs::remove(folder() / "out/mesh/small.manifest.usda");
-    EXPECT_EQ(bake().status, 0);
-    expect_as_new();
-}
-
-TEST_F(BakeResume, ALostOrTornRecordMeansThatEverythingIsMadeAgain) {
-    for (const bool lost : {true, false}) {
-        if (lost) fs::remove(folder() / "out/small.json");
-        if (!lost) fs::resize_file(folder() / "out/small.json", 300);
-        const Ended ended = bake();
-        EXPECT_EQ(ended.status, 0);
-        EXPECT_NE(ended.out.find("8 frames baked"), std::string::npos) << ended.out;
-        expect_as_new();
-    }
-}
-
-TEST_F(BakeResume, AChangedShotIsMadeAgain) {
-    write_shot({.frames = 8, .seed = 2});
-    const Ended ended = bake();
-    EXPECT_EQ(ended.status, 0);
-    EXPECT_NE(ended.out.find("8 frames baked"), std::string::npos) << ended.out;
-    expect_as_new();
-}
-
-TEST_F(BakeResume, AnAddedMapIsMadeForEveryFrame) {
-    write_shot({.frames = 8, .maps = "\"displacement\", \"whitecaps\", \"normal\""});
-    EXPECT_EQ(bake().status, 0);
-    EXPECT_TRUE(fs::exists(folder() / "out/maps/small.normal.0008.exr"));
-    expect_as_new();
-}
-
 TEST_F(BakeResume, AShotThatGrowsKeepsWhatItHas) {
     write_shot({.frames = 10});
     const Ended ended = bake();

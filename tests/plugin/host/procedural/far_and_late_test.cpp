@@ -1,20 +1,14 @@
-// Precision over time and distance through the C interface: what points and rays answer four months after the start and a thousand
-// kilometres from the origin, in wavelengths of the shortest wave.
+// Precision over time and distance of rays through the C interface: four months after the start and a thousand kilometres from the
+// origin, in wavelengths of the shortest wave. Points: tests/core/evaluate/phase_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "core/evaluate/evaluate.h"
-#include "core/evaluate/values.h"
-#include "core/plan/plan.h"
-#include "plugin/format/shot/shot.h"
-#include "plugin/light/light.h"
 #include "tests/plugin/host/procedural/opened.h"
 
 namespace pelagic {
@@ -75,43 +69,6 @@ double shift_m(const std::vector<double>& off_m, const std::vector<glm::vec3>& n
         slopes += (n.x * n.x + n.y * n.y) / (n.z * n.z);
     }
     return std::sqrt(off / slopes);
-}
-
-// Measured: 2.3e-5 at most, of trains.
-TEST(FarAndLate, PointsAreThoseOfDoublePrecision) {
-    const std::string cascades = "[waves]\nchoppiness = 0.0\n",
-                      trains = "[waves]\nchoppiness = 0.0\nmodel = \"trochoid\"\n";
-    for (const std::string& shot : {cascades, trains}) {
-        const SeaHandle sea = opened(shot);
-        const auto prepared = prepare(parse_shot(shot, "shot.toml", check_scene));
-        const Query query = view_query(*prepared, {.products = products(Product::Position),
-                                                   .finest_cell_m = kFinest_m,
-                                                   .finest_pixel_m = kFinest_m});
-        Frame<double> exact(
-            std::make_shared<const Sea<double>>(make_plan(prepared, {query}, {.double_precision = true})));
-        const std::vector<glm::vec2> rest_m = places();
-        const std::vector<glm::dvec2> same(rest_m.begin(), rest_m.end());
-        const Trains<double>& of_trains = exact.sea().trains();
-        const double shortest_m = of_trains.count() > 0 ? of_trains.wavelength_m.back() : kShortest_m;
-        for (const glm::dvec2 origin_m : {glm::dvec2(0.0), glm::dvec2(1e6 + 0.3, -1e6 + 0.07)})
-            for (const double time_s : {0.0, 1e7 + 1.0 / 24.0, -1e7}) {
-                const FrameHandle frame = frame_of(sea, time_s, time_s);
-                const FarAnswers answers = answers_of(frame, origin_m, rest_m);
-                exact.set(time_s);
-                std::vector<glm::dvec3> position(kCount);
-                Results<double> results;
-                results.set(Product::Position, {position.data()});
-                evaluate(exact, 0,
-                         Points<double>{.origin_m = origin_m, .count = kCount, .rest_m = {same.data()}},
-                         results);
-                std::vector<double> off_m;
-                for (std::size_t i = 0; i < kCount; ++i)
-                    off_m.push_back(static_cast<double>(answers.position[i].z) - position[i].z);
-                const double wavelengths = shift_m(off_m, answers.normal) / shortest_m;
-                EXPECT_LE(wavelengths, kMost) << shot << "at " << origin_m.x << " m, " << time_s << " s";
-                EXPECT_GT(wavelengths, 0.0);
-            }
-    }
 }
 
 // Straight down, and as a camera sees the sea. Measured: the same to the bit.

@@ -116,28 +116,6 @@ TEST(Procedural, PointsAreTheQuerys) {
     }
 }
 
-// A value that isn't wanted changes no other one.
-TEST(Procedural, ValuesStandAlone) {
-    const FrameHandle frame = frame_of(open_text(kShot), 0.0, 0.1);
-    const std::vector<glm::vec2> rests = random_rests(300, 50.0f);
-    const std::vector<float> times_s(rests.size(), 0.08f);
-    const Answers all = ask(frame, rests, glm::dvec2(0.0), {}, times_s);
-    pelagic_points points = PELAGIC_INIT(pelagic_points);
-    points.count = rests.size();
-    points.rest_m = &rests[0].x;
-    points.time_s = times_s.data();
-    Answers alone(rests.size());
-    const pelagic_values of_all = alone.values();
-    for (float* pelagic_values::*const wanted :
-         {&pelagic_values::position_m, &pelagic_values::normal, &pelagic_values::velocity_mps,
-          &pelagic_values::slope_variance, &pelagic_values::coverage}) {
-        pelagic_values values = PELAGIC_INIT(pelagic_values);
-        values.*wanted = of_all.*wanted;
-        ASSERT_EQ(pelagic_evaluate(frame.get(), &points, &values, nullptr), PELAGIC_OK);
-    }
-    EXPECT_TRUE(alone == all);
-}
-
 // During the shutter points move as the sea does: linear motion is off by ½ a t², a of the water's.
 TEST(Procedural, PointsMoveWithTheSea) {
     const SeaHandle sea = open_text("[sea]\nwind_speed_mps = 20.0\n" + kShot);

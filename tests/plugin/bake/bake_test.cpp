@@ -83,7 +83,7 @@ TEST_F(Bakes, AMeshHasEachAttributeOfTheProductsThatItAsksFor) {
     bake_and_read(scene);
     std::ifstream stream(folder_ / "mesh" / (scene.shot.name + ".0001.usda"));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const Plan plan = plan_bake(prepare(scene));
+    const Plan plan = plan_bake(scene);
     const ProductSet asked = plan.queries[plan.outputs.front().query].query.products;
     for (const ProductRow& row : kProductTable)
         if (asked[index(row.product)] && row.in_meshes) {

@@ -4,6 +4,7 @@
 import threading
 import zlib
 
+import bpy
 import numpy as np
 
 from . import compat
@@ -135,8 +136,9 @@ def attribute(mesh, name, kind):
 
 def _tell(mesh):
     """Says that the mesh's numbers are others. update() also leaves a note for the window, whose loop reads and frees such notes
-    meanwhile, its interface locked or not: from a render's own thread that ended Blender now and then. There the tag alone does."""
-    if threading.get_ident() == threading.main_thread().ident:
+    meanwhile, its interface locked or not: from a render's own thread that ended Blender 3.4 now and then. There the tag alone does.
+    From 4.0 on update() also drops normals that the evaluated mesh shares, and hasn't been seen to end Blender."""
+    if bpy.app.version >= (4, 0) or threading.get_ident() == threading.main_thread().ident:
         mesh.update()
     else:
         mesh.update_tag()

@@ -73,8 +73,8 @@ class BuiltSea:
         def begin():
             if surface is None:
                 return [pelagic.Sea.begin(scene, products, views=[view])]
-            ladder_m = surface.ladder_m()
-            return [pelagic.Sea.begin(scene, products, cell_m=ladder_m, pixel_m=ladder_m, lattice=surface.lattice)]
+            levels_m = surface.levels_m()
+            return [pelagic.Sea.begin(scene, products, cell_m=levels_m, pixel_m=levels_m, lattice=surface.lattice)]
 
         return Job(key, begin, lambda sea: BuiltSea(sea, surface, scene.surface.size_m), view)
 

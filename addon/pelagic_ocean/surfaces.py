@@ -41,10 +41,10 @@ class Surface:
     def __len__(self):
         return len(self.rest)
 
-    def ladder_m(self):
+    def levels_m(self):
         """Footprints, powers of two apart, for all cells."""
         low, high = float(np.min(self.cell_m)), float(np.max(self.cell_m))
-        return [low * 2**rung for rung in range(math.ceil(math.log2(high / low) - 1e-6) + 1)]
+        return [low * 2**level for level in range(math.ceil(math.log2(high / low) - 1e-6) + 1)]
 
     def rest_3d(self):
         """float32 (n, 3): the points' places in the object's coordinates."""
@@ -129,7 +129,7 @@ def own_mesh(rest, edges, signature):
     cell_m = np.zeros(len(rest), np.float32)
     for end in (0, 1):
         np.maximum.at(cell_m, edges[:, end], lengths)
-    # A vertex without edges is as fine as most others. The rest bounds the ladder.
+    # A vertex without edges is as fine as most others. The rest bounds the levels.
     usual = np.median(cell_m[cell_m > 0]) if cell_m.any() else DEFAULT_CELL_M
     cell_m = np.clip(np.where(cell_m > 0, cell_m, usual), max(cell_m.max(), usual) / FINEST_CELL, None).astype(np.float32)
     height_m = np.ascontiguousarray(rest[:, 2])

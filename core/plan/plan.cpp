@@ -98,7 +98,7 @@ int level_index(Plan& plan, const Level& level) {
 }
 
 // Whether all of the lattice's points read the tile of cell (0, 0), without an offset or blending.
-bool shows_one_copy(const Lattice& lattice, double size_m) {
+bool shows_one_tile(const Lattice& lattice, double size_m) {
     return std::max(-lattice.first_m, lattice.last_m) < kPlainHalf * size_m;
 }
 
@@ -153,7 +153,7 @@ void add_grids(Plan& plan, int cascade_index) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
         const bool is_blended = cascade.has_random_tiling && !at.only_cascade;
-        const bool blends = is_blended && !(at.lattice && shows_one_copy(*at.lattice, cascade.size_m));
+        const bool blends = is_blended && !(at.lattice && shows_one_tile(*at.lattice, cascade.size_m));
         const FieldSet wanted = fields_at(plan, cascade, level, blends);
         // A tile shows the modes that its own nodes can hold; the cascade may have more, for a nearby camera.
         const double resolution =
@@ -193,7 +193,7 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
         // So fine that the tile's offsets are whole nodes.
-        if (nodes && blends) *nodes = std::lcm(*nodes, static_cast<int>(kCopySteps));
+        if (nodes && blends) *nodes = std::lcm(*nodes, static_cast<int>(kTileSteps));
         if (nodes && *nodes >= 2 * radius - 1 &&
             (at.only_cascade || (*nodes <= 2 * grid.resolution && *nodes == transform_size(*nodes)))) {
             // Up to four times the samples of the spline's grid are cheaper than the spline, and without its

@@ -11,7 +11,7 @@
 // out to 0.5 − 0.5 kBlendRamp of L, is the tile as it is.
 //
 // The weights' gradient belongs to what is derived from the sum: ηx = Σ w ηx_c + wx η_c, and likewise Dxx; Dxy = Σ w Dxy_c + wy Dx_c and
-// Dyx = Σ w Dxy_c + wx Dy_c differ. It adds the variance E[|∇w|²] Var η to the slopes', kCopySlopes Var η/L² along each
+// Dyx = Σ w Dxy_c + wx Dy_c differ. It adds the variance E[|∇w|²] Var η to the slopes', kBlendSlopes Var η/L² along each
 // axis.
 #pragma once
 
@@ -30,7 +30,7 @@ using uint = std::uint32_t;  // GLSL's name
 // The part of a cell's half in which nothing blends.
 inline constexpr double kPlainHalf = 0.5 - 0.5 * kBlendRamp;
 // E[w_x²] L², summed over the blended tiles: the mean of θ′² over the plane, 3.0384 / kBlendRamp.
-inline constexpr double kCopySlopes = 3.0383937607 / kBlendRamp;
+inline constexpr double kBlendSlopes = 3.0383937607 / kBlendRamp;
 
 // Along an axis from the points' origin, in cells: places farther away, or that are no number, read the origin's
 // cell.

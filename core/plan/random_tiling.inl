@@ -3,7 +3,7 @@
 
 // The width of the blend from a cell to the next, in cells: half of it lies on either side of the border.
 inline constexpr double kBlendRamp = 0.15;
-inline constexpr double kCopySteps = 1024.0;  // offsets are whole multiples of the tile's size by this
+inline constexpr double kTileSteps = 1024.0;  // offsets are whole multiples of the tile's size by this
 inline constexpr double kEighthTurnTangent = 0.41421356237309504880;  // tan(π/8)
 
 // Two random numbers of a cell (i, j), 0 … 1023: pcg3d of Jarzynski and Olano 2020, "Hash functions for GPU rendering". All
@@ -42,7 +42,7 @@ template <class T>
 inline TileOffset<T> tile_offset(uint key, uint i, uint j) {
     TileBits bits = tile_bits(key, i, j);
     if (i == 0u && j == 0u) bits = TileBits(0u, 0u);
-    return TileOffset<T>(T(bits.x) * T(1.0 / kCopySteps), T(bits.y) * T(1.0 / kCopySteps));
+    return TileOffset<T>(T(bits.x) * T(1.0 / kTileSteps), T(bits.y) * T(1.0 / kTileSteps));
 }
 
 // Along an axis: the weight of the tile of the point's own cell, and of the one beyond the nearer border. Their

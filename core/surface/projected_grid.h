@@ -56,7 +56,7 @@ struct ProjectedGridOptions {
     double curvature_per_m = 0.0;       // of the earth on which the sea lies (earth.h); 0: flat
     // 0: as many as this pose needs (projected_grid_needs). Others, for poses that are to share a topology.
     ProjectedGridSize size{};
-    // Footprints finer than this pose's own first level count as that level (levels.h). So a plan that has finer levels, for
+    // Footprints finer than this pose's own first level count as that level (footprint_levels.h). So a plan that has finer levels, for
     // other poses, gives this one the same bits. Wave trains alone need no levels: they use each point's own footprints.
     bool has_levels = false;
 };

@@ -98,7 +98,7 @@ std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
 double gained_by_blending(const DirectionalSpectrum& spectrum, double size_m, double k_end) {
     const SpectralMoments own = moments(spectrum, kPi / size_m, k_end);
     const double mss = std::max(own.mss(), own.m0 * std::pow(kTwoPi / size_m, 2.0));
-    return mss > 0.0 ? 2.0 * kCopySlopes * own.m0 / (size_m * size_m * mss) : 0.0;
+    return mss > 0.0 ? 2.0 * kBlendSlopes * own.m0 / (size_m * size_m * mss) : 0.0;
 }
 
 // The largest cascade alone: at least kBandModes of the others' waves fit into their tiles, which gain 1.6 % at most. Sizes

@@ -362,10 +362,8 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
             return recorded;
         }
     if (!is_known)
-        throw std::invalid_argument(
-            "in " + line_text(folder->string()) + " files were made with " + said.words +
-            ", which isn't among what this budget is given today: choose another folder, or "
-            "put plain settings in the budget's place");
+        settled.note = "files were made with " + said.words +
+                       ", which isn't among what this budget is given today: they are made anew";
     return settled;
 }
 
@@ -430,6 +428,7 @@ Settled settle_for(const RunOptions& run, const Scene& scene, Purpose purpose, c
         asked > 0 && asked <= std::int64_t{scene.shot.last_frame} - scene.shot.first_frame)
         throw std::invalid_argument(
             found.budget + ": isn't settled yet in " + line_text(run.out.string()) +
+            (found.note.empty() ? "" : " (" + found.note + " by a run of all frames)") +
             ", and other runs that make the rest of the shot's frames may choose otherwise; begin with a run of all frames, or in "
             "its place put " +
             found.settings + (or_else.empty() ? "" : " (" + or_else + ')'));

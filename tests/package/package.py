@@ -134,7 +134,7 @@ without = folder / "without_cages"
 said = run(cmake, "-S", CONSUMER, "-B", without, "-G", "Ninja", f"-DPELAGIC_SOURCE={SOURCE}", "-DOPENSUBDIV_INCLUDE_DIR=", "-DOPENSUBDIV_CPU_LIBRARY=")
 expect("without cages" in said, f"nobody says what is left out without OpenSubdiv:\n{said}")
 targets = run("ninja", "-C", without, "-t", "targets", "all")
-expect("libpelagic.so" in targets and "pelagic_accuracy" not in targets, "without OpenSubdiv there is what doesn't link, or no libpelagic")
+expect("libpelagic.so" in targets and "pelagic_accuracy" not in targets, "without OpenSubdiv there is no libpelagic to build, or what can't be linked")
 commands = json.loads((part / "compile_commands.json").read_text())
 (theirs,) = [c["command"] for c in commands if c["file"].endswith("consumer.cpp")]
 expect(not any(flag in theirs for flag in OWN_FLAGS), f"our rules in their build: {theirs}")

@@ -157,7 +157,7 @@ const std::string kSeaDoc =
     "now.\n"
     "cell_m, pixel_m: footprints [m], of positions and velocities and of everything that comes from "
     "derivatives: waves too short for them are left out, and counted in slope_variance and coverage. A "
-    "number for all points, or a rising levels between whose levels each point's own footprint is blended; 0 "
+    "number for all points, or rising levels, between which each point's own footprint is blended; 0 "
     "filters nothing. Default: the spacing of the scene's patch.\n"
     "lattice: (first_m, spacing_m, last_m) where all points are known to lie at first + i·spacing in x and in y, none beyond "
     "last, seen from the world's origin: sampling may then be free of error. Only with points that do. Without last_m they go "

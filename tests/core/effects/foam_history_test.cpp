@@ -293,7 +293,7 @@ TEST(LivingFoam, WithoutPreparingHoldsTwoTimes) {
     EXPECT_LE(history.held_bytes(), held + held / 8);
 }
 
-// A run that is prepared at each time, over water that is new, unresolved and seen again, back and forth in time and round a loop, and
+// A run that is prepared at each time, over water that is new, hidden and seen again, back and forth in time and round a loop, and
 // cancelled on the way: the foam is that of the time alone, and the history holds no more than its plan says.
 TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
     Scene scene = scene_of(2.0);
@@ -361,7 +361,7 @@ TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
 }
 
 // A wave hides some of the sea from a camera, and shows it again: it needn't begin anew, as long as there is room.
-TEST(LivingFoam, OfPicturesIsKeptWhileItIsUnresolved) {
+TEST(LivingFoam, OfPicturesIsKeptWhileItIsHidden) {
     const auto rest_m = square(50, 0.9);
     Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 2 * rest_m.size();

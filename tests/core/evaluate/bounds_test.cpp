@@ -54,12 +54,12 @@ Scene without_choppiness() {
 
 std::vector<Case> cases() {
     return {{"default sea", Scene(), {0.5}},
-            {"default sea on a levels", Scene(), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0}},
+            {"default sea on several levels", Scene(), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0}},
             {"shallow storm", storm(), {1.0}},
             {"no choppiness", without_choppiness(), {1.0}},
             {"60 trains", trains(60), {0.5}},
             {"400 trains", trains(400), {0.5}},
-            {"trains and a cascade on a levels", trains_and_cascade(), {0.25, 0.5, 1.0, 2.0}}};
+            {"trains and a cascade on several levels", trains_and_cascade(), {0.25, 0.5, 1.0, 2.0}}};
 }
 
 Query query_of(const Case& c) {

@@ -145,7 +145,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
     }
 }
 
-// However little choppiness there is. Where copies of tiles blend, the gradient that a level sea breaks by has no gradient of the
+// However little choppiness there is. Where copies of tiles blend, the displacement gradient that a level sea breaks by has no part of the
 // weights: from choppiness 0 to the least that counts, some of the foam moves there, and the bound is wider.
 TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
     const auto points = random_points<float>(3000.0, 20000);

@@ -25,10 +25,11 @@ struct PreparedCase {
     WaveModel model;
     bool cascades, levels;
 };
-constexpr PreparedCase kCases[] = {{"cascades", WaveModel::Fft, true, false},
-                                   {"cascades on a levels", WaveModel::Fft, true, true},
-                                   {"trains", WaveModel::Trochoid, false, true},
-                                   {"trains and a cascade on a levels", WaveModel::Trochoid, true, true}};
+constexpr PreparedCase kCases[] = {
+    {"cascades", WaveModel::Fft, true, false},
+    {"cascades on several levels", WaveModel::Fft, true, true},
+    {"trains", WaveModel::Trochoid, false, true},
+    {"trains and a cascade on several levels", WaveModel::Trochoid, true, true}};
 
 template <class T>
 Frame<T> prepared_frame(const PreparedCase& c) {

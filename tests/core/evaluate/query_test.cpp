@@ -106,7 +106,7 @@ Query levels(ProductSet wanted) {
     return query;
 }
 
-// On a level the levels is the uniform query of that footprint, to rounding; outside it holds its ends.
+// On one of the levels a query is the uniform query of that footprint, to rounding; outside it holds its ends.
 TEST(Levels, IsTheUniformQueryOnItsLevels) {
     std::vector<Query> queries{levels(all_products())};
     for (double level : {0.5, 1.0, 2.0, 4.0}) queries.push_back(filtered(all_products(), level));

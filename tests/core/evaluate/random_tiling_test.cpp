@@ -166,7 +166,7 @@ TEST(RandomTiling, AreTheSameInSinglePrecision) {
     }
 }
 
-// A point's answer depends on the point alone, to the bit, whichever points are asked with it: on all_levels, for ellipses too.
+// A point's answer depends on the point alone, to the bit, whichever points are asked with it: on several levels, for ellipses too.
 TEST(RandomTiling, AnswerEachPointAloneToTheBit) {
     Query query = unfiltered(products(Position, Normal, Velocity, Product::Breaking));
     query.cell_m = {0.5, 1.0, 2.0, 4.0};
@@ -300,7 +300,7 @@ TEST(RandomTiling, KeepTheVariances) {
     };
     const Variances with = variances(copies), without = variances(one);
     EXPECT_NEAR(with.height / without.height, 1.0, 0.02);
-    const double beyond = 2.0 * kCopySlopes * without.height / (64.0 * 64.0);
+    const double beyond = 2.0 * kBlendSlopes * without.height / (64.0 * 64.0);
     EXPECT_NEAR((with.slope - beyond) / without.slope, 1.0, 0.015);
     EXPECT_LT(beyond / without.slope, 0.005);
 }

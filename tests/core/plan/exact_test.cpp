@@ -340,7 +340,7 @@ void check(const Case& c, const Plan& plan) {
     EXPECT_EQ(plan.transforms_per_frame(), transforms);
     EXPECT_EQ(plan.lines_per_frame(), all_lines);
     EXPECT_EQ(plan.frame_bytes(), frame_bytes);
-    std::size_t ellipses_bytes = 0;  // what ellipses hide, for queries on a levels
+    std::size_t ellipses_bytes = 0;  // what ellipses hide, for queries on several levels
     for (const PlannedQuery& planned : plan.queries)
         if (has_ellipse_table(plan, planned.query))
             ellipses_bytes += (2 * planned.query.pixel_m.size() - 1) * 10 * 24 * 8 * sizeof(float);

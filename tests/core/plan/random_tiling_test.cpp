@@ -54,7 +54,7 @@ TEST(Copies, KnowTheirWeightsGradient) {
 TEST(Copies, HaveKnownOffsets) {
     const auto offset = [](uint key, uint i, uint j) {
         const TileOffset<double> of = tile_offset<double>(key, i, j);
-        return std::pair(of.x * kCopySteps, of.y * kCopySteps);
+        return std::pair(of.x * kTileSteps, of.y * kTileSteps);
     };
     EXPECT_EQ(offset(1u, 0u, 0u), std::pair(0.0, 0.0));
     // pcg3d of (0, 0, 1), (1, 1, 0), (1, 2, 4294967293), by the paper's lines in Python; the upper ten bits.

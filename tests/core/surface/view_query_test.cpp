@@ -100,7 +100,7 @@ TEST(ViewQuery, RunsNoTransformTwice) {
     EXPECT_EQ(plan.cascades[0].grid_of_level[0], plan.cascades[0].grid_of_level[3]);
 }
 
-// On a level the levels equals a plan of that footprint alone, up to rounding.
+// On one of the levels a query equals a plan of that footprint alone, up to rounding.
 TEST(ViewQuery, OnALevelAnswersAsAPlanOfThatFootprintAlone) {
     const Scene scene = scene_of_two_tiles();
     const Query levels = view_query(*prepare(scene));

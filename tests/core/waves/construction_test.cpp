@@ -80,7 +80,7 @@ Scene windy() {
     scene.sea.swell = {{.height_m = 1.0, .period_s = 11.0, .direction_deg = 80.0}};
     return scene;
 }
-// A levels of footprints through all cascades.
+// Levels of footprints through all cascades.
 Query levels() {
     Query query = unfiltered(products(Product::Normal, Product::SlopeVariance));
     query.pixel_m = {0.3, 0.5};

@@ -123,7 +123,7 @@ double gain_of(const Scene& scene) {
     const Sea<double> sea(make_plan(scene, {query}));
     const SpectralMoments& own = sea.statistics(0).resolved.front();
     const double size_m = scene.waves.cascades.front().size_m;
-    return 2.0 * kCopySlopes * own.m0 / (size_m * size_m * own.mss());
+    return 2.0 * kBlendSlopes * own.m0 / (size_m * size_m * own.mss());
 }
 
 // Of any sea and any explicit sizes, where it is more than 5 %, with what it is and a size that helps.

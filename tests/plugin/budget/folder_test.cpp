@@ -103,16 +103,19 @@ TEST_P(FolderOf, KeepsWhatItsFilesSay) {
 }
 
 // Another version's words, or those of another kind of surface.
-TEST_P(FolderOf, IsRefusedWhereItsWordsAreUnknown) {
+TEST_P(FolderOf, IsMadeAnewAndAPartRefusedWhereItsWordsAreUnknown) {
     const Settled begun = settled(whole_);
     RunOptions options = whole_;
     options.chosen = begun.budget + ": quality.level = \"dreadful\"";
     make_of(begun, options);
-    for (const RunOptions& run : {whole_, first_}) {
-        const std::string refused = refusal([&] { settled(run); });
-        for (const std::string& part : {GetParam() == Purpose::Mesh ? options.chosen : "s.0001.exr",
-                                        begun.budget, std::string("choose another folder")})
-            EXPECT_TRUE(has(refused, part)) << refused;
+    const Settled anew = settled(whole_);
+    EXPECT_FALSE(anew.is_recorded);
+    EXPECT_EQ(anew.settings, begun.settings);
+    const std::string refused = refusal([&] { settled(first_); });
+    for (const std::string& part :
+         {GetParam() == Purpose::Mesh ? options.chosen : "s.0001.exr", std::string("made anew")}) {
+        EXPECT_TRUE(has(anew.note, part)) << anew.note;
+        EXPECT_TRUE(has(refused, part)) << refused;
     }
     // Of another budget they are no answer.
     *scene_.quality.frame_ms *= 3.0;

@@ -259,7 +259,7 @@ TEST(QueryOnTheGpu, OfCascadesOfDifferentChoppinessIsEvaluates) {
             compare(scene, picture_query(), {}, 5000);
         }
 }
-// Waves that break are longer or shorter than the pixels, on a level of the levels or between two.
+// Waves that break are longer or shorter than the pixels, on one of the levels or between two.
 TEST(QueryOnTheGpu, OfOtherWavesThatBreakIsEvaluates) {
     for (const double breaking_from_m : {0.3, 7.0})
         for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
@@ -303,7 +303,7 @@ TEST(SeaTables, OfSizesChosenForTheSceneFitEverywhere) {
         }
 }
 
-// A levels's tiles are halves of each other; the driver holds what lies between them as well.
+// The levels' tiles are halves of each other; the driver holds what lies between them as well.
 TEST(SeaLayout, LeavesLittleOfItsTexturesEmpty) {
     struct Case {
         double wind_mps, finest_m, least;  // least: of small textures, which have less to choose from, less

@@ -16,6 +16,7 @@ TEST(ShaderFiles, AreConvertedLineByLine) {
         EXPECT_EQ(std::count(file.glsl.begin(), file.glsl.end(), '\n'),
                   std::count(file.text.begin(), file.text.end(), '\n'))
             << file.path;
+        EXPECT_TRUE(file.glsl.ends_with('\n')) << file.path;  // what follows is a line of its own
         EXPECT_TRUE(std::all_of(file.glsl.begin(), file.glsl.end(), [](char c) { return c >= 0; }))
             << file.path;
         if (!file.path.ends_with(".inl")) continue;

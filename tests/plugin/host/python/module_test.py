@@ -278,8 +278,8 @@ class Query(unittest.TestCase):
         self.assertGreater(np.abs(far - self.plain["displacement"]).max(), 0.1)
 
     def test_footprints_a_number_or_one_a_point(self):
-        ladder = [2.5, 5.0, 10.0]
-        frame = pelagic.Frame(pelagic.Sea(small_scene(), ALL, cell_m=ladder, pixel_m=ladder))
+        levels = [2.5, 5.0, 10.0]
+        frame = pelagic.Frame(pelagic.Sea(small_scene(), ALL, cell_m=levels, pixel_m=levels))
         frame.set(2.5)
         one = frame.evaluate(self.rest, cell_m=7, pixel_m=np.float32(7))
         each = np.full(len(self.rest), 7, np.float32)

@@ -177,7 +177,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
             return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
         };
         const double horizontal_m = horizontal(choppiness),
-                     displaced_m = horizontal(breaking.choppiness.largest());
+                     breaking_m = horizontal(breaking.choppiness.largest());
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
@@ -198,9 +198,9 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         factor(Field::Dy, y * horizontal_m);
         factor(Field::SlopeX, k * x * height_m);
         factor(Field::SlopeY, k * y * height_m);
-        factor(Field::Dxx, -k * displaced_m * x * x);
-        factor(Field::Dyy, -k * displaced_m * y * y);
-        factor(Field::Dxy, -k * displaced_m * x * y);
+        factor(Field::Dxx, -k * breaking_m * x * x);
+        factor(Field::Dyy, -k * breaking_m * y * y);
+        factor(Field::Dxy, -k * breaking_m * x * y);
         factor(Field::VelocityX, omega * x * horizontal_m);
         factor(Field::VelocityY, omega * y * horizontal_m);
         factor(Field::VelocityZ, -omega * height_m);
@@ -208,7 +208,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         SpectralMoments alone = moments_of({.k = {k * x, k * y},
                                             .energy = bin.energy(),
                                             .omega = dispersion.omega(k),
-                                            .chop = height_m > 0.0 ? displaced_m / (k * height_m) : 0.0});
+                                            .chop = height_m > 0.0 ? breaking_m / (k * height_m) : 0.0});
         // Of the displacement gradient, the part that is resolved at best; the rest counts with the waves outside.
         const bool breaks = wavelength_m > breaking.from_m;
         trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));

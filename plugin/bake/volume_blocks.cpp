@@ -31,22 +31,22 @@ double blocks_of_row(double voxels) {
 }
 
 // First-order variances of J: of the trace of the displacement gradient.
-struct GradientVariance {
+struct JacobianVariance {
     double whole = 0.0,
            resolved = 0.0;         // of all waves that break, and of what the voxels' footprint shows of them
     double gradient_per_m2 = 0.0;  // of the resolved J's gradient, both components together
 };
 
-GradientVariance gradient_variance(const Plan& plan, double footprint_m) {
+JacobianVariance jacobian_variance(const Plan& plan, double footprint_m) {
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
     const Breaking& breaking = plan.breaking;
-    GradientVariance of;
+    JacobianVariance of;
     const auto add = [&](double from, double to, double share) {
         const auto moment = [&](const auto& factor) {
             return GaussLegendre<8>::rule().integrate(from, to, [&](double k) {
-                const double gradient =
+                const double pressed =
                     share * breaking.choppiness.largest() * k * spectrum.dispersion().horizontal_ratio(k);
-                return factor(k) * gradient * gradient * spectrum.omnidirectional(k);
+                return factor(k) * pressed * pressed * spectrum.omnidirectional(k);
             });
         };
         const auto resolved = [&](double k) {
@@ -78,7 +78,7 @@ ExpectedSpray expected_spray(const Plan& plan) {
     const SpectralMoments total = moments_with_breaking(spectrum, 0.0, kInfinity, plan.breaking);
     const double threshold = calibrated_threshold(
         total, law_coverage(scene), mean_choppiness(spectrum, plan.breaking), third, foam_life(plan));
-    const GradientVariance variance = gradient_variance(plan, plan.breaking.footprint_of(voxel_m));
+    const JacobianVariance variance = jacobian_variance(plan, plan.breaking.footprint_of(voxel_m));
     if (!std::isfinite(threshold) || !(variance.resolved > 0.0)) return {};
 
     // How far a voxel's sea must be compressed for spray: there what its footprint leaves unresolved breaks now and

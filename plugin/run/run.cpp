@@ -283,14 +283,14 @@ class Run {
         record_.set_chosen(options_.chosen, options_.chosen_before);
         record_.mark_stale(
             [this](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts_); });
-        const auto write_static = [this] {
+        const auto write_static = [this] {  // anew where another program was faster in a folder without locks
+            static_files_ = {report_.record.filename().string()};
             sequence_->write_static(named_, [this](const FileJob& file) {
                 stop_if(options_.cancel);
                 static_files_.push_back(file.path);
                 record_.set(file.path, files::write_if_different(options_.out / file.path, file.content));
             });
         };
-        static_files_.push_back(report_.record.filename().string());
         for (const FrameJob& job : mended_) {
             FrameRecord mended = job.kept;
             complete(mended, job, parts_);

@@ -5,7 +5,7 @@ vec3 hue_of(float x) {
 }
 
 vec3 false_colour(PixelAnswer answer) {
-    if (kFalseColour == 1) return hue_of(answer.blend / max(float(kPixelLevels - 1), 1.0));
+    if (kFalseColour == 1) return hue_of(answer.level / max(float(kPixelLevels - 1), 1.0));
     // Cox and Munk's sea has a mean square slope of 0.05 at 10 m/s. The scale ends at twice that.
     if (kFalseColour == 2) return vec3((answer.slope_variance.x + answer.slope_variance.y) / 0.1);
     return vec3(answer.coverage);

@@ -37,7 +37,7 @@ struct PixelAnswer {
     vec3 normal;
     vec3 slope_variance, slope_variance_at_rest;  // of unresolved waves: xx, yy, xy
     float coverage;
-    float blend;  // between levels: lower + t
+    float level;  // lower + t
 };
 
 PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {

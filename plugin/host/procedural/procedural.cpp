@@ -19,7 +19,6 @@
 #include "core/scene/budget.h"
 #include "core/scene/limits.h"
 #include "core/surface/earth.h"
-#include "core/surface/footprint_levels.h"
 #include "core/surface/view.h"
 #include "pelagic/version.h"
 #include "plugin/format/shot/shot.h"

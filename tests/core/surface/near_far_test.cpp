@@ -16,7 +16,6 @@
 #include "core/scene/validate.h"
 #include "core/surface/earth.h"
 #include "core/surface/earth_view.h"
-#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {

@@ -18,7 +18,6 @@
 
 #include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
-#include "core/surface/footprint_levels.h"
 #include "core/surface/projected_grid.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/format/shot/ndbc.h"

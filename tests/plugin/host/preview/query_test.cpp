@@ -131,7 +131,7 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
             "answer = vec4(a.normal, a.coverage);");
     const auto unresolved =
         ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), vec3(p.w, given(1).zw));\n"
-            "answer = vec4(a.slope_variance, a.blend);");
+            "answer = vec4(a.slope_variance, a.level);");
 
     const auto hs_m = static_cast<float>(4.0 * std::sqrt(sea->total().m0));
     const auto mss = static_cast<float>(sea->total().xx + sea->total().yy);

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The add-on as one zip: a classic add-on for Blender 3.4 to 4.1, an extension for 4.2 and later.
 
-    make_zip.py MODULE.so WRITER.so OUT.zip
+    make_zip.py OUT.zip WRITER.so MODULE.so…
 
-In it is one folder, pelagic_ocean, with the sources, the compiled module and the shared libraries that it needs, and
-the licences of all of them. The C library and the C++ runtime are the system's.
+In it is one folder, pelagic_ocean, with the sources, the compiled module for each Python and the shared libraries that
+it needs, and the licences of all of them. The C library and the C++ runtime are the system's.
 
 WRITER.so is what writes volumes (plugin/format/vdb): the module loads it from beside itself when the first volume is baked.
 """
@@ -56,15 +56,17 @@ def stripped(file):
         return Path(out.name).read_bytes()
 
 
-def contents(module, writer):
+def contents(binaries):
     """Path in the zip → bytes."""
     source = HERE / FOLDER
     files = {path.relative_to(HERE).as_posix(): path.read_bytes() for path in sorted(source.rglob("*"))
              if path.is_file() and "__pycache__" not in path.parts and "lib" not in path.relative_to(source).parts}
     files[f"{FOLDER}/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
-    for binary in (module, writer):
+    needed = {}
+    for binary in binaries:
         files[f"{FOLDER}/lib/{binary.name}"] = stripped(binary)
-    for name, path in (shared_libraries(module) | shared_libraries(writer)).items():
+        needed |= shared_libraries(binary)
+    for name, path in needed.items():
         files[f"{FOLDER}/lib/{name}"] = stripped(path)
         owner, licence = licence_of(path)
         files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
@@ -72,8 +74,8 @@ def contents(module, writer):
 
 
 def main():
-    module, writer, out = map(Path, sys.argv[1:])
-    files = contents(module, writer)
+    out, *binaries = map(Path, sys.argv[1:])
+    files = contents(binaries)
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as made:
         for name, data in files.items():
             info = zipfile.ZipInfo(name, DATE)

@@ -2,6 +2,7 @@
 # shellcheck shell=bash
 
 PELAGIC_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+PELAGIC_PYTHON_313=$PELAGIC_ROOT/build/python3.13 # its headers, once plugin/host/python/headers.sh has fetched them
 
 # missing_packages [SECTION…]: those of the list's sections that aren't installed; of all without an argument.
 missing_packages() {
@@ -61,6 +62,7 @@ build() {
     [ $# -eq 0 ] || targets=(--target "$@")
     (cd "$PELAGIC_ROOT" &&
         cmake --preset "$preset" -DPELAGIC_PREVIEW="$(installed preview)" -DPELAGIC_PYTHON="$(installed python)" \
-            -DPELAGIC_TESTS="$(installed tests)" -DPELAGIC_BLENDER_TESTS="$(installed blender)" &&
+            -DPELAGIC_TESTS="$(installed tests)" -DPELAGIC_BLENDER_TESTS="$(installed blender)" \
+            -DPELAGIC_PYTHON_313_HEADERS="$(find "$PELAGIC_PYTHON_313" -maxdepth 0 2>/dev/null)" &&
         cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}")
 }

@@ -15,9 +15,10 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/setup.sh"
 
 install_packages program python blender
-# Later Blenders have a later Python.
-"$PELAGIC_ROOT/plugin/host/python/headers.sh" "$PELAGIC_PYTHON_313" ||
-    echo "Debian 13's headers of Python 3.13 weren't to be had: the zip is for Python 3.11 alone" >&2
+for python in 3.13 3.14; do # of later Blenders
+    "$PELAGIC_ROOT/plugin/host/python/headers.sh" $python "$PELAGIC_PYTHONS/$python" ||
+        echo "The headers of Python $python weren't to be had: the zip isn't for Blenders that have it" >&2
+done
 build release addon-zip
 zip=$(ls "$PELAGIC_ROOT"/build/release/pelagic_ocean-*.zip)
 

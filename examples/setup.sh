@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 
 PELAGIC_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-PELAGIC_PYTHON_313=$PELAGIC_ROOT/build/python3.13 # its headers, once plugin/host/python/headers.sh has fetched them
+PELAGIC_PYTHONS=$PELAGIC_ROOT/build/pythons # headers of others than this machine's, once plugin/host/python/headers.sh has fetched them
 
 # missing_packages [SECTION…]: those of the list's sections that aren't installed; of all without an argument.
 missing_packages() {
@@ -63,6 +63,6 @@ build() {
     (cd "$PELAGIC_ROOT" &&
         cmake --preset "$preset" -DPELAGIC_PREVIEW="$(installed preview)" -DPELAGIC_PYTHON="$(installed python)" \
             -DPELAGIC_TESTS="$(installed tests)" -DPELAGIC_BLENDER_TESTS="$(installed blender)" \
-            -DPELAGIC_PYTHON_313_HEADERS="$(find "$PELAGIC_PYTHON_313" -maxdepth 0 2>/dev/null)" &&
+            -DPELAGIC_PYTHON_HEADERS="$(find "$PELAGIC_PYTHONS" -mindepth 1 -maxdepth 1 2>/dev/null | sort | paste -sd ';')" &&
         cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}")
 }

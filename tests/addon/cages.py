@@ -22,9 +22,8 @@ def hilly(size_m=80.0, side=4):
     obj = bpy.context.object
     mesh = obj.data
     mesh.vertices[12].co.z, mesh.vertices[7].co.z = 20.0, -5.0
-    for edge in mesh.edges:
-        ends = set(edge.vertices)
-        edge.crease = 1.0 if ends == {11, 12} else 0.5 if 12 in ends or 7 in ends else 0.0
+    crease_edges(mesh, [1.0 if ends == {11, 12} else 0.5 if 12 in ends or 7 in ends else 0.0
+                        for ends in (set(edge.vertices) for edge in mesh.edges)])
     return obj
 
 

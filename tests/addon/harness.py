@@ -75,6 +75,14 @@ def numbers(mesh, name="position"):
     return out
 
 
+def crease_edges(mesh, creases):
+    """creases: 0 … 1, one for each edge."""
+    if "crease" in bpy.types.MeshEdge.bl_rna.properties:  # before 4.0
+        mesh.edges.foreach_set("crease", creases)
+    else:
+        mesh.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set("value", creases)
+
+
 def evaluated_mesh(obj):
     return obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
 

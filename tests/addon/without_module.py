@@ -22,8 +22,8 @@ sources = str(ROOT / "addon")
 def with_the_module(script):
     """Runs lines in another Blender, which has the module."""
     start = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r})\nfrom harness import *\nenable()\n"
-    subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "--python-expr",
-                    start + script], check=True, env={**os.environ, "PYTHONPATH": with_module}, stdout=subprocess.DEVNULL)
+    subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--python-use-system-env", "--python-exit-code", "1",
+                    "--python-expr", start + script], check=True, env={**os.environ, "PYTHONPATH": with_module}, stdout=subprocess.DEVNULL)
 
 
 with checking("the package registers, and says what is missing"):

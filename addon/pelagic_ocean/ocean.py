@@ -236,7 +236,16 @@ def select_only(context, obj):
     context.view_layer.objects.active = obj
 
 
+def wants_velocity(obj, bpy_scene):
+    """Whether the mesh has the attribute, of which motion blur is made."""
+    return obj.pelagic.velocity or bpy_scene.render.use_motion_blur
+
+
 def migrate(obj):
-    """Brings settings of an older file to today's. There is one version so far: a file without a number is of it."""
+    """Brings settings of an older file to today's. A file without a number is of version 1."""
+    if obj.pelagic.version < 2:  # each mesh had these, and somebody may use them
+        for name in ("uv_map", "velocity"):
+            if not obj.pelagic.is_property_set(name):
+                setattr(obj.pelagic, name, True)
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION

@@ -140,7 +140,9 @@ def _draw_surface(layout, settings):
     if settings.surface.kind == "cage":
         layout.prop(settings, "cage")
     layout.prop(settings, "viewport_percentage")
-    layout.prop(settings, "uv_map")
+    attributes = layout.column(heading="Attributes")
+    attributes.prop(settings, "uv_map")
+    attributes.prop(settings, "velocity")
 
 
 PLACES = {"object": {"bl_space_type": "PROPERTIES", "bl_region_type": "WINDOW", "bl_context": "object"},

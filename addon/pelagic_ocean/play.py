@@ -18,7 +18,7 @@ from bpy.app.handlers import persistent
 
 from . import cages, handlers, meshes, surfaces
 from .module import pelagic
-from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled
+from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
 from .properties import FIELDS
 from .sea import BuiltSea, Moment
 
@@ -114,18 +114,19 @@ class Simulation:
             self._refuse(None, str(error))
             return None
         loop = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
-        key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key)
+        velocity = wants_velocity(obj, bpy_scene)
+        key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key, velocity)
         if key != self._key or (view is not None and self._built and not self._built.serves(view)):
-            self._seek(key, make_surface, view, wait)
+            self._seek(key, make_surface, view, velocity, wait)
         return view
 
-    def _seek(self, key, make_surface, view, wait):
+    def _seek(self, key, make_surface, view, velocity, wait):
         known = _built.get(key)
         if known is not None and known.serves(view):
             self._adopt(key, known)
         elif wait or self._job is None:
             if self._job is None or (self._job.key, self._job.view) != (key, view):
-                self._job = BuiltSea.job(key, self.scene, make_surface(), view)
+                self._job = BuiltSea.job(key, self.scene, make_surface(), view, velocity)
             if wait:
                 self._take()
             else:

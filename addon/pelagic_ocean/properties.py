@@ -17,7 +17,7 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
 from . import cages
 from .module import pelagic
 
-VERSION = 1  # of the settings in a file; ocean.migrate() brings older ones here
+VERSION = 2  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps"}  # and the camera's: they come from the scene
 
@@ -303,9 +303,13 @@ def _ocean_annotations():
             name="To the horizon", default=True, update=_touched,
             description="Rings of ever larger quads round the patch, out to 30 km. A bake leaves them out"),
         "uv_map": BoolProperty(
-            name="UV Map", default=True, update=_touched,
+            name="UV Map", default=False, update=_touched,
             description="Texture coordinates for image textures. Pelagic's own materials read rest_position instead: "
-                        "without the map a large mesh takes a quarter less memory, and Blender copies it faster"),
+                        "with the map a large mesh takes a third more memory, and Blender copies it more slowly"),
+        "velocity": BoolProperty(
+            name="Velocity", default=False, update=_touched,
+            description="The attribute velocity [m/s], for materials and modifiers of your own. With the scene's motion blur it is "
+                        "there in any case"),
         "see_through": BoolProperty(
             name="See Through", default=False, update=_touched,
             description="What is under the surface shows in Cycles, dimmed and coloured by the water: absorption and scattering "

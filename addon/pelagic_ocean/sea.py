@@ -64,10 +64,11 @@ class BuiltSea:
     next moment is computed."""
 
     @staticmethod
-    def job(key, scene, surface, view):
-        """A Job that builds one. surface: None for the projected grid, whose points are those of a pelagic.View."""
+    def job(key, scene, surface, view, velocity):
+        """A Job that builds one. surface: None for the projected grid, whose points are those of a pelagic.View. velocity:
+        whether that is asked for."""
         effects = pelagic.effects(scene)
-        products = (["position", "velocity", "slope_variance"] + ["coverage"] * ("whitecaps" in effects) +
+        products = (["position", "slope_variance"] + ["velocity"] * velocity + ["coverage"] * ("whitecaps" in effects) +
                     ["foam_active", "foam_age"] * ("living foam" in effects))
 
         def begin():
@@ -169,12 +170,12 @@ class BuiltSea:
             return
         task, self._task, surface = self._task, None, self._surface
         task.result()
-        position, velocity = self._arrays["position"], self._arrays["velocity"]
+        position, velocity = self._arrays["position"], self._arrays.get("velocity")
         if surface.origin_m != (0.0, 0.0):
             position[:, :2] += np.array(surface.origin_m, np.float32)
         if surface.height_m is not None:
             position[:, 2] += surface.height_m
-        if self._coming.time_scale != 1.0:
+        if velocity is not None and self._coming.time_scale != 1.0:
             velocity *= np.float32(self._coming.time_scale)  # metres in a second of the screen
         self._moment = self._coming
 

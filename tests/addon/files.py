@@ -71,13 +71,16 @@ with checking("saved and loaded: the same settings, the same sea, playing"):
     for obj in ocean.oceans():
         assert np.array_equal(numbers(obj.data), expected[obj.name]), obj.name
 
-with checking("a file from before there were versions gets today's number"):
+with checking("a file of the first version gets today's number, and keeps what every mesh had then"):
     names_of_old = [obj.name for obj in ocean.oceans()]
     for obj in ocean.oceans():
         obj.pelagic.version = 0
+        for name in ("uv_map", "velocity"):
+            obj.pelagic.property_unset(name)
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "old.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(folder / "old.blend"))
     assert [obj.pelagic.version for obj in ocean.oceans()] == [properties.VERSION] * len(names_of_old)
+    assert all(obj.pelagic.uv_map and obj.pelagic.velocity for obj in ocean.oceans())
 
 with checking("appended into another file, it plays there"):
     fresh_file()

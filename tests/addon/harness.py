@@ -33,8 +33,8 @@ def fresh_file():
 
 
 def add_ocean(horizon=False, **settings):
-    """A small ocean without a horizon, which it is before its sea is first built; settings are keys with their dots as __, such
-    as sea__wind_speed_mps."""
+    """A small ocean without a horizon, with all attributes, which it is before its sea is first built; settings are keys with
+    their dots as __, such as sea__wind_speed_mps."""
     from pelagic_ocean import ocean
 
     make = ocean.make
@@ -43,6 +43,7 @@ def add_ocean(horizon=False, **settings):
         obj = make(name, collection)
         obj.pelagic.horizon = horizon
         obj.pelagic.surface.resolution = 32
+        obj.pelagic.uv_map = obj.pelagic.velocity = True
         return obj
 
     ocean.make = make_small

@@ -132,6 +132,23 @@ with checking("the UV map comes and goes"):
     obj.data.uv_layers["UVMap"].data.foreach_get("uv", uv)
     assert uv[:2].tolist() == [0.0, 0.0]
 
+with checking("velocity is there where it is asked for, or motion is blurred, and nothing else moves by that"):
+    places = numbers(obj.data)
+    obj.pelagic.velocity = False
+    bpy.context.view_layer.update()
+    assert "velocity" not in obj.data.attributes and np.array_equal(numbers(obj.data), places)
+    scene.render.use_motion_blur = True
+    bpy.context.view_layer.update()
+    assert numbers(obj.data, "velocity").any() and np.array_equal(numbers(obj.data), places)
+    scene.render.use_motion_blur = False
+    bpy.context.view_layer.update()
+    assert "velocity" not in obj.data.attributes
+    fresh = ocean.make("Fresh", bpy.context.collection)
+    assert not fresh.pelagic.velocity and not fresh.pelagic.uv_map
+    bpy.data.objects.remove(fresh)
+    obj.pelagic.velocity = True
+    bpy.context.view_layer.update()
+
 with checking("a hidden ocean costs nothing"):
     obj.hide_set(True)
     before = numbers(obj.data)

@@ -46,7 +46,7 @@ def timeline():
 SIDES = {"modifier": lambda: played(lambda: blender_sides.Modifier(N)),
          "waves": lambda: played(lambda: blender_sides.AddOn(N, as_the_modifier=True)),
          "default": lambda: played(lambda: blender_sides.AddOn(N)),
-         "bare": lambda: played(lambda: blender_sides.AddOn(N, uv_map=False)),
+         "all": lambda: played(lambda: blender_sides.AddOn(N, all_attributes=True)),
          "timeline": timeline}
 
 
@@ -61,7 +61,7 @@ def main():
           "Blender's; each in its own process")
     modifier_mib, modifier_most_mib = in_own_process("modifier")
     print(f"  {'the modifier':28s} {modifier_mib:7.0f} MiB, at most {modifier_most_mib:.0f}")
-    for side, name in (("waves", "Pelagic, as many waves"), ("default", "Pelagic, default sea"), ("bare", "the same without a UV map")):
+    for side, name in (("waves", "Pelagic, as many waves"), ("default", "Pelagic, default sea"), ("all", "the same with UV map and velocity")):
         mib, most_mib = in_own_process(side)
         print(f"  {name:28s} {mib:7.0f} MiB, at most {most_mib:.0f}   {mib / modifier_mib:.2f} of the modifier's, "
               f"≤ 1 {'met' if mib <= modifier_mib else 'missed'}", flush=True)

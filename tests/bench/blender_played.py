@@ -78,8 +78,8 @@ def verdict(value, limit, at_most):
 def frame_change(n, turns):
     modifier, bare = Modifier(n), Copy.bare(n)
     oceans = {"as many waves": AddOn(n, as_the_modifier=True), "default sea": AddOn(n),
-              "the same without a UV map": AddOn(n, uv_map=False)}
-    full = Copy(oceans["default sea"].object.data.copy())
+              "the same with UV map and velocity": AddOn(n, all_attributes=True)}
+    full = Copy(oceans["the same with UV map and velocity"].object.data.copy())
     parts = {name: ([], []) for name in oceans}
 
     def timed(name, side):

@@ -87,14 +87,15 @@ class AddOn(Side):
     """The add-on's ocean, as Add Ocean makes it; with n its patch alone, SIZE_M wide, of n × n quads. as_the_modifier: one
     square of n × n waves on the patch's own grid; otherwise four cascades that repeat nowhere in the patch."""
 
-    def __init__(self, n=None, as_the_modifier=False, uv_map=True):
+    def __init__(self, n=None, as_the_modifier=False, all_attributes=False):
         super().__init__("pelagic")
         self.object = ocean.make("Pelagic", self.scene.collection)
         if n is None:
             self.step()
             return
         settings = self.object.pelagic
-        settings.horizon, settings.viewport_percentage, settings.uv_map = False, 100, uv_map
+        settings.horizon, settings.viewport_percentage = False, 100
+        settings.uv_map = settings.velocity = all_attributes
         shot = pelagic.Scene()
         shot.surface.size_m, shot.surface.resolution = SIZE_M, n
         if as_the_modifier:

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The add-on as one zip: a classic add-on for Blender 3.4 to 4.1, an extension for 4.2 and later.
 
-    make_zip.py OUT.zip WRITER.so MODULE.so…
+    make_zip.py OUT.zip WRITER.so MODULE.so… ARCHIVE.a…
 
 In it is one folder, pelagic_ocean, with the sources, the compiled module for each Python and the shared libraries that
-it needs, and the licences of all of them. The C library and the C++ runtime are the system's.
+it needs, and the licences of all of them, and of the archives that the modules have in them. The C library and the C++ runtime are the system's.
 
 WRITER.so is what writes volumes (plugin/format/vdb): the module loads it from beside itself when the first volume is baked.
 """
@@ -64,6 +64,10 @@ def contents(binaries):
     files[f"{FOLDER}/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
     needed = {}
     for binary in binaries:
+        if binary.suffix == ".a":
+            owner, licence = licence_of(binary)
+            files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
+            continue
         files[f"{FOLDER}/lib/{binary.name}"] = stripped(binary)
         needed |= shared_libraries(binary)
     for name, path in needed.items():

@@ -11,6 +11,7 @@ from harness import *  # noqa: F403
 enable()
 from mathutils import Matrix, Vector
 
+from pelagic_ocean import compat
 from pelagic_ocean.query import Water
 
 fresh_file()
@@ -156,7 +157,7 @@ with checking("the user's own keyframes stay, and are followed"):
         ship.location.x = x
         ship.keyframe_insert("location", index=0, frame=frame)
     scene.frame_set(50)
-    assert ship.location.x == 20.0 and len(ship.animation_data.action.fcurves) == 1
+    assert ship.location.x == 20.0 and len(compat.curves(ship)) == 1
     here = Water(sea, scene, bpy.context.evaluated_depsgraph_get())
     assert abs(here.world_heights([ship.matrix_world.translation.xy])[0] - ship.matrix_world.translation.z) < 0.5
 
@@ -311,7 +312,7 @@ with checking("sample_heights: keyframes, attribute, text"):
     bpy.ops.object.empty_add(location=(1, 2, 9))
     empty = bpy.context.object
     bpy.ops.pelagic.sample_heights(into="KEYFRAMES")
-    assert len(empty.animation_data.action.fcurves[0].keyframe_points) == 5
+    assert len(compat.curves(empty)[0].keyframe_points) == 5
     scene.frame_set(4)
     expected = Water(sea, scene, bpy.context.evaluated_depsgraph_get()).world_heights([(1, 2)])[0]
     assert abs(empty.matrix_world.translation.z - expected) < 1e-5

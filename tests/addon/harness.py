@@ -81,7 +81,7 @@ def crease_edges(mesh, creases):
     if "crease" in bpy.types.MeshEdge.bl_rna.properties:  # before 4.0
         mesh.edges.foreach_set("crease", creases)
     else:
-        mesh.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set("value", creases)
+        (mesh.attributes.get("crease_edge") or mesh.attributes.new("crease_edge", "FLOAT", "EDGE")).data.foreach_set("value", creases)
 
 
 def evaluated_mesh(obj):

@@ -17,7 +17,7 @@ as_root=()
 install_packages
 command -v debootstrap >/dev/null || apt_install debootstrap
 for python in 3.13 3.14; do "$PELAGIC_ROOT/plugin/host/python/headers.sh" $python "$PELAGIC_PYTHONS/$python"; done
-build release all addon-zip
+build release pelagic pelagic_python addon-zip
 build=$PELAGIC_ROOT/build/release
 
 root=$PELAGIC_ROOT/build/$suite
@@ -33,7 +33,7 @@ make_root() {
         trap "umount /proc" EXIT
         apt-get -q -o Acquire::Check-Valid-Until=false update
         DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends blender cmake libegl1 libgl1-mesa-dri libglfw3 \
-            libstb0 python3 python3-numpy xauth xvfb'
+            libstb0 python3 python3-cattr python3-numpy python3-openvdb python3-requests xauth xvfb'
     "${as_root[@]}" touch "$root/is-made"
 }
 [ -f "$root/is-made" ] || make_root

@@ -45,8 +45,15 @@ def grids(volume, frame):
 
 def density(file):
     """The largest and the mean extinction of a file's voxels, by OpenVDB's own module."""
-    script = ("import sys, pyopenvdb as vdb; g = vdb.read(sys.argv[1], 'density'); "
-              "v = [i.value for i in g.citerOnValues() for _ in range(i.count)]; print(max(v), sum(v) / len(v), min(v))")
+    script = """
+import sys
+try:
+    import openvdb as vdb
+except ImportError:  # its name before OpenVDB 11
+    import pyopenvdb as vdb
+values = [i.value for i in vdb.read(sys.argv[1], "density").citerOnValues() for _ in range(i.count)]
+print(max(values), sum(values) / len(values), min(values))
+"""
     told = subprocess.run(["/usr/bin/python3", "-c", script, str(file)], check=True, capture_output=True, text=True).stdout
     return [float(each) for each in told.split()]
 

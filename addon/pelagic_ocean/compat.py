@@ -64,8 +64,8 @@ def sharp_refraction(node=bpy.types.ShaderNodeBsdfRefraction):
 def voxels_off(version=bpy.app.version):
     """How far this Blender shows a volume's voxels from where their file has them, along each axis, in voxels: OpenVDB's
     transform leads to the middle of a voxel, and Cycles and the Volume to Mesh modifier take it for the corner. That is
-    measured in 3.4.1; of versions that nobody has measured OpenVDB's own place is assumed."""
-    return 0.5 if tuple(version[:2]) == (3, 4) else 0.0
+    measured in 3.4.1 and 4.3.2, and that 5.2.2 has it right; others are taken to be as the nearest of these."""
+    return 0.5 if (3, 4) <= tuple(version[:2]) < (5, 0) else 0.0
 
 
 def curves(owner):

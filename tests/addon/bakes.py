@@ -55,6 +55,7 @@ for name, mesh in (("binary", ""), ("text", '[output]\nmesh = "usda"\n')):
         path = shot_file(name, PATCH + mesh)
         bpy.ops.pelagic.import_shot(filepath=str(path))
         live = bpy.context.object
+        live.pelagic.uv_map = live.pelagic.velocity = True
         there = bake(path)
         from_disk = played(there)
         scene = bpy.context.scene

@@ -189,6 +189,7 @@ with checking("a bake of an animated cage says that it has it as it is now, what
     cage.shape_key_add(name="Basis")
     key = cage.shape_key_add(name="Up")
     key.data[12].co.z += 3.0
+    key.value = 0.0  # as it was from the start before 5.0
     key.keyframe_insert("value", frame=1)
     key.value = 1.0
     key.keyframe_insert("value", frame=3)

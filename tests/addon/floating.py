@@ -218,8 +218,10 @@ with checking("in renders of an animation, too: the picture shows it where it is
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 8.0
     render = scene.render
     render.engine, render.resolution_x, render.resolution_y, render.resolution_percentage = "CYCLES", 64, 64, 100
-    scene.cycles.samples, scene.cycles.use_denoising, scene.world.color = 4, False, (0, 0, 0)
-    scene.world.use_nodes = False
+    scene.cycles.samples, scene.cycles.use_denoising = 4, False
+    scene.world = bpy.data.worlds.new("Black")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes.clear()
     render.filepath = str(folder / "lamp.")
     scene.frame_start, scene.frame_end, scene.frame_step = 20, 60, 20
     bpy.ops.render.render(animation=True)

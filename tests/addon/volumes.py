@@ -85,9 +85,9 @@ with checking("each frame shows its own file, with its grids; frames outside the
 with checking("it lies on the patch, in metres"):
     grids(spray, 1)
     box = np.array([corner[:] for corner in spray.evaluated_get(bpy.context.evaluated_depsgraph_get()).bound_box])
-    # Blender's box is of blocks of 8 voxels, from the middle of the first to the middle of the last.
+    # Blender's box is of blocks of 8 voxels, before 5.0 from the middle of the first to the middle of the last.
     low, high = box.min(axis=0), box.max(axis=0)
-    assert np.allclose(low[:2], -29.0) and (high[:2] >= 29.0).all() and (high[:2] < 30.0 + 8 * 2.0).all(), box
+    assert np.allclose(low[:2], -29.0 if bpy.app.version < (5, 0) else -30.0) and (high[:2] >= 29.0).all() and (high[:2] <= 30.0 + 8 * 2.0).all(), box
     heights = numbers(sea.data)[:, 2]
     assert heights.min() - 8 * 2.0 < low[2] < heights.max() < high[2] < heights.max() + 8 * 2.0 + 14.0, (box, heights.max())
 
@@ -102,9 +102,10 @@ with checking("the numbers are the core's: in proportion to the gain"):
     little = density(files[2])
     assert np.allclose(np.array(much), 10.0 * np.array(little), rtol=1e-3), (much, little)
 
-with checking("Blender 3.4 alone shows voxels off their place, as far as anybody has measured"):
+with checking("from 3.4 to 4.x Blender shows voxels off their place"):
     off_m = np.array(spray.delta_location)
-    assert compat.voxels_off((3, 4, 1)) == 0.5 and compat.voxels_off((3, 3, 9)) == compat.voxels_off((4, 2, 0)) == 0.0
+    assert compat.voxels_off((3, 4, 1)) == compat.voxels_off((4, 3, 2)) == 0.5
+    assert compat.voxels_off((3, 3, 9)) == compat.voxels_off((5, 2, 2)) == 0.0
     assert np.allclose(off_m, -2.0 * compat.voxels_off()), off_m
 
 with checking("what doesn't change the volume leaves it as it is"):

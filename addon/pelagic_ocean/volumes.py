@@ -192,6 +192,26 @@ def problem_of(volume, bpy_scene, frame):
 
 # ---- Operator, panel
 
+_read = {}  # folder → signature of the settings of which Blender may have read its files
+
+
+def _folder_of(volume):
+    """Of the bake that a volume object shows."""
+    return Path(bpy.path.abspath(volume.data.filepath)).parent.parent
+
+
+def _folder_to_write(folder, volume, signature):
+    """The folder, or one beside it with a number if Blender would go on showing what it has read there of other settings."""
+    if not compat.reads_volumes_once():
+        return folder
+    if volume is not None:
+        _read.setdefault(_folder_of(volume), volume.pelagic_volume.signature)
+    candidate, number = folder, 1
+    while _read.get(candidate, signature) != signature:
+        number += 1
+        candidate = folder.with_name(f"{folder.name}-{number}")
+    return candidate
+
 
 class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
     """Bake a volume of the ocean for the scene's frames, and show it. Esc stops it; the next bake goes on from there"""
@@ -213,10 +233,14 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
         scene = scene_of_volume(obj, context.scene, depsgraph, self.kind)
         self._signature = signature_of(obj.evaluated_get(depsgraph), context.scene, self.kind)
         folder = folder_of(obj)
+        folder = folder.with_name(f"{folder.name}-{self.kind}")
+        own = _folder_to_write(folder, volumes_of(obj).get(self.kind), self._signature)
         remarks = []
+        if own != folder:
+            remarks.append(f"Blender shows files that it has read until it ends, so this one is in {own.name}")
         if obj.animation_data and obj.animation_data.action:
             remarks.append(f"{obj.name} is animated: its volume has its settings at frame {context.scene.frame_current}")
-        return scene, folder.with_name(f"{folder.name}-{self.kind}"), remarks
+        return scene, own, remarks
 
     def take(self, context, baking):
         obj = bpy.data.objects.get(baking.ocean)
@@ -228,10 +252,11 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
         if not files:
             return ""
         volume = show(obj, self.kind, files, baking.scene)
+        _read[baking.folder] = self._signature
         words = ""
         if len(files) <= baking.report.done + baking.report.kept:
             volume.pelagic_volume.signature = self._signature
-        elif self._leave_unfinished(volume):
+        elif self._leave_unfinished(volume, baking):
             words = ". The frames that it hasn't reached are of earlier settings"
         missing = words_of(frame for frame in range(shot.frames[0], shot.frames[1] + 1) if frame not in files)
         return f"{words}. Missing on disk: {missing}" if missing else words
@@ -241,11 +266,11 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
         obj = bpy.data.objects.get(baking.ocean)
         volume = volumes_of(obj).get(self.kind) if obj else None
         if volume is not None:
-            self._leave_unfinished(volume)
+            self._leave_unfinished(volume, baking)
 
-    def _leave_unfinished(self, volume):
+    def _leave_unfinished(self, volume, baking):
         """Returns whether some of its frames may be of other settings than those that were ordered."""
-        if volume.pelagic_volume.signature == self._signature:
+        if volume.pelagic_volume.signature == self._signature or _folder_of(volume) != baking.folder:
             return False
         volume.pelagic_volume.signature = UNFINISHED
         return True

@@ -124,6 +124,8 @@ for kind in KINDS:
             assert seen.shape == (SIZE, SIZE, 4), seen.shape
             np.testing.assert_allclose(seen[..., :3], expected, rtol=rounding, atol=1e-7)
             assert (seen[..., 3] == 1.0).all()
+            if bpy.app.version >= (5, 0) and kind == "whitecaps":
+                image.pack()  # from disk Cycles 5.2.2 takes neighbours for the channels of a map of one
             in_cycles = through_cycles("Color", image)
             # 0.5 + x/64 rounds x to some 2^-18. Where all channels are halves, Cycles adds 2^-15 to those below that.
             np.testing.assert_allclose(in_cycles, seen[..., :3], rtol=0.0, atol=4e-5 if kind == "normal" else 1e-5)

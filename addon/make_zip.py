@@ -10,6 +10,7 @@ WRITER.so is what writes volumes (plugin/format/vdb): the module loads it from b
 """
 
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -50,10 +51,61 @@ def licence_of(library):
 
 
 def stripped(file):
-    """The contents of a binary without what only debuggers need."""
+    """The contents of a binary without what only debuggers need, for older systems too."""
     with tempfile.NamedTemporaryFile() as out:
         subprocess.run(["strip", "--strip-unneeded", "-o", out.name, file.resolve()], check=True)
-        return Path(out.name).read_bytes()
+        return for_older_systems(Path(out.name).read_bytes())
+
+
+# Versions of the C library and of the C++ runtime that a binary asks for by one function, which has been there for long under an
+# older version, too: hypot() and condition_variable::wait(). Without them those of 2021 do: glibc 2.34, GLIBCXX 3.4.29.
+OLDER = {b"GLIBC_2.35": b"GLIBC_2.2.5", b"GLIBCXX_3.4.30": b"GLIBCXX_3.4.11"}
+
+
+NEWEST = {"GLIBC": (2, 34), "GLIBCXX": (3, 4, 29), "CXXABI": (1, 3, 13)}  # that the zip may ask for
+
+
+def is_too_new(version):
+    library, _, number = version.decode().partition("_")
+    return library in NEWEST and number[:1].isdigit() and tuple(map(int, number.split("."))) > NEWEST[library]
+
+
+def elf_hash(name):
+    value = 0
+    for byte in name:
+        value = (value << 4) + byte
+        high = value & 0xF0000000
+        value = (value ^ high >> 24) & ~high
+    return value
+
+
+def for_older_systems(binary):
+    """An ELF binary of x86-64, its table of needed versions (.gnu.version_r) with OLDER's names in place of theirs."""
+    if binary[:5] != b"\x7fELF\x02" or struct.unpack_from("<H", binary, 18)[0] != 62:
+        return binary
+    out = bytearray(binary)
+    offset, = struct.unpack_from("<Q", binary, 40)
+    size, count = struct.unpack_from("<HH", binary, 58)
+    sections = [struct.unpack_from("<IIQQQQII", binary, offset + i * size) for i in range(count)]
+    for _, kind, _, _, start, _, link, needs in sections:
+        if kind != 0x6FFFFFFE:  # SHT_GNU_verneed
+            continue
+        names = binary[sections[link][4]:sections[link][4] + sections[link][5]]
+        for _ in range(needs):
+            _, versions, _, first, following = struct.unpack_from("<HHIII", binary, start)
+            at = start + first
+            for _ in range(versions):
+                _, _, _, name, further = struct.unpack_from("<IHHII", binary, at)
+                version = names[name:names.index(b"\0", name)]
+                older = OLDER.get(version, version)
+                place = names.find(b"\0" + older + b"\0")
+                if place < 0 or is_too_new(older):
+                    sys.exit(f"a library asks for {version.decode()}: the zip's README promises older systems")
+                struct.pack_into("<I", out, at, elf_hash(older))
+                struct.pack_into("<I", out, at + 8, place + 1)
+                at += further
+            start += following
+    return bytes(out)
 
 
 def contents(binaries):

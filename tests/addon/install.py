@@ -4,6 +4,7 @@
 """
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -94,3 +95,23 @@ with checking("enabling again: the ocean plays on"):
     bpy.ops.preferences.addon_enable(module="pelagic_ocean")
     bpy.context.scene.frame_set(6)
     assert not np.array_equal(numbers(bpy.context.object.data), before)
+
+if bpy.app.version >= (4, 2):
+    with checking("as an extension: valid, installed, enabled, with a sea and a folder of its own"):
+        home = {**os.environ, "HOME": f"{work}/home"}
+        os.makedirs(home["HOME"])
+        use = ("import bpy; bpy.ops.pelagic.add_ocean(); assert len(bpy.context.object.data.vertices) > 1000; "
+               "from bl_ext.user_default.pelagic_ocean import module, presets; "
+               f"assert module.__file__.startswith({home['HOME']!r}) and 'extensions' in str(presets.folder(create=True))")
+        for arguments in (["--command", "extension", "validate", archive],
+                          ["--command", "extension", "install-file", "--repo", "user_default", "--enable", archive],
+                          ["-b", "--python-exit-code", "1", "--python-expr", use]):
+            told = subprocess.run([bpy.app.binary_path, *arguments], capture_output=True, text=True, env=home)
+            assert told.returncode == 0, (arguments, told.stdout, told.stderr)
+
+with checking("the module shows Blender one function, and nothing that one of its libraries may have as well"):
+    if shutil.which("nm"):
+        names = subprocess.run(["nm", "-DC", "--defined-only", module.pelagic.__file__], check=True, capture_output=True,
+                               text=True).stdout.splitlines()
+        names = [line.split(maxsplit=2)[2] for line in names]
+        assert [name for name in names if "std::" not in name and not name.startswith("__gnu_cxx")] == ["PyInit_pelagic"]

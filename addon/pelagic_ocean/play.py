@@ -235,8 +235,7 @@ def _is_shared(simulation):
 def _driver_of(obj):
     """Of linked duplicates, the ocean that drives their mesh."""
     mesh = obj.original.data
-    sharing = [other for other in oceans() if other.data == mesh]
-    return next((other for other in sharing if other.users_scene), sharing[0])  # an override's reference is in none
+    return next(other for other in oceans() if other.data == mesh)
 
 
 def simulation_of(obj):

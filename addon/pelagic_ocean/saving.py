@@ -54,7 +54,7 @@ def _swap(one, other):
     name, keeps = other.name, other.use_fake_user
     other.use_fake_user = False  # or it would be in the file
     other.user_remap(one)
-    other.name = one.name
+    other.name = "Pelagic Away"  # another base, or Blender 4.3 gives it the number that it has
     one.name, one.use_fake_user = name, keeps
 
 

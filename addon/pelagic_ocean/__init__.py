@@ -18,7 +18,7 @@ bl_info = {
 import importlib
 
 PARTS = ("properties", "play", "look", "operators", "presets", "panels", "floating", "sampling", "exchange", "baking",
-         "baked", "volumes", "native", "menu", "viewport", "links")
+         "baked", "volumes", "native", "farm", "menu", "viewport", "links", "saving")
 
 _registered = []
 

@@ -46,6 +46,14 @@ def creases(mesh):
     return edges, vertices
 
 
+def has_more(mesh, names):
+    """Whether a mesh has attributes besides these, or creases, bevel weights or normals of its own."""
+    built_in = {"sharp_face"}  # since 4.1: which faces aren't smooth. Names with a dot are Blender's own
+    return (any(name[0] != "." and name not in names | built_in for name in mesh.attributes.keys())
+            or any(getattr(mesh, f"has_{what}", False) for what in
+                   ("crease_edge", "crease_vertex", "bevel_weight_edge", "bevel_weight_vertex", "custom_normals")))
+
+
 def can_denoise():
     """Whether Cycles has a denoiser. Debian's has none, and refuses to render while one is asked for."""
     try:

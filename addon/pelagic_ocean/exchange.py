@@ -28,7 +28,7 @@ def shot_of(context, obj):
         raise ValueError(f"{obj.name}: {OWN_MESH}")
     bpy_scene = context.scene
     scene = ocean.scene_of(obj, bpy_scene, context.evaluated_depsgraph_get())
-    remarks = []
+    remarks = list(filter(None, [ocean.unit_warning(obj, bpy_scene)]))
     _, rotation, scale = obj.matrix_world.decompose()
     if max(abs(each - 1.0) for each in scale) > 1e-6:
         remarks.append(f"{obj.name} is scaled: the shot's sea is in its own metres, without the scale")

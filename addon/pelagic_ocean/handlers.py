@@ -6,12 +6,13 @@ import bpy
 
 def add(rows):
     for where, handler in rows:
-        getattr(bpy.app.handlers, where).append(handler)
+        if hasattr(bpy.app.handlers, where):  # save_post_fail is since 3.6
+            getattr(bpy.app.handlers, where).append(handler)
 
 
 def remove(rows):
     """Those that are there: without the module none was added."""
     for where, handler in rows:
-        there = getattr(bpy.app.handlers, where)
+        there = getattr(bpy.app.handlers, where, ())
         if handler in there:
             there.remove(handler)

@@ -7,6 +7,8 @@ azimuth grow to the left.
 """
 
 import math
+import struct
+import zlib
 
 import bpy
 import numpy as np
@@ -109,12 +111,41 @@ def _sky_image(image, sky):
     height, width, _ = radiance.shape
     if image is None or tuple(image.size) != (width, height):
         image = bpy.data.images.new("Pelagic Sky", width, height, float_buffer=True, is_data=False)
-    pixels = np.ones((height, width, 4), np.float32)
-    pixels[..., :3] = radiance[::-1]  # Blender's rows go upwards
-    image.pixels.foreach_set(pixels.ravel())
-    image.update()
-    image.pack()  # a picture that Blender made itself isn't in the file otherwise
+    file = openexr(radiance)
+    image.pack(data=file, data_len=len(file))
+    image.source = "FILE"  # the packed one
+    image.buffers_free()  # of the sky before
+    image.update_tag()
     return image
+
+
+def openexr(picture):
+    """A picture, float32 (height, width, 3), as the bytes of an OpenEXR file: half floats, off by 1/2048 at most, ZIP, which
+    for a sky take a fortieth of what Blender's own packing does. https://openexr.com/en/latest/OpenEXRFileLayout.html"""
+    height, width, _ = picture.shape
+
+    def attribute(name, kind, value):
+        return f"{name}\0{kind}\0".encode() + struct.pack("<i", len(value)) + value
+
+    channels = b"".join(name + b"\0" + struct.pack("<4i", 1, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    head = (struct.pack("<2i", 20000630, 2) + attribute("channels", "chlist", channels) + attribute("compression", "compression", b"\3")
+            + attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+            + attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1.0))
+            + attribute("screenWindowCenter", "v2f", bytes(8)) + attribute("screenWindowWidth", "float", struct.pack("<f", 1.0))
+            + b"\0")
+    planes = np.minimum(picture, np.finfo(np.float16).max).astype("<f2")[..., ::-1].transpose(0, 2, 1)  # rows, channels, columns
+    blocks = []
+    for row in range(0, height, 16):
+        raw = np.ascontiguousarray(planes[row:row + 16]).view(np.uint8).ravel()
+        split = np.concatenate([raw[::2], raw[1::2]])
+        split[1:] = np.diff(split) + np.uint8(128)
+        packed = zlib.compress(split.tobytes())
+        if len(packed) >= len(raw):  # then it stands there as it was
+            packed = raw.tobytes()
+        blocks.append(struct.pack("<2i", row, len(packed)) + packed)
+    places = len(head) + 8 * len(blocks) + np.cumsum([0] + [len(block) for block in blocks[:-1]])
+    return head + places.astype("<u8").tobytes() + b"".join(blocks)
 
 
 def _put_sun(lamp, sky):

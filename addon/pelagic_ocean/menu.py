@@ -3,6 +3,7 @@
 
 import bpy
 
+from .farm import PELAGIC_OT_check_farm
 from .floating import PELAGIC_OT_float
 from .native import PELAGIC_OT_replace_ocean_modifier
 from .operators import PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
@@ -21,6 +22,8 @@ class PELAGIC_MT_object(bpy.types.Menu):
         layout.operator(PELAGIC_OT_use_mesh.bl_idname)
         layout.operator(PELAGIC_OT_use_cage.bl_idname)
         layout.operator(PELAGIC_OT_replace_ocean_modifier.bl_idname)
+        layout.separator()
+        layout.operator(PELAGIC_OT_check_farm.bl_idname)
 
 
 def _menu(self, _context):

@@ -4,12 +4,14 @@
 import threading
 import zlib
 
+import bmesh
 import bpy
 import numpy as np
 
 from . import compat
 
-SIGNATURE = "pelagic_surface"  # the mesh's own property: which surface its vertices are
+SIGNATURE = "pelagic_surface"  # the mesh's own property: which surface its vertices are, and how many
+MARKER = "marker"  # instead of that: what saving.py puts into files
 REST = "rest_position"
 UV_MAP = "UVMap"
 
@@ -19,6 +21,10 @@ ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
               ("whitecap_coverage", "FLOAT", "value", "coverage"),
               ("foam_active", "FLOAT", "value", "foam_active"),
               ("foam_age", "FLOAT", "value", "foam_age"))
+
+
+def _signature(surface):
+    return f"{surface.signature} of {len(surface)}" if surface.faces else surface.signature
 
 
 def _sign(mesh, signature):
@@ -31,7 +37,14 @@ def _sign(mesh, signature):
 
 
 def holds(mesh, surface):
-    return mesh.get(SIGNATURE) == surface.signature and len(mesh.vertices) == len(surface)
+    return mesh.get(SIGNATURE) == _signature(surface) and len(mesh.vertices) == len(surface)
+
+
+def is_generated(mesh):
+    """Whether all that a mesh holds is put_surface()'s and put_frame()'s: nobody took vertices away, or added an attribute."""
+    ours = {"position", UV_MAP, REST, *(row[0] for row in ATTRIBUTES)}
+    return (mesh.get(SIGNATURE, "").endswith(f" of {len(mesh.vertices)}") and not mesh.shape_keys
+            and set(mesh.uv_layers.keys()) <= {UV_MAP} and not compat.has_more(mesh, ours))
 
 
 def put_surface(mesh, surface, uv_map=True):
@@ -47,7 +60,7 @@ def put_surface(mesh, surface, uv_map=True):
     if uv_map:
         mesh.uv_layers.new(name=UV_MAP)
     move_rest(mesh, surface, rest)
-    _sign(mesh, surface.signature)
+    _sign(mesh, _signature(surface))
 
 
 def move_rest(mesh, surface, rest=None):
@@ -111,6 +124,33 @@ def forget_rest(mesh):
     """Lets rest_position go: where the vertices are now counts from here on."""
     if REST in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[REST])
+
+
+STANDS_FOR = "pelagic_stands_for"  # a mesh's own property: the name of the linked mesh that it is filled for
+
+
+def fillable(mesh):
+    """The mesh itself; of a linked one, whose arrays Blender lets nobody fill, a copy that no file holds."""
+    if not mesh.library:
+        return mesh
+    made = next((each for each in bpy.data.meshes if each.get(STANDS_FOR) == mesh.name_full and not each.library), None)
+    if made is None:
+        made = mesh.copy()
+        made[STANDS_FOR] = mesh.name_full
+    return made
+
+
+def hand_over(filled, mesh):
+    """Puts into a mesh what was filled for it; in memory alone where it is linked."""
+    if filled == mesh:
+        return
+    made = bmesh.new()  # the one way into a linked mesh; as long as 50 frames of a mesh that isn't
+    try:
+        made.from_mesh(filled, face_normals=False, vertex_normals=False)
+        made.to_mesh(mesh)
+    finally:
+        made.free()
+    _sign(mesh, filled.get(SIGNATURE, ""))
 
 
 def restore(mesh):

@@ -45,6 +45,17 @@ def frame_rate(bpy_scene):
     return shortest_for(render.fps / render.fps_base, lambda fps: render.fps / fps, render.fps_base)
 
 
+def unit_warning(obj, bpy_scene):
+    """What is wrong with the size of a sea where a Blender unit isn't a metre, in words; "" where it is right."""
+    units = bpy_scene.unit_settings
+    scale = 1.0 if units.system == "NONE" else units.scale_length
+    if abs(obj.matrix_world.median_scale * scale - 1.0) < 1e-3 or abs(scale - 1.0) < 1e-6:
+        return ""
+    return (f"A metre of the sea is one Blender unit, and this scene's Unit Scale is {scale:g}: what should be 100 m long is "
+            f"{100 * scale:g} m. Set the Unit Scale to 1 (Scene, Units), or the ocean's own scale to {1 / scale:g}: the camera and what "
+            "floats fit then; See Through, volumes and the material's Detail Distance don't")
+
+
 def _on_disk(path):
     """An absolute path of one that Blender shows, whose // is the .blend's folder. Words stay words."""
     return bpy.path.abspath(path) if path.startswith("//") else path

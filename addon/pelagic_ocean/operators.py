@@ -75,6 +75,9 @@ class PELAGIC_OT_add_ocean(GivesLook, bpy.types.Operator):
         if simulation.problem:
             self.report({"ERROR"}, simulation.problem)
             return {"CANCELLED"}
+        wrong_size = ocean.unit_warning(obj, context.scene)
+        if wrong_size:
+            self.report({"WARNING"}, wrong_size)
         return {"FINISHED"}
 
 

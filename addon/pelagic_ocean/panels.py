@@ -92,6 +92,9 @@ class Main:
         else:
             if context.object.pelagic.version > VERSION:
                 draw_words(layout.box(), "This ocean was made by a newer Pelagic: what is new in it is missing here")
+            wrong_size = ocean.unit_warning(context.object, context.scene)
+            if wrong_size:
+                draw_words(layout.box(), wrong_size)
             simulation = play.simulation_of(context.object)
             if simulation.problem:
                 draw_words(layout.box(), simulation.problem)

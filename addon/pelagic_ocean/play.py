@@ -39,7 +39,8 @@ _built = weakref.WeakValueDictionary()  # what a sea is made of → the sea, as 
 class Simulation:
     """The live simulation of an ocean."""
 
-    def __init__(self):
+    def __init__(self, name=""):
+        self._name = name  # of its ocean, for messages
         self.scene = None  # the pelagic.Scene of its settings
         self.problem = ""  # why there is no sea for them, in words
         self.shown = None  # what is in the mesh
@@ -154,11 +155,15 @@ class Simulation:
 
     def _refuse(self, key, problem):
         """The old sea plays on. A place in a file that nobody wrote is left out of the words."""
-        self._key, self.problem = key, re.sub(r"^\S*:\d+:\d+: ", "", problem, flags=re.MULTILINE)
+        problem = re.sub(r"^\S*:\d+:\d+: ", "", problem, flags=re.MULTILINE)
+        if bpy.app.background and problem != self.problem:  # nobody sees the panel
+            print(f"Error: {self._name} stands still: {problem}", flush=True)
+        self._key, self.problem = key, problem
 
 
 _simulations = {}  # by the names of their objects
 _rendering = set()  # names of scenes
+is_saving = False  # whether files' markers are in the meshes' place
 _is_told = False  # whether the pointer shows a progress
 _turn = threading.RLock()  # a render has a thread of its own
 
@@ -175,11 +180,11 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     """What identifies the surface; a function that makes it; and the view, if it depends on one. ValueError if it can't be
     made."""
     mesh, setting = obj.data, obj.pelagic
-    if mesh.library:
-        raise ValueError("The mesh is linked from another file, where Blender lets nobody write: append it, or make it local")
     if setting.own_mesh:
         signature = mesh.get(meshes.SIGNATURE, "")
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))] or meshes.REST not in mesh.attributes:
+            if mesh.library:
+                raise ValueError("The mesh is linked, and nobody knows where it is at rest: play it in its own file, and save that")
             signature = meshes.capture(mesh)
         return signature, lambda: surfaces.own_mesh(meshes.rest_of(mesh), meshes.edges_of(mesh), signature), None
     if settings[PLACE["surface.kind"]] in BAKED_ALONE:
@@ -220,7 +225,7 @@ def _driven(objects, depsgraph):
 
 
 def _simulation(obj):
-    return _simulations.setdefault(obj.name_full, Simulation())
+    return _simulations.setdefault(obj.name_full, Simulation(obj.name_full))
 
 
 def _is_shared(simulation):
@@ -239,26 +244,30 @@ def simulation_of(obj):
     return _simulation(_driver_of(obj))
 
 
+def is_rendering():
+    return bool(_rendering)
+
+
 def brought_up(obj, bpy_scene, depsgraph, wait=False):
     """The Simulation of an ocean, brought to its settings though nothing may show it; without waiting in a window it has
     its old sea, or none, while that is being built."""
     first = _driver_of(obj)
     simulation = _simulation(first)
-    simulation.follow(first, bpy_scene, depsgraph, wait or bpy.app.background or bool(_rendering))
+    simulation.follow(first, bpy_scene, depsgraph, wait or bpy.app.background or is_rendering())
     return simulation
 
 
 def _show(obj, bpy_scene, depsgraph, again, wait=False):
     """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already."""
     simulation = _simulation(obj)
-    wait = wait or bpy.app.background or bool(_rendering)
+    wait = wait or bpy.app.background or is_rendering()
     view = simulation.follow(obj, bpy_scene, depsgraph, wait)
     if simulation.sea is None or (view is None and simulation.needs_view):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, _share(obj, bpy_scene) if view else 1.0)
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
-    if shown == simulation.shown and not again:
+    if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
     # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
     buffers = simulation.buffers(moment, None if wait or _is_shared(simulation) else PATIENCE_S)
@@ -267,15 +276,17 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False):
         _look_later()
         return
     surface, arrays = buffers
-    if not meshes.holds(obj.data, surface):
+    mesh = meshes.fillable(obj.data)
+    if not meshes.holds(mesh, surface):
         if surface.faces is None:
             return
-        meshes.put_surface(obj.data, surface, obj.pelagic.uv_map)
+        meshes.put_surface(mesh, surface, obj.pelagic.uv_map)
     elif surface.moves and not _is_of_the_same_view(shown, simulation.shown):
-        meshes.move_rest(obj.data, surface)
+        meshes.move_rest(mesh, surface)
     if surface.faces is not None:  # a mesh of the user's own keeps its maps
-        meshes.keep_uv(obj.data, surface, obj.pelagic.uv_map)
-    meshes.put_frame(obj.data, arrays)
+        meshes.keep_uv(mesh, surface, obj.pelagic.uv_map)
+    meshes.put_frame(mesh, arrays)
+    meshes.hand_over(mesh, obj.data)
     simulation.shown = shown
 
 
@@ -347,6 +358,8 @@ def _on_load(*_):
     _simulations.clear()
     _rendering.clear()
     _on_other_data()
+    if bpy.app.background:  # nobody comes back to it: who looks at the meshes next finds the seas
+        _on_frame(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
 @persistent

@@ -16,7 +16,7 @@ from harness import *  # noqa: F403
 enable()
 import pelagic
 
-from pelagic_ocean import baked, play
+from pelagic_ocean import baked, ocean, play
 
 program = sys.argv[-1]
 folder = Path(tempfile.mkdtemp())
@@ -261,3 +261,27 @@ with checking("a folder that can't be written, // of a file that isn't saved, th
     bpy.ops.mesh.primitive_grid_add(size=20)
     bpy.ops.pelagic.use_mesh()
     assert refused(bpy.ops.pelagic.bake, "own mesh")
+
+with checking("Check for the Farm says what needs the add-on, which files are missing and which paths absolute; all baked, nothing"):
+    def farm_says():
+        assert bpy.ops.pelagic.check_farm() == {"FINISHED"}
+        return bpy.data.texts["Check for the Farm"].as_string()
+
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "place.blend"))
+    raft = bpy.data.objects.new("Raft", None)
+    bpy.context.collection.objects.link(raft)
+    raft.pelagic_float.enabled = True
+    raft.driver_add("location", 0).driver.expression = "pelagic_height(0, 0, frame)"
+    sea.pelagic.light.sky = "/no/sky.exr"
+    baked_folder = bake(shot_file("farm", "[surface]\nresolution = 16\n"))
+    next((baked_folder / "mesh").glob("*.0003.usdc")).unlink()
+    show_bake = played(baked_folder)
+    said = farm_says()
+    for words in ("need the add-on Pelagic Ocean", f"{sea.name} is a live sea", "Raft floats", "Raft has drivers", "farm plays a bake",
+                  "/no/sky.exr is missing", "/no/sky.exr is an absolute path", "missing on disk: 3"):
+        assert words in said, (words, said)
+    for obj in bpy.data.objects[:]:
+        if ocean.is_ocean(obj) or obj in (raft, show_bake):
+            bpy.data.objects.remove(obj)
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "place.blend"))
+    assert "don't need the add-on" in farm_says() and "No file is missing" in farm_says()

@@ -71,6 +71,52 @@ with checking("saved and loaded: the same settings, the same sea, playing"):
     for obj in ocean.oceans():
         assert np.array_equal(numbers(obj.data), expected[obj.name]), obj.name
 
+with checking("what is generated isn't in the file, and is there again after saving and loading; without it there is a marker"):
+    fresh_file()
+    scene = bpy.context.scene
+    scene.frame_set(7)
+    scene.render.resolution_x, scene.render.resolution_y, scene.camera.location = 160, 90, (0, 0, 9)
+    seas = {kind: add_ocean(surface__kind=kind, sea__wind_speed_mps=12.0) for kind in ("patch", "projected-grid")}
+    bpy.ops.mesh.primitive_cube_add(size=20)
+    bpy.ops.pelagic.use_cage()
+    seas["cage"] = bpy.context.object
+    painted = add_ocean()
+    painted.vertex_groups.new(name="By hand").add([3], 0.5, "ADD")
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=50, y_subdivisions=50, size=40)
+    bpy.ops.pelagic.use_mesh()
+    own = bpy.context.object
+    held = {obj.name: (obj.data.name, numbers(obj.data), list(obj.data.attributes.keys()), obj.data.materials[:])
+            for obj in ocean.oceans()}
+    meshes_before = set(bpy.data.meshes)
+
+    def expect_as_before():
+        for obj in ocean.oceans():
+            name, positions, attributes, materials = held[obj.name]
+            assert (obj.data.name, list(obj.data.attributes.keys())) == (name, attributes), obj.name
+            assert np.array_equal(numbers(obj.data), positions) and len(obj.data.materials) == len(materials), obj.name
+
+    light_file, copied = str(folder / "light.blend"), str(folder / "copied.blend")  # Blender reads no library out of its own file
+    for file in (light_file, copied):
+        bpy.ops.wm.save_as_mainfile(filepath=file, copy=file == copied)
+        assert set(bpy.data.meshes) == meshes_before
+        expect_as_before()
+    assert refused(lambda: bpy.ops.wm.save_as_mainfile(filepath=str(folder / "no" / "where.blend")), "no")
+    scene.frame_set(7)
+    expect_as_before()
+    in_file = {}
+    with bpy.data.libraries.load(copied) as (source, target):
+        target.meshes = list(source.meshes)
+    for mesh, name in zip(target.meshes, source.meshes):
+        in_file[name] = len(mesh.polygons)
+        bpy.data.meshes.remove(mesh)
+    for obj in seas.values():
+        assert in_file[obj.data.name] == 128 and "needs the add-on Pelagic Ocean" in obj["Pelagic Ocean"], in_file
+    for obj in (painted, own):
+        assert in_file[obj.data.name] == len(obj.data.polygons), obj.name
+    bpy.ops.wm.open_mainfile(filepath=light_file)
+    expect_as_before()
+    assert "By hand" in bpy.data.objects["Ocean.002"].vertex_groups
+
 with checking("a file of the first version gets today's number, and keeps what every mesh had then"):
     names_of_old = [obj.name for obj in ocean.oceans()]
     for obj in ocean.oceans():
@@ -91,14 +137,72 @@ with checking("appended into another file, it plays there"):
     go_to(10)
     assert np.array_equal(numbers(obj.data), expected[names[0]])
 
-with checking("linked from another file it can't move, and says so"):
-    fresh_file()
+def link_seas(path):
     with bpy.data.libraries.load(path, link=True) as (source, target):
-        target.objects = [names[0]]
-    obj = target.objects[0]
-    bpy.context.collection.objects.link(obj)
-    go_to(3)
-    assert "make it local" in play.simulation_of(obj).problem
+        target.collections = ["Seas"]
+    return target.collections[0]
+
+
+def instance_of(collection):
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    bpy.context.collection.objects.link(instance)
+    return instance
+
+
+with checking("linked from another file, instanced, or overridden, it plays as at home, and a render has it"):
+    fresh_file()
+    for horizon in (False, True):
+        add_ocean(horizon=horizon)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=50, y_subdivisions=50, size=40)
+    bpy.ops.pelagic.use_mesh()
+    names = [obj.name for obj in ocean.oceans()]
+    seas_collection = bpy.data.collections.new("Seas")
+    bpy.context.scene.collection.children.link(seas_collection)
+    for name in names:
+        seas_collection.objects.link(bpy.data.objects[name])
+    at_home = {}
+    for frame in (1, 12):
+        go_to(frame)
+        at_home[frame] = {name: (numbers(bpy.data.objects[name].data), numbers(bpy.data.objects[name].data, "velocity"))
+                          for name in names}
+    seas_file = str(folder / "seas.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=seas_file)
+
+    def expect_at_home(objects, frame):
+        for obj in objects:
+            held = at_home[frame][obj.name]
+            assert np.array_equal(numbers(obj.data), held[0]) and np.array_equal(numbers(obj.data, "velocity"), held[1]), obj.name
+            assert obj.data.library and obj.data.materials[0] and (obj.pelagic.own_mesh or obj.data.polygons[3].use_smooth)
+
+    for how in ("link", "instance", "override"):
+        fresh_file()
+        collection = link_seas(seas_file)
+        objects = [obj for obj in collection.objects if ocean.is_ocean(obj)]
+        if how == "link":
+            bpy.context.collection.children.link(collection)
+        else:
+            instance = instance_of(collection)
+        if how == "override":
+            collection.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer, reference=instance)
+            objects = [obj for obj in bpy.data.objects if ocean.is_ocean(obj) and obj.override_library]
+        assert len(objects) == 3
+        for frame in (12, 1):
+            go_to(frame)
+            expect_at_home(objects, frame)
+        assert all(play.simulation_of(obj).sea for obj in objects)
+        shot_file = str(folder / "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=shot_file)
+        fresh_file()
+        with bpy.data.libraries.load(shot_file) as (source, _):
+            assert not source.meshes, source.meshes
+        bpy.ops.wm.open_mainfile(filepath=shot_file)
+        render = bpy.context.scene.render
+        render.engine, render.resolution_percentage = "CYCLES", 2
+        bpy.context.scene.cycles.samples, bpy.context.scene.cycles.use_denoising = 1, False
+        bpy.context.scene.frame_current = 12
+        bpy.ops.render.render()
+        expect_at_home([obj for obj in ocean.oceans() if obj.library is None or how != "override"], 12)
 
 with checking("in a collection that is there only as an instance, it plays"):
     fresh_file()
@@ -106,9 +210,7 @@ with checking("in a collection that is there only as an instance, it plays"):
     collection = bpy.data.collections.new("Seas")
     collection.objects.link(obj)
     bpy.context.collection.objects.unlink(obj)
-    instance = bpy.data.objects.new("Instance", None)
-    instance.instance_type, instance.instance_collection = "COLLECTION", collection
-    bpy.context.collection.objects.link(instance)
+    instance_of(collection)
     go_to(3)
     before = numbers(obj.data)
     go_to(9)

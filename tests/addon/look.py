@@ -190,4 +190,6 @@ with checking("the sky is kept in files"):
         bpy.ops.wm.open_mainfile(filepath=str(Path(folder) / "sea.blend"))
     image = bpy.context.scene.world.node_tree.nodes[light.PICTURE].image
     pixels = np.array(image.pixels[:], np.float32)
-    assert image.packed_file and pixels.reshape(-1, 4)[:, :3].max() > 1
+    expected = light.sky_of(ocean.scene_of(bpy.data.objects["Ocean"], bpy.context.scene)).image(light.SKY_WIDTH)[::-1]
+    assert image.packed_file.size < 0.3e6
+    assert np.allclose(pixels.reshape(expected.shape[:2] + (4,))[..., :3], expected, rtol=2**-11)

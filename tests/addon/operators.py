@@ -148,3 +148,17 @@ with checking("a new ocean brings water, sun and sky; a world of the artist's ow
     bpy.data.objects.remove(bpy.context.object)
     bpy.ops.pelagic.add_ocean(light=True)
     assert scene.world != own
+
+with checking("where a Blender unit isn't a metre it says so, and an ocean that is scaled by hand is right"):
+    fresh_file()
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y, scene.camera.location = 160, 90, (0, 0, 9)
+    sea = add_ocean(surface__kind="projected-grid")
+    in_metres = numbers(sea.data)
+    assert not ocean.unit_warning(sea, scene)
+    scene.unit_settings.scale_length = 0.01
+    assert "ocean's own scale to 100" in ocean.unit_warning(sea, scene)
+    sea.scale, scene.camera.location.z = (100, 100, 100), 900
+    bpy.context.view_layer.update()
+    assert not ocean.unit_warning(sea, scene)
+    assert len(in_metres) == len(sea.data.vertices) and np.allclose(numbers(sea.data), in_metres, rtol=1e-4, atol=1e-2)

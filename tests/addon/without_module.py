@@ -33,11 +33,11 @@ with checking("the package registers, and says what is missing"):
     assert module.pelagic is None and "can't be loaded" in module.problem
     assert refused(bpy.ops.pelagic.add_ocean, "poll()")
 
-with checking("a file with an ocean opens, and keeps its settings"):
+with checking("a file with an ocean opens, keeps its settings, and has a marker that says what is missing"):
     with_the_module(f"add_ocean(sea__wind_speed_mps=23.0); bpy.ops.wm.save_as_mainfile(filepath={blend!r})")
     bpy.ops.wm.open_mainfile(filepath=blend)
     obj = bpy.data.objects["Ocean"]
-    assert obj.pelagic.is_ocean and len(obj.data.vertices) == 33**2
+    assert obj.pelagic.is_ocean and len(obj.data.polygons) == 128 and "needs the add-on" in obj["Pelagic Ocean"]
     bpy.context.scene.frame_set(5)
     bpy.ops.wm.save_as_mainfile(filepath=blend)
     with_the_module(f"bpy.ops.wm.open_mainfile(filepath={blend!r})\n"

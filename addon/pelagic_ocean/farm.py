@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a render farm needs for a scene: the add-on or not, and which files; said in words, in a text of the text editor."""
+
+import sys
+from pathlib import Path
+
+import bpy
+
+from . import baked, bl_info, floating, module, ocean, play, volumes
+from .properties import FIELDS
+
+TEXT = "Check for the Farm"
+ADD_ON = "{} {}.{}.{}".format(bl_info["name"], *bl_info["version"])
+
+
+def _rendered(bpy_scene):
+    """The scene's objects, and those of collections that it has instances of, by name; what isn't rendered left out."""
+    found, left = set(), list(bpy_scene.objects)
+    while left:
+        obj = left.pop()
+        if obj in found or obj.hide_render:
+            continue
+        found.add(obj)
+        if obj.instance_type == "COLLECTION" and obj.instance_collection:
+            left += obj.instance_collection.all_objects
+    return sorted(found, key=lambda obj: obj.name_full)
+
+
+def _with_drivers():
+    """What has drivers that ask for the water."""
+    for collection in (getattr(bpy.data, name) for name in dir(bpy.data)):
+        for owner in collection if isinstance(collection, bpy.types.bpy_prop_collection) else ():
+            for each in filter(None, (owner, getattr(owner, "node_tree", None), getattr(owner, "shape_keys", None))):
+                animation = getattr(each, "animation_data", None)
+                if animation and any("pelagic_height" in curve.driver.expression for curve in animation.drivers):
+                    yield owner.name_full
+                    break
+
+
+def _path_faults(path, library):
+    file = Path(bpy.path.abspath(path, library=library))
+    if not file.exists():
+        yield f"{file} is missing"
+    if not path.startswith("//"):
+        yield f"{path} is an absolute path, which other machines may not have; accepted: // (File, External Data, Make Paths Relative)"
+
+
+def _faults_of_ocean(obj, bpy_scene):
+    groups = obj.pelagic
+    for field in FIELDS:
+        value = getattr(getattr(groups, field.table), field.name) if field.is_path else ""
+        if value and value != field.key["default"]:
+            yield from _path_faults(value, obj.library)
+    try:
+        problem = play.brought_up(obj, bpy_scene, bpy.context.evaluated_depsgraph_get(), True).problem
+    except (ValueError, OSError) as error:
+        problem = str(error)
+    if problem:
+        yield f"it stands still: {problem}"
+
+
+def _faults_of_bake(obj):
+    yield from _path_faults(obj.pelagic_baked.path, obj.library)
+    try:
+        missing = baked.bake_of(obj).missing()
+    except (ValueError, OSError) as error:
+        yield str(error)
+    else:
+        if missing:
+            yield f"missing on disk: {missing}"
+
+
+def _faults_of_volume(obj, bpy_scene):
+    yield from _path_faults(obj.data.filepath, obj.library)
+    frames = {}
+    for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
+        frames.setdefault(volumes.problem_of(obj, bpy_scene, frame).replace(f" {frame}", " these frames"), []).append(frame)
+    missing = [frame for problem, of in frames.items() if "is missing" in problem for frame in of]
+    if missing:
+        yield f"missing on disk: {volumes.words_of(sorted(missing))}"
+    for problem, of in frames.items():
+        if problem and "is missing" not in problem:
+            yield f"{problem} (frames {volumes.words_of(of)})"
+
+
+def check(bpy_scene):
+    """What needs the add-on on farm nodes, and what is wrong: two lists of sentences."""
+    needs, faults = [], []
+    floats = floating.floats(bpy_scene)
+    objects = _rendered(bpy_scene)
+    for obj in objects:
+        told = ()
+        if ocean.is_ocean(obj):
+            needs.append(f"{obj.name_full} is a live sea")
+            told = _faults_of_ocean(obj, bpy_scene)
+        elif obj.type == "MESH" and obj.pelagic_baked.path:
+            needs.append(f"{obj.name_full} plays a bake, which the add-on reads")
+            told = _faults_of_bake(obj)
+        elif obj.type == "VOLUME" and obj.pelagic_volume.kind:
+            told = _faults_of_volume(obj, bpy_scene)
+        elif obj in floats:
+            needs.append(f"{obj.name_full} floats")
+        faults += [f"{obj.name_full}: {fault}" for fault in told]
+    drivers = list(dict.fromkeys(_with_drivers()))
+    needs += [f"{name} has drivers that ask for the water" for name in drivers]
+    if drivers:
+        faults.append("Drivers that ask for the water run only where Blender may run scripts: start it with --enable-autoexec")
+    for library in {obj.library for obj in objects if obj.library}:
+        faults += [f"{library.name}: {fault}" for fault in _path_faults(library.filepath, None)]
+    if not bpy.data.filepath or bpy.data.is_dirty:
+        faults.append("The file isn't saved, or has changed since")
+    return needs, faults
+
+
+def words(needs, faults):
+    """The outcome as lines."""
+    if needs:
+        lines = [f"Farm nodes need the add-on {ADD_ON}, its module for {sys.platform} and Python {module.THIS_PYTHON}, and it must be "
+                 f"enabled there, such as by --addons {__package__.split('.')[-1]}:", *needs]
+    else:
+        lines = ["Farm nodes don't need the add-on: nothing in this scene is live"]
+    return lines + (["To be put right first:", *faults] if faults else ["No file is missing, no path is absolute"])
+
+
+class PELAGIC_OT_check_farm(bpy.types.Operator):
+    """Say whether farm nodes need the add-on for this scene, what for, and which files are missing or have absolute paths"""
+
+    bl_idname = "pelagic.check_farm"
+    bl_label = TEXT
+
+    def execute(self, context):
+        needs, faults = check(context.scene)
+        lines = words(needs, faults)
+        text = bpy.data.texts.get(TEXT) or bpy.data.texts.new(TEXT)
+        text.from_string("\n".join(lines) + "\n")
+        for line in lines:
+            self.report({"WARNING" if faults or needs else "INFO"}, line)
+        return {"FINISHED"}
+
+
+PANELS = ("PELAGIC_PT_object_output", "PELAGIC_PT_view_output")
+
+
+def _draw(self, _context):
+    """The end of the Output panels."""
+    self.layout.operator(PELAGIC_OT_check_farm.bl_idname, icon="CHECKMARK")
+
+
+def register():
+    bpy.utils.register_class(PELAGIC_OT_check_farm)
+    for name in PANELS:
+        getattr(bpy.types, name).append(_draw)
+
+
+def unregister():
+    for name in PANELS:
+        getattr(bpy.types, name).remove(_draw)
+    bpy.utils.unregister_class(PELAGIC_OT_check_farm)

@@ -84,6 +84,10 @@ class Simulation:
         """The surface and the products' arrays at a moment, until look_ahead(). None: BuiltSea.buffers()."""
         return self._built.buffers(moment, patience_s)
 
+    def without_foam(self, moment):
+        """The same at once, with foam yet to come; None where foam needs no time."""
+        return self._built.without_foam(moment) if self._built.looks_back else None
+
     @property
     def progress(self):
         """Of what is_behind waits for, 0 to 1."""
@@ -247,8 +251,9 @@ def brought_up(obj, bpy_scene, depsgraph, wait=False):
     return simulation
 
 
-def _show(obj, bpy_scene, depsgraph, again, wait=False):
-    """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already."""
+def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
+    """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already.
+    foam_later: shows the waves, and begins what takes longer."""
     simulation = _simulation(obj)
     wait = wait or bpy.app.background or bool(_rendering)
     view = simulation.follow(obj, bpy_scene, depsgraph, wait)
@@ -259,8 +264,16 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False):
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again:
         return
-    # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
-    buffers = simulation.buffers(moment, None if wait or _is_shared(simulation) else PATIENCE_S)
+    waves = simulation.without_foam(moment) if foam_later else None
+    if waves:
+        if not meshes.holds(obj.data, waves[0]):
+            meshes.put_surface(obj.data, waves[0], False)
+        meshes.put_frame(obj.data, waves[1])
+        patience_s = 0.0
+    else:
+        # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
+        patience_s = None if wait or _is_shared(simulation) else PATIENCE_S if again or not simulation.is_behind else 0.0
+    buffers = simulation.buffers(moment, patience_s)
     simulation.is_behind = buffers is None
     if simulation.is_behind:
         _look_later()
@@ -284,11 +297,13 @@ def _is_of_the_same_view(shown, before):
                                                                                                   before[2].share)
 
 
-def show(obj, bpy_scene, depsgraph):
-    """Brings an ocean to the present, and waits for it."""
-    simulation = _simulation(obj)
-    simulation.follow(obj, bpy_scene, depsgraph, True)
-    _show(obj, bpy_scene, depsgraph, True, True)
+def show(obj, bpy_scene, depsgraph, foam_later=False):
+    """Brings an ocean to the present, and waits for it; foam_later: for its waves, and begins the rest."""
+    _show(obj, bpy_scene, depsgraph, True, True, foam_later)
+
+
+def is_rendering():
+    return bool(_rendering)
 
 
 def _forget_deleted():

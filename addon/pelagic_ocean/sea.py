@@ -106,6 +106,22 @@ class BuiltSea:
             return self._surface, self._arrays
 
     @property
+    def looks_back(self):
+        """Whether a moment may take long, because its foam has a past."""
+        return "foam_age" in self.sea.products
+
+    def without_foam(self, moment):
+        """The surface and each product's array at a Moment, at once: no foam in them."""
+        with self._lock:
+            surface = self._surface_at(moment)
+            arrays = {product: np.zeros(len(surface), np.float32) for product in self.sea.products if product in NUMBERS}
+            arrays |= self.frame_at(moment.time_s).evaluate(
+                surface.rest, surface.origin_m, **_footprints(surface),
+                outputs=[product for product in self.sea.products if product not in NUMBERS])
+            _finish_arrays(arrays, surface, moment)
+            return surface, arrays
+
+    @property
     def progress(self):
         """The share of the foam's past that is gone through; 1 where nothing is waited for."""
         task = self._task
@@ -147,9 +163,7 @@ class BuiltSea:
             self._arrays = {product: np.empty(len(surface) if product in NUMBERS else (len(surface), 3), np.float32)
                             for product in self.sea.products}
         self._surface, self._seen_from = surface, (moment.view, moment.share)
-        self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
-                                       pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
-                                       pixel_axis_m=surface.cell_axis_m, rest_normal=surface.normal, **self._arrays)
+        self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, **_footprints(surface), **self._arrays)
         self._coming = moment
 
     def _drop(self):
@@ -167,15 +181,9 @@ class BuiltSea:
         """Waits for what was begun, if anything was."""
         if self._task is None:
             return
-        task, self._task, surface = self._task, None, self._surface
+        task, self._task = self._task, None
         task.result()
-        position, velocity = self._arrays["position"], self._arrays["velocity"]
-        if surface.origin_m != (0.0, 0.0):
-            position[:, :2] += np.array(surface.origin_m, np.float32)
-        if surface.height_m is not None:
-            position[:, 2] += surface.height_m
-        if self._coming.time_scale != 1.0:
-            velocity *= np.float32(self._coming.time_scale)  # metres in a second of the screen
+        _finish_arrays(self._arrays, self._surface, self._coming)
         self._moment = self._coming
 
     def _surface_at(self, moment):
@@ -184,3 +192,19 @@ class BuiltSea:
         if self._surface is not None and self._seen_from == (moment.view, moment.share):
             return self._surface
         return surfaces.projected_grid(self.sea, moment.view, moment.share, self._uv_m)
+
+
+def _footprints(surface):
+    """Arguments of pelagic.Frame.begin() and evaluate()."""
+    return {"cell_m": surface.cell_m, "pixel_m": surface.cell_m, "cell_axis_m": surface.cell_axis_m,
+            "pixel_axis_m": surface.cell_axis_m, "rest_normal": surface.normal}
+
+
+def _finish_arrays(arrays, surface, moment):
+    """From the core's arrays to the mesh's: in the object's coordinates and the screen's seconds."""
+    if surface.origin_m != (0.0, 0.0):
+        arrays["position"][:, :2] += np.array(surface.origin_m, np.float32)
+    if surface.height_m is not None:
+        arrays["position"][:, 2] += surface.height_m
+    if moment.time_scale != 1.0:
+        arrays["velocity"] *= np.float32(moment.time_scale)  # metres in a second of the screen

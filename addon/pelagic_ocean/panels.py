@@ -99,6 +99,7 @@ class Main:
                 layout.label(text="Building the sea…", icon="SORTTIME")
             elif simulation.sea:
                 layout.label(text=f"Waves of {simulation.sea.significant_height_m:.1f} m (significant height)")
+                _draw_vertices(layout, context.object)
                 for warning in simulation.warnings:
                     draw_words(layout.box(), warning)
 
@@ -130,7 +131,13 @@ class Sub:
             layout.prop(settings, "see_through")
 
 
+def _draw_vertices(layout, obj):
+    count, whole = (f"{number:,}".replace(",", " ") for number in play.vertices_of(obj))
+    layout.label(text=f"Vertices: {count}" if count == whole else f"Viewport: {count} of {whole} vertices")
+
+
 def _draw_surface(layout, settings):
+    _draw_vertices(layout, settings.id_data)
     if settings.own_mesh:
         layout.label(text="The object's own mesh")
         layout.operator(PELAGIC_OT_release_mesh.bl_idname)
@@ -139,7 +146,9 @@ def _draw_surface(layout, settings):
         layout.prop(settings, "horizon")
     if settings.surface.kind == "cage":
         layout.prop(settings, "cage")
-    layout.prop(settings, "viewport_percentage")
+    if settings.surface.kind != "cage":
+        layout.prop(settings, "viewport_percentage")
+        layout.prop(settings, "viewport_vertices")
     layout.prop(settings, "uv_map")
 
 

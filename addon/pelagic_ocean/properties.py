@@ -316,6 +316,10 @@ def _ocean_annotations():
         "viewport_percentage": IntProperty(
             name="Viewport", default=100, min=1, max=100, subtype="PERCENTAGE", update=_touched,
             description="Vertices a side while you work, as a share of what a render has"),
+        "viewport_vertices": IntProperty(
+            name="Viewport at Most", default=500_000, min=0, soft_max=5_000_000, update=_touched,
+            description="Vertices while you work: a patch or a projected grid that would have more is coarser than in a render. "
+                        "0: as many as there are"),
     }
 
 

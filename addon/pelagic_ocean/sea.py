@@ -6,6 +6,7 @@ not whether its own is, so that beside a thread of ours two would be in it at on
 Blender is a pelagic.Task, in a native thread of the module that never enters Python.
 """
 
+import math
 import threading
 import time
 from contextlib import contextmanager
@@ -23,12 +24,18 @@ NUMBERS = {"coverage", "foam_active", "foam_age"}  # products of one number a po
 @dataclass(frozen=True)
 class Moment:
     """What a sea is shown at: its time [s], how much of that passes in a second of the screen, and for the projected grid
-    whose view, and what share of the columns and rows that it needs."""
+    whose view, what share of the columns and rows that it needs, and how many points at most."""
 
     time_s: float
     time_scale: float = 1.0
     view: object = None
     share: float = 1.0
+    most: float = math.inf
+
+    @property
+    def seen_from(self):
+        """What the points of a surface that moves depend on."""
+        return self.view, self.share, self.most
 
 
 class Job:
@@ -84,7 +91,7 @@ class BuiltSea:
         self._lock = threading.RLock()  # a render has a thread of its own
         self._frame = pelagic.Frame(self.sea)
         self._moment, self._surface, self._arrays = None, None, {}
-        self._seen_from = None  # the view and the share that a surface that moves is of
+        self._seen_from = None  # Moment.seen_from of a surface that moves
         self._task, self._coming = None, None  # what is being computed, and the moment of that
         self._asked_frame = None
 
@@ -162,7 +169,7 @@ class BuiltSea:
         if self._surface is None or len(surface) != len(self._surface):
             self._arrays = {product: np.empty(len(surface) if product in NUMBERS else (len(surface), 3), np.float32)
                             for product in self.sea.products}
-        self._surface, self._seen_from = surface, (moment.view, moment.share)
+        self._surface, self._seen_from = surface, moment.seen_from
         self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, **_footprints(surface), **self._arrays)
         self._coming = moment
 
@@ -189,9 +196,9 @@ class BuiltSea:
     def _surface_at(self, moment):
         if self._fixed is not None:
             return self._fixed
-        if self._surface is not None and self._seen_from == (moment.view, moment.share):
+        if self._surface is not None and self._seen_from == moment.seen_from:
             return self._surface
-        return surfaces.projected_grid(self.sea, moment.view, moment.share, self._uv_m)
+        return surfaces.projected_grid(self.sea, *moment.seen_from, self._uv_m)
 
 
 def _footprints(surface):

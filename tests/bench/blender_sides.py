@@ -94,7 +94,7 @@ class AddOn(Side):
             self.step()
             return
         settings = self.object.pelagic
-        settings.horizon, settings.viewport_percentage, settings.uv_map = False, 100, uv_map
+        settings.horizon, settings.viewport_vertices, settings.uv_map = False, 0, uv_map
         shot = pelagic.Scene()
         shot.surface.size_m, shot.surface.resolution = SIZE_M, n
         if as_the_modifier:

@@ -90,6 +90,9 @@ class Simulation:
         """The same at once, with foam yet to come; None where foam needs no time."""
         return self._built.without_foam(moment) if self._built.looks_back else None
 
+    def prepare(self, moment):
+        self._built.prepare(moment)
+
     @property
     def progress(self):
         """Of what is_behind waits for, 0 to 1."""
@@ -104,7 +107,7 @@ class Simulation:
         step = frame - last[0] if last else 0
         self._last = (frame, step, moment.view)
         if step and self._last[1:] == last[1:]:
-            self._built.prepare(self.moment_at(frame + step, *moment.seen_from))
+            self.prepare(self.moment_at(frame + step, *moment.seen_from))
 
     def follow(self, obj, bpy_scene, depsgraph, wait):
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
@@ -276,32 +279,31 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again:
         return
+    if simulation.is_behind and not again and not wait and simulation.progress < 1.0:
+        return
+    # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
+    patience_s = None if wait or _is_shared(simulation) else PATIENCE_S
     waves = simulation.without_foam(moment) if foam_later else None
-    if waves:
-        if not meshes.holds(obj.data, waves[0]):
-            meshes.put_surface(obj.data, waves[0], False)
-        meshes.put_frame(obj.data, waves[1])
-        patience_s = 0.0
-    else:
-        # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
-        patience_s = None if wait or _is_shared(simulation) else PATIENCE_S if again or not simulation.is_behind else 0.0
-    buffers = simulation.buffers(moment, patience_s)
-    simulation.is_behind = buffers is None
+    buffers = waves or simulation.buffers(moment, patience_s)
+    simulation.is_behind = buffers is None or waves is not None
     if simulation.is_behind:
         _look_later()
+    if buffers is None:
         return
     surface, arrays = buffers
     simulation.whole = surface.whole
     if not meshes.holds(obj.data, surface):
         if surface.faces is None:
             return
-        meshes.put_surface(obj.data, surface, obj.pelagic.uv_map)
+        meshes.put_surface(obj.data, surface, obj.pelagic.uv_map and not waves)
     elif surface.moves and not _is_of_the_same_view(shown, simulation.shown):
         meshes.move_rest(obj.data, surface)
-    if surface.faces is not None:  # a mesh of the user's own keeps its maps
+    if surface.faces is not None and not waves:  # a mesh of the user's own keeps its maps
         meshes.keep_uv(obj.data, surface, obj.pelagic.uv_map)
     meshes.put_frame(obj.data, arrays)
-    simulation.shown = shown
+    simulation.shown = None if waves else shown
+    if waves:
+        simulation.prepare(moment)
 
 
 def _is_of_the_same_view(shown, before):

@@ -87,10 +87,11 @@ def patch(size_m, resolution, horizon, whole=0):
             return _with_rings(rest, quads, size_m, resolution)
         return rest, quads, size_m / resolution
 
-    rest, quads, cell_m = points()
+    made = [points()]
+    rest, quads, cell_m = made[0]
     lattice = (-0.5 * size_m, cell_m, 0.5 * size_m) if len(quads) == resolution**2 else None
-    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m, lambda: _quads(points()[1]), uv_m=size_m,
-                   lattice=lattice, whole=whole)
+    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m,
+                   lambda: _quads((made.pop() if made else points())[1]), uv_m=size_m, lattice=lattice, whole=whole)
 
 
 def projected_grid(sea, view, share, most, uv_m):

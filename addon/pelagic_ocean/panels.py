@@ -85,6 +85,8 @@ class Main:
 
     def draw(self, context):
         layout = self.layout
+        if pelagic is not None and ocean.is_ocean(context.object):
+            layout.menu(PELAGIC_MT_presets.bl_idname, icon="PRESET")
         if pelagic is None:
             draw_words(layout.box(), problem)
         elif not ocean.is_ocean(context.object):
@@ -116,8 +118,6 @@ class Sub:
         layout = self.layout
         layout.use_property_split = True
         settings = context.object.pelagic
-        if self.bl_label == "Sea":
-            layout.menu(PELAGIC_MT_presets.bl_idname)
         if self.bl_label == "Light":
             row = layout.row(align=True)
             row.operator(PELAGIC_OT_add_light.bl_idname, icon="LIGHT_SUN")

@@ -3,13 +3,14 @@
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
 import pelagic
-from pelagic_ocean import ocean, play, presets
+from pelagic_ocean import ocean, panels, play, presets, viewport
 
 fresh_file()
 obj = add_ocean()
@@ -28,6 +29,29 @@ with checking("the core's presets: a sea each, and higher waves with each force 
         heights[preset["name"]] = simulation.sea.significant_height_m
     beaufort = [heights[f"beaufort-{force}"] for force in range(13)]
     assert beaufort == sorted(beaufort) and beaufort[0] < 0.05 and beaufort[12] > 10, beaufort
+
+with checking("the menu is the main panel's first row, and in a view's header for an active ocean alone; each preset says what it is"):
+    class Layout:
+        """Writes down what is drawn."""
+
+        def __init__(self):
+            self.drawn = []
+
+        def __getattr__(self, what):
+            return lambda *words, **_: self.drawn.append((what, *words)) or self
+
+    def drawn(draw, on):
+        draw(on, bpy.context)
+        return on.layout.drawn
+
+    menu = ("menu", "PELAGIC_MT_presets")
+    assert drawn(panels.Main.draw, SimpleNamespace(layout=Layout()))[0] == menu
+    assert menu in drawn(viewport._header, SimpleNamespace(layout=Layout()))
+    bpy.context.view_layer.objects.active = bpy.data.objects["Camera"]
+    assert menu not in drawn(viewport._header, SimpleNamespace(layout=Layout()))
+    bpy.context.view_layer.objects.active = obj
+    told = {presets.PELAGIC_OT_preset_apply.description(None, SimpleNamespace(name=preset["name"])) for preset in pelagic.presets()}
+    assert len(told) == len(pelagic.presets()) and all(words[0].isupper() and ". Sets " in words for words in told), told
 
 with checking("a preset of one's own: saved, applied, and only the sea, the light and the water are in it"):
     assert Path(os.environ["BLENDER_USER_SCRIPTS"]) in presets.folder(create=True).parents

@@ -167,7 +167,7 @@ def _sentence(text):
     return text[:1].upper() + text[1:]
 
 
-def _label(key):
+def label_of(key):
     unit = SIGNS.get(key["unit"], key["unit"])
     return key["label"] + (f" ({unit})" if unit and key["unit"] not in UNITS else "")
 
@@ -176,7 +176,7 @@ def _common(key):
     text = _sentence(key["help"]) or key["label"]
     if key["accepted"]:
         text += f". Accepted: {key['accepted']}"
-    return {"name": _label(key), "description": text, "update": _touched}
+    return {"name": label_of(key), "description": text, "update": _touched}
 
 
 def _numeric(key, limit=math.inf):

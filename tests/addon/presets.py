@@ -1,7 +1,9 @@
 """Presets: the core's each give a sea; the user's own are saved, applied, deleted."""
 
 import os
+import runpy
 import sys
+import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -76,3 +78,19 @@ with checking("deleted, it is gone"):
     bpy.ops.pelagic.preset_delete(name=name)
     assert not presets.own_presets()
     assert refused(lambda: bpy.ops.pelagic.preset_delete(name=name), "no preset")
+
+with checking("a library of assets: thumbnails, empty meshes, and an ocean of the preset where one arrives"):  # two seas are rendered
+    library = Path(tempfile.mkdtemp()) / "presets.blend"
+    sys.argv = ["blender", "--", str(library), "--presets", "beaufort-10,glassy-swell", "--samples", "1", "--size", "32"]
+    runpy.run_path(str(ROOT / "examples" / "blender-presets.py"), run_name="__main__")
+    fresh_file()
+    with bpy.data.libraries.load(str(library), assets_only=True) as (there, here):
+        here.objects = there.objects
+    storm, swell = (bpy.data.objects[name] for name in ("10 Storm", "Glassy swell"))
+    for each in (storm, swell):
+        picture = np.array(each.preview.image_pixels_float[:]).reshape(32, 32, 4)[..., :3]
+        assert not len(each.data.vertices) and picture.std() > 0.02 and library.stat().st_size < 2e6, library.stat().st_size
+        bpy.context.collection.objects.link(each)
+    bpy.context.view_layer.update()
+    assert numbers(storm.data)[:, 2].std() > 3 * numbers(swell.data)[:, 2].std() > 0
+    assert storm.data.materials[0] != swell.data.materials[0]

@@ -12,7 +12,7 @@ from mathutils import Vector
 
 from . import cages, camera, light, ocean
 from .module import pelagic
-from .operators import GivesLook, NeedsModule, show_now
+from .operators import GivesLook, NeedsModule
 from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
@@ -123,7 +123,7 @@ def ocean_of(context):
 # ---- In
 
 
-class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
+class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
     """Add the ocean of a shot file with its camera, sun and sky, and give the scene its frames"""
 
     bl_idname = "pelagic.import_shot"
@@ -156,8 +156,7 @@ class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
             obj.pelagic.light.sky = str(Path(scene.light.sky).absolute())
         obj.pelagic.horizon = False  # the shot's surface and no more
         ocean.select_only(context, obj)
-        self.give_look(context, obj)
-        simulation = show_now(context, obj)
+        simulation = self.show(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
         if obj.name != scene.shot.name:

@@ -45,6 +45,7 @@ def ensure_light(bpy_scene, scene, exposure=True):
     update_light(bpy_scene, scene)
 
 
+_put = None  # the image's name and the pelagic.Sky that was put into it last
 _daylights = {}  # text of a scene's light → its pelagic.Sky: the last few, for undo and for several who ask
 
 
@@ -60,10 +61,18 @@ def sky_of(scene):
     return _daylights[key]
 
 
+def forget():
+    """Images may be of another moment now."""
+    global _put
+    _put = None
+
+
 def update_light(bpy_scene, scene):
     """Brings what ensure_light() made up to the scene; what an artist took away or put in its place stays so."""
-    sky = sky_of(scene)
     world, lamp = bpy_scene.world, own_sun(bpy_scene)
+    if lamp is None and (world is None or MARK not in world):
+        return
+    sky = sky_of(scene)
     if world is not None and MARK in world:
         _put_sky(world, sky)
         if EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
@@ -77,9 +86,11 @@ def own_sun(bpy_scene):
 
 
 def _put_sky(world, sky):
+    global _put
     picture, disc = (world.node_tree.nodes.get(name) for name in (PICTURE, DISC))
-    if picture is not None:
+    if picture is not None and (picture.image is None or _put != (picture.image.name_full, sky)):
         picture.image = _sky_image(picture.image, sky)
+        _put = picture.image.name_full, sky
     if disc is not None:
         disc.inputs["Direction"].default_value = sky.sun_direction
         disc.inputs["Radiance"].default_value = sky.sun_radiance

@@ -18,6 +18,8 @@ PLACES = [place for place, field in enumerate(FIELDS)
 
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
+DUE = "pelagic_look_due"  # on an ocean that has no look yet: with sun and sky or not
+
 _shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last
 
 
@@ -35,6 +37,7 @@ def is_untouched(world):
 def give(obj, bpy_scene, sun_and_sky):
     """An ocean's material; if wanted, sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
     scene = ocean.scene_of(obj, bpy_scene)
+    _shown.pop((obj.name_full, bpy_scene.name), None)
     material.ensure_material(obj, scene)
     if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
@@ -49,6 +52,36 @@ def try_to(operator, give):
     except Exception as error:  # another Blender's nodes, say
         traceback.print_exc()
         operator.report({"WARNING"}, f"The look isn't complete, {type(error).__name__}: {error}. The console says where")
+
+
+def give_soon(obj, sun_and_sky):
+    """give() from a timer. Undo steps keep that it is due, and who goes back to one is given the look again."""
+    obj[DUE] = sun_and_sky
+    _give_due_soon()
+
+
+def _give_due_soon():
+    if not bpy.app.timers.is_registered(_give_due):
+        bpy.app.timers.register(_give_due, first_interval=0.02)
+
+
+def _give_due():
+    if play.is_rendering():
+        return 0.5
+    for obj in ocean.oceans():
+        if DUE in obj:
+            sun_and_sky = obj.pop(DUE)
+            for bpy_scene in obj.users_scene[:1]:
+                try_to(Console, lambda: give(obj, bpy_scene, sun_and_sky))
+    return None
+
+
+class Console:
+    """Hears what operators report, where there is none."""
+
+    @staticmethod
+    def report(_kind, text):
+        print(text)
 
 
 @persistent
@@ -87,6 +120,9 @@ def _follow_updates(bpy_scene, depsgraph):
 @persistent
 def _forget(*_):
     _shown.clear()
+    light.forget()
+    if any(DUE in obj for obj in ocean.oceans()):
+        _give_due_soon()
 
 
 class PELAGIC_OT_add_light(bpy.types.Operator):
@@ -142,6 +178,8 @@ def register():
 
 def unregister():
     handlers.remove(HANDLERS)
+    if bpy.app.timers.is_registered(_give_due):
+        bpy.app.timers.unregister(_give_due)
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)
     _shown.clear()

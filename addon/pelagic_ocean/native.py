@@ -104,8 +104,7 @@ def scene_from(modifier, height_m, times, frame_rate):
 
 
 class PELAGIC_OT_replace_ocean_modifier(NeedsModule, bpy.types.Operator):
-    """Take the object's Ocean modifier away and make it the nearest Pelagic ocean, in the same place, of the same size
-    and material"""
+    """Make the object's Ocean modifier the nearest Pelagic ocean, in the same place, of the same size and material"""
 
     bl_idname = "pelagic.replace_ocean_modifier"
     bl_label = "Replace Ocean Modifier"

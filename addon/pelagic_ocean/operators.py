@@ -29,17 +29,30 @@ class GivesLook(NeedsModule):
     light: BoolProperty(name="Sun and Sky", default=True, options={"SKIP_SAVE"},
                         description="Give the scene the ocean's sun and sky. Unless asked for, a world of your own stays")
 
-    def give_look(self, context, obj):
+    by_hand = False
+
+    def invoke(self, context, _event):
+        self.by_hand = not bpy.app.background
+        return self.execute(context)
+
+    def show(self, context, obj):
+        """The sea is in the mesh when the operator returns, and has its look. By hand in a window its waves are there, and
+        foam and look follow from timers. Returns its Simulation."""
         if not self.properties.is_property_set("light"):
             self.light = look.is_untouched(context.scene.world)
-        look.try_to(self, lambda: look.give(obj, context.scene, self.light))
+        simulation = show_now(context, obj, foam_later=True)
+        if self.by_hand:
+            look.give_soon(obj, self.light)
+            return simulation
+        look.try_to(self, lambda: look.give(obj, context.scene, self.light))  # while threads look back at the foam's past
+        return show_now(context, obj)
 
 
-def show_now(context, obj):
+def show_now(context, obj, foam_later=False):
     """The sea is in the mesh when the operator returns."""
     context.scene.render.use_lock_interface = True  # in a render frames change on its own thread
     depsgraph = context.evaluated_depsgraph_get()
-    play.show(obj, context.scene, depsgraph)
+    play.show(obj, context.scene, depsgraph, foam_later)
     return play.simulation_of(obj)
 
 
@@ -70,8 +83,7 @@ class PELAGIC_OT_add_ocean(GivesLook, bpy.types.Operator):
             _see_far(context)
         if hasattr(context.scene, "cycles") and not compat.can_denoise():
             context.scene.cycles.use_denoising = False  # or the first render ends in an error
-        self.give_look(context, obj)
-        simulation = show_now(context, obj)
+        simulation = self.show(context, obj)
         if simulation.problem:
             self.report({"ERROR"}, simulation.problem)
             return {"CANCELLED"}
@@ -108,8 +120,7 @@ class PELAGIC_OT_use_mesh(GivesLook, bpy.types.Operator):
         meshes.capture(obj.data)
         obj.pelagic.own_mesh = True
         ocean.mark(obj)
-        self.give_look(context, obj)
-        simulation = show_now(context, obj)
+        simulation = self.show(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
         return {"FINISHED"}
@@ -134,8 +145,7 @@ class PELAGIC_OT_use_cage(GivesLook, bpy.types.Operator):
             return {"CANCELLED"}
         obj = ocean.make(f"{cage.name} Sea", context.collection)
         obj.pelagic.surface.kind, obj.pelagic.cage = "cage", cage
-        self.give_look(context, obj)
-        simulation = show_now(context, obj)
+        simulation = self.show(context, obj)
         if simulation.problem:
             self.report({"ERROR"}, simulation.problem)
             bpy.data.meshes.remove(obj.data)  # and with it the object

@@ -9,7 +9,8 @@ from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
-from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields
+from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields, label_of
+from .translations import CONTEXT, say
 
 # Title → tables of keys.
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
@@ -18,17 +19,17 @@ PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), 
 def draw_words(layout, text):
     """A message in lines that fit."""
     line = ""
-    for word in text.split():
+    for word in bpy.app.translations.pgettext_iface(text, CONTEXT).split():
         if len(line) + len(word) > 40:
-            layout.label(text=line)
+            layout.label(text=line, translate=False)
             line = ""
         line += (" " if line else "") + word
-    layout.label(text=line)
+    layout.label(text=line, translate=False)
 
 
 def _draw_list(layout, group, field):
     head = layout.row()
-    head.label(text=field.key["label"])
+    head.label(text=say(field.key["label"]), translate=False)
     head.operator(PELAGIC_OT_list_add.bl_idname, text="", icon="ADD").path = field.path
     for index, row in enumerate(getattr(group, field.name)):
         box = layout.row()
@@ -43,16 +44,16 @@ def _draw_field(layout, group, field):
     if field.key["type"] == "entries":
         _draw_list(layout, group, field)
     elif field.switch:
-        row = layout.row(heading=field.key["label"])
+        row = layout.row(heading=say(field.key["label"]), translate=False)
         row.prop(group, field.switch, text="")
         if getattr(group, field.switch):
             row.prop(group, field.name, text="")
         else:
             row.label(text="automatic" if field.absent is None else "infinite")
     elif field.key["type"] == "words":
-        layout.column(heading=field.key["label"]).prop(group, field.name, expand=True)
+        layout.column(heading=say(field.key["label"]), translate=False).prop(group, field.name, expand=True)
     else:
-        layout.prop(group, field.name)
+        layout.prop(group, field.name, text=say(label_of(field.key)), translate=False)
 
 
 def _draw_tables(layout, settings, tables, title):
@@ -85,6 +86,8 @@ class Main:
 
     def draw(self, context):
         layout = self.layout
+        if pelagic is not None and ocean.is_ocean(context.object):
+            layout.menu(PELAGIC_MT_presets.bl_idname, icon="PRESET")
         if pelagic is None:
             draw_words(layout.box(), problem)
         elif not ocean.is_ocean(context.object):
@@ -101,7 +104,8 @@ class Main:
             elif simulation.is_building:
                 layout.label(text="Building the sea…", icon="SORTTIME")
             elif simulation.sea:
-                layout.label(text=f"Waves of {simulation.sea.significant_height_m:.1f} m (significant height)")
+                layout.label(text=say("Waves of {:.1f} m (significant height)", simulation.sea.significant_height_m), translate=False)
+                _draw_vertices(layout, context.object)
                 for warning in simulation.warnings:
                     draw_words(layout.box(), warning)
 
@@ -118,8 +122,6 @@ class Sub:
         layout = self.layout
         layout.use_property_split = True
         settings = context.object.pelagic
-        if self.bl_label == "Sea":
-            layout.menu(PELAGIC_MT_presets.bl_idname)
         if self.bl_label == "Light":
             row = layout.row(align=True)
             row.operator(PELAGIC_OT_add_light.bl_idname, icon="LIGHT_SUN")
@@ -133,7 +135,14 @@ class Sub:
             layout.prop(settings, "see_through")
 
 
+def _draw_vertices(layout, obj):
+    count, whole = (f"{number:,}".replace(",", " ") for number in play.vertices_of(obj))
+    text = say("Vertices: {}", count) if count == whole else say("Viewport: {} of {} vertices", count, whole)
+    layout.label(text=text, translate=False)
+
+
 def _draw_surface(layout, settings):
+    _draw_vertices(layout, settings.id_data)
     if settings.own_mesh:
         layout.label(text="The object's own mesh")
         layout.operator(PELAGIC_OT_release_mesh.bl_idname)
@@ -142,7 +151,9 @@ def _draw_surface(layout, settings):
         layout.prop(settings, "horizon")
     if settings.surface.kind == "cage":
         layout.prop(settings, "cage")
-    layout.prop(settings, "viewport_percentage")
+    if settings.surface.kind != "cage":
+        layout.prop(settings, "viewport_percentage")
+        layout.prop(settings, "viewport_vertices")
     attributes = layout.column(heading="Attributes")
     attributes.prop(settings, "uv_map")
     attributes.prop(settings, "velocity")

@@ -9,6 +9,7 @@ renaming and duplicates need no care, and oceans with the same settings share a 
 while the old one plays on; without a window, and during renders, whoever asks waits for it.
 """
 
+import math
 import re
 import threading
 import weakref
@@ -44,6 +45,7 @@ class Simulation:
         self.scene = None  # the pelagic.Scene of its settings
         self.problem = ""  # why there is no sea for them, in words
         self.shown = None  # what is in the mesh
+        self.whole = 0  # how many vertices a render has, where the mesh may have fewer
         self._built = None
         self._key = None
         self._asked = None  # what scene was made from
@@ -77,13 +79,20 @@ class Simulation:
         """A pelagic.Frame at a time [s], for queries; the next call may set it to another. Any order, any thread."""
         return self._built.frame_at(time_s)
 
-    def moment_at(self, frame, view, share):
+    def moment_at(self, frame, *seen_from):
         shot = self.scene.shot
-        return Moment(shot.time_s(frame), shot.time_scale, view, share)
+        return Moment(shot.time_s(frame), shot.time_scale, *seen_from)
 
     def buffers(self, moment, patience_s):
         """The surface and the products' arrays at a moment, until look_ahead(). None: BuiltSea.buffers()."""
         return self._built.buffers(moment, patience_s)
+
+    def without_foam(self, moment):
+        """The same at once, with foam yet to come; None where foam needs no time."""
+        return self._built.without_foam(moment) if self._built.looks_back else None
+
+    def prepare(self, moment):
+        self._built.prepare(moment)
 
     @property
     def progress(self):
@@ -99,7 +108,7 @@ class Simulation:
         step = frame - last[0] if last else 0
         self._last = (frame, step, moment.view)
         if step and self._last[1:] == last[1:]:
-            self._built.prepare(self.moment_at(frame + step, moment.view, moment.share))
+            self.prepare(self.moment_at(frame + step, *moment.seen_from))
 
     def follow(self, obj, bpy_scene, depsgraph, wait):
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
@@ -171,9 +180,17 @@ _turn = threading.RLock()  # a render has a thread of its own
 # ---- Which oceans, and what of them
 
 
-def _share(obj, bpy_scene):
-    """Of the vertices a side: all of them in a render."""
-    return 1.0 if bpy_scene.name in _rendering else obj.pelagic.viewport_percentage / 100
+def _limits(obj, bpy_scene):
+    """The share of the vertices a side, and how many vertices at most: all of them in a render."""
+    if bpy_scene.name in _rendering:
+        return 1.0, math.inf
+    return obj.pelagic.viewport_percentage / 100, obj.pelagic.viewport_vertices or math.inf
+
+
+def vertices_of(obj):
+    """How many an ocean's mesh has, and how many in a render."""
+    count = len(obj.data.vertices)
+    return count, simulation_of(obj).whole or count
 
 
 def _surface_of(obj, settings, bpy_scene, depsgraph):
@@ -201,8 +218,10 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
         if pinhole is None:
             raise ValueError("The projected grid is what the scene's camera sees: the scene needs one, with perspective")
         return "grid", lambda: None, pinhole.view()
-    resolution = max(1, round(settings[PLACE["surface.resolution"]] * _share(obj, bpy_scene)))
-    patch = (settings[PLACE["surface.size_m"]], resolution, setting.horizon)
+    size_m, resolution, horizon = settings[PLACE["surface.size_m"]], settings[PLACE["surface.resolution"]], setting.horizon
+    share, most = _limits(obj, bpy_scene)
+    coarser = surfaces.resolution_within(most, size_m, max(1, round(resolution * share)), horizon)
+    patch = (size_m, coarser, horizon, surfaces.patch_points(size_m, resolution, horizon))
     return patch, lambda: surfaces.patch(*patch), None
 
 
@@ -257,50 +276,60 @@ def brought_up(obj, bpy_scene, depsgraph, wait=False):
     return simulation
 
 
-def _show(obj, bpy_scene, depsgraph, again, wait=False):
-    """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already."""
+def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
+    """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already.
+    foam_later: shows the waves, and begins what takes longer."""
     simulation = _simulation(obj)
     wait = wait or bpy.app.background or is_rendering()
     view = simulation.follow(obj, bpy_scene, depsgraph, wait)
     if simulation.sea is None or (view is None and simulation.needs_view):
         return
     frame = bpy_scene.frame_current_final
-    moment = simulation.moment_at(frame, view, _share(obj, bpy_scene) if view else 1.0)
+    moment = simulation.moment_at(frame, view, *_limits(obj, bpy_scene) if view else ())
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
+    if simulation.is_behind and not again and not wait and simulation.progress < 1.0:
+        return
     # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
-    buffers = simulation.buffers(moment, None if wait or _is_shared(simulation) else PATIENCE_S)
-    simulation.is_behind = buffers is None
+    patience_s = None if wait or _is_shared(simulation) else PATIENCE_S
+    waves = simulation.without_foam(moment) if foam_later else None
+    buffers = waves or simulation.buffers(moment, patience_s)
+    simulation.is_behind = buffers is None or waves is not None
     if simulation.is_behind:
         _look_later()
+    if buffers is None:
         return
     surface, arrays = buffers
+    simulation.whole = surface.whole
     mesh = meshes.fillable(obj.data)
     if not meshes.holds(mesh, surface):
         if surface.faces is None:
             return
-        meshes.put_surface(mesh, surface, obj.pelagic.uv_map)
+        meshes.put_surface(mesh, surface, obj.pelagic.uv_map and not waves)
     elif surface.moves and not _is_of_the_same_view(shown, simulation.shown):
         meshes.move_rest(mesh, surface)
-    if surface.faces is not None:  # a mesh of the user's own keeps its maps
+    if surface.faces is not None and not waves:  # a mesh of the user's own keeps its maps
         meshes.keep_uv(mesh, surface, obj.pelagic.uv_map)
     meshes.put_frame(mesh, arrays)
     meshes.hand_over(mesh, obj.data)
-    simulation.shown = shown
+    simulation.shown = None if waves else shown
+    if waves:
+        simulation.prepare(moment)
 
 
 def _is_of_the_same_view(shown, before):
     """Whether the points at rest are the same, of two values of Simulation.shown."""
-    return before is not None and shown[:2] == before[:2] and (shown[2].view, shown[2].share) == (before[2].view,
-                                                                                                  before[2].share)
+    return before is not None and shown[:2] == before[:2] and shown[2].seen_from == before[2].seen_from
 
 
-def show(obj, bpy_scene, depsgraph):
-    """Brings an ocean to the present, and waits for it."""
-    simulation = _simulation(obj)
-    simulation.follow(obj, bpy_scene, depsgraph, True)
-    _show(obj, bpy_scene, depsgraph, True, True)
+def show(obj, bpy_scene, depsgraph, foam_later=False):
+    """Brings an ocean to the present, and waits for it; foam_later: for its waves, and begins the rest."""
+    _show(obj, bpy_scene, depsgraph, True, True, foam_later)
+
+
+def is_rendering():
+    return bool(_rendering)
 
 
 def _forget_deleted():

@@ -7,6 +7,7 @@ from bpy.props import StringProperty
 from . import compat, ocean
 from .module import pelagic
 from .operators import NeedsOcean
+from .properties import BY_PATH
 
 TABLES = ("sea", "waves", "effects", "light", "water")  # what a preset of the user's keeps
 
@@ -26,6 +27,13 @@ def _with_tables_of(other, scene):
     return scene
 
 
+def _says(preset):
+    """What it looks like, and which settings or tables of settings it changes."""
+    tables = dict.fromkeys(path.split(".")[0] for path in preset["values"])
+    changed = tables if len(tables) > 1 else [BY_PATH[path].key["label"].lower() for path in preset["values"]]
+    return f"{preset['help'][:1].upper()}{preset['help'][1:]}. Sets {', '.join(changed)}"
+
+
 class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
     """Make this the ocean's sea"""
 
@@ -37,8 +45,8 @@ class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
 
     @classmethod
     def description(cls, _context, properties):
-        return next((preset["help"] for preset in pelagic.presets() if preset["name"] == properties.name),
-                    "Make this the ocean's sea")
+        return next((_says(preset) for preset in pelagic.presets() if preset["name"] == properties.name),
+                    "Make this sea of your own the ocean's, with its waves, effects, light and water")
 
     def execute(self, context):
         obj = context.object
@@ -112,6 +120,7 @@ class PELAGIC_OT_preset_delete(bpy.types.Operator):
 class PELAGIC_MT_presets(bpy.types.Menu):
     bl_idname = "PELAGIC_MT_presets"
     bl_label = "Presets"
+    bl_description = "Weathers and seas with a name, and your own: one makes itself the ocean's sea"
 
     def draw(self, _context):
         layout = self.layout

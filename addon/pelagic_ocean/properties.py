@@ -167,7 +167,7 @@ def _sentence(text):
     return text[:1].upper() + text[1:]
 
 
-def _label(key):
+def label_of(key):
     unit = SIGNS.get(key["unit"], key["unit"])
     return key["label"] + (f" ({unit})" if unit and key["unit"] not in UNITS else "")
 
@@ -176,7 +176,7 @@ def _common(key):
     text = _sentence(key["help"]) or key["label"]
     if key["accepted"]:
         text += f". Accepted: {key['accepted']}"
-    return {"name": _label(key), "description": text, "update": _touched}
+    return {"name": label_of(key), "description": text, "update": _touched}
 
 
 def _numeric(key, limit=math.inf):
@@ -320,6 +320,10 @@ def _ocean_annotations():
         "viewport_percentage": IntProperty(
             name="Viewport", default=100, min=1, max=100, subtype="PERCENTAGE", update=_touched,
             description="Vertices a side while you work, as a share of what a render has"),
+        "viewport_vertices": IntProperty(
+            name="Viewport at Most", default=500_000, min=0, soft_max=5_000_000, update=_touched,
+            description="Vertices while you work: a patch or a projected grid that would have more is coarser than in a render. "
+                        "0: as many as there are"),
     }
 
 

@@ -6,6 +6,7 @@ not whether its own is, so that beside a thread of ours two would be in it at on
 Blender is a pelagic.Task, in a native thread of the module that never enters Python.
 """
 
+import math
 import threading
 import time
 from contextlib import contextmanager
@@ -23,12 +24,18 @@ NUMBERS = {"coverage", "foam_active", "foam_age"}  # products of one number a po
 @dataclass(frozen=True)
 class Moment:
     """What a sea is shown at: its time [s], how much of that passes in a second of the screen, and for the projected grid
-    whose view, and what share of the columns and rows that it needs."""
+    whose view, what share of the columns and rows that it needs, and how many points at most."""
 
     time_s: float
     time_scale: float = 1.0
     view: object = None
     share: float = 1.0
+    most: float = math.inf
+
+    @property
+    def seen_from(self):
+        """What the points of a surface that moves depend on."""
+        return self.view, self.share, self.most
 
 
 class Job:
@@ -85,7 +92,7 @@ class BuiltSea:
         self._lock = threading.RLock()  # a render has a thread of its own
         self._frame = pelagic.Frame(self.sea)
         self._moment, self._surface, self._arrays = None, None, {}
-        self._seen_from = None  # the view and the share that a surface that moves is of
+        self._seen_from = None  # Moment.seen_from of a surface that moves
         self._task, self._coming = None, None  # what is being computed, and the moment of that
         self._asked_frame = None
 
@@ -105,6 +112,22 @@ class BuiltSea:
                 return None
             self._finish()
             return self._surface, self._arrays
+
+    @property
+    def looks_back(self):
+        """Whether a moment may take long, because its foam has a past."""
+        return "foam_age" in self.sea.products
+
+    def without_foam(self, moment):
+        """The surface and each product's array at a Moment, at once: no foam in them."""
+        with self._lock:
+            surface = self._surface_at(moment)
+            arrays = {product: np.zeros(len(surface), np.float32) for product in self.sea.products if product in NUMBERS}
+            arrays |= self.frame_at(moment.time_s).evaluate(
+                surface.rest, surface.origin_m, **_footprints(surface),
+                outputs=[product for product in self.sea.products if product not in NUMBERS])
+            _finish_arrays(arrays, surface, moment)
+            return surface, arrays
 
     @property
     def progress(self):
@@ -147,10 +170,8 @@ class BuiltSea:
         if self._surface is None or len(surface) != len(self._surface):
             self._arrays = {product: np.empty(len(surface) if product in NUMBERS else (len(surface), 3), np.float32)
                             for product in self.sea.products}
-        self._surface, self._seen_from = surface, (moment.view, moment.share)
-        self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
-                                       pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
-                                       pixel_axis_m=surface.cell_axis_m, rest_normal=surface.normal, **self._arrays)
+        self._surface, self._seen_from = surface, moment.seen_from
+        self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, **_footprints(surface), **self._arrays)
         self._coming = moment
 
     def _drop(self):
@@ -168,20 +189,30 @@ class BuiltSea:
         """Waits for what was begun, if anything was."""
         if self._task is None:
             return
-        task, self._task, surface = self._task, None, self._surface
+        task, self._task = self._task, None
         task.result()
-        position, velocity = self._arrays["position"], self._arrays.get("velocity")
-        if surface.origin_m != (0.0, 0.0):
-            position[:, :2] += np.array(surface.origin_m, np.float32)
-        if surface.height_m is not None:
-            position[:, 2] += surface.height_m
-        if velocity is not None and self._coming.time_scale != 1.0:
-            velocity *= np.float32(self._coming.time_scale)  # metres in a second of the screen
+        _finish_arrays(self._arrays, self._surface, self._coming)
         self._moment = self._coming
 
     def _surface_at(self, moment):
         if self._fixed is not None:
             return self._fixed
-        if self._surface is not None and self._seen_from == (moment.view, moment.share):
+        if self._surface is not None and self._seen_from == moment.seen_from:
             return self._surface
-        return surfaces.projected_grid(self.sea, moment.view, moment.share, self._uv_m)
+        return surfaces.projected_grid(self.sea, *moment.seen_from, self._uv_m)
+
+
+def _footprints(surface):
+    """Arguments of pelagic.Frame.begin() and evaluate()."""
+    return {"cell_m": surface.cell_m, "pixel_m": surface.cell_m, "cell_axis_m": surface.cell_axis_m,
+            "pixel_axis_m": surface.cell_axis_m, "rest_normal": surface.normal}
+
+
+def _finish_arrays(arrays, surface, moment):
+    """From the core's arrays to the mesh's: in the object's coordinates and the screen's seconds."""
+    if surface.origin_m != (0.0, 0.0):
+        arrays["position"][:, :2] += np.array(surface.origin_m, np.float32)
+    if surface.height_m is not None:
+        arrays["position"][:, 2] += surface.height_m
+    if "velocity" in arrays and moment.time_scale != 1.0:
+        arrays["velocity"] *= np.float32(moment.time_scale)  # metres in a second of the screen

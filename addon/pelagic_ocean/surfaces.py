@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where a sea is looked at: points at rest, what they can resolve, and the faces between them."""
 
+import bisect
 import math
 from dataclasses import dataclass
 
@@ -23,7 +24,8 @@ class Surface:
     such, cell_m then being the short ones, or None. faces: a function that gives (corners, starts), int32: the faces'
     vertices one after another, and where each face begins; None for a mesh that has its own. height_m: float32 (n,),
     what is added to z, or None; normal: float32 (n, 3), of the surface that the sea lies on there, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
-    lattice: (first_m, spacing_m, last_m) where all points lie at first + i·spacing in x and in y, up to last.
+    lattice: (first_m, spacing_m, last_m) where all points lie at first + i·spacing in x and in y, up to last. whole: how many
+    points a render has, where these are fewer; else 0.
     """
 
     signature: str
@@ -37,6 +39,7 @@ class Surface:
     lattice: tuple = None
     cell_axis_m: np.ndarray = None
     normal: np.ndarray = None
+    whole: int = 0
 
     def __len__(self):
         return len(self.rest)
@@ -64,7 +67,19 @@ def _quads(corners):
     return corners.ravel(), np.arange(0, corners.size, 4, dtype=np.int32)
 
 
-def patch(size_m, resolution, horizon):
+def patch_points(size_m, resolution, horizon):
+    """How many points patch() has."""
+    rings = _ring_count(size_m / resolution) if horizon and size_m < HORIZON_M else 0
+    return (resolution + 1) ** 2 + 4 * resolution * rings
+
+
+def resolution_within(most, size_m, resolution, horizon):
+    """The finest resolution, up to this one, of a patch of at most so many points; 1 if none is so small."""
+    coarser = range(1, resolution + 1)
+    return max(1, bisect.bisect_right(coarser, most, key=lambda each: patch_points(size_m, each, horizon)))
+
+
+def patch(size_m, resolution, horizon, whole=0):
     """The square patch, its points first as in a bake, and round it, where wanted, rings out to the horizon."""
     def points():
         rest, quads = pelagic.patch(size_m, resolution)
@@ -72,21 +87,28 @@ def patch(size_m, resolution, horizon):
             return _with_rings(rest, quads, size_m, resolution)
         return rest, quads, size_m / resolution
 
-    rest, quads, cell_m = points()
+    made = [points()]
+    rest, quads, cell_m = made[0]
     lattice = (-0.5 * size_m, cell_m, 0.5 * size_m) if len(quads) == resolution**2 else None
-    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m, lambda: _quads(points()[1]), uv_m=size_m,
-                   lattice=lattice)
+    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m,
+                   lambda: _quads((made.pop() if made else points())[1]), uv_m=size_m, lattice=lattice, whole=whole)
 
 
-def projected_grid(sea, view, share, uv_m):
-    """What a view shows of a sea, to the horizon. share: of the columns and rows that the view needs."""
+def projected_grid(sea, view, share, most, uv_m):
+    """What a view shows of a sea, to the horizon. share: of the columns and rows that the view needs; most: points at most."""
     grid = sea.projected_grid(view)
+    whole = (grid.columns + 1) * (grid.rows + 1)
+    share = min(share, math.sqrt(most / whole))
     if share < 1.0:
-        fewer = tuple(max(1, round(count * share)) for count in (grid.columns, grid.rows))
+        fewer = tuple(max(1, math.floor((count + 1) * share) - 1) for count in (grid.columns, grid.rows))
         grid = sea.projected_grid(view, fewer)
     columns, rows = grid.columns, grid.rows
     return Surface(f"grid {columns} {rows}", grid.rest_m, grid.cell_m, lambda: _quads(pelagic.grid_quads(columns, rows)),
-                   grid.origin_m, uv_m=uv_m, moves=True, cell_axis_m=grid.cell_axis_m)
+                   grid.origin_m, uv_m=uv_m, moves=True, cell_axis_m=grid.cell_axis_m, whole=whole)
+
+
+def _ring_count(spacing_m):
+    return math.ceil(math.log(1 + HORIZON_M / spacing_m * (RING_GROWTH - 1), RING_GROWTH))
 
 
 def _with_rings(rest, quads, size_m, resolution):
@@ -94,7 +116,7 @@ def _with_rings(rest, quads, size_m, resolution):
     side, row = np.arange(resolution), resolution + 1
     # The patch's edge, counter-clockwise from its south-west corner: 4N points.
     edge = np.concatenate([side, side * row + resolution, (row * row - 1) - side, (resolution - side) * row])
-    count = math.ceil(math.log(1 + HORIZON_M / spacing_m * (RING_GROWTH - 1), RING_GROWTH))
+    count = _ring_count(spacing_m)
     steps_m = spacing_m * RING_GROWTH ** np.arange(1, 1 + count)
     scale = 1 + np.cumsum(steps_m) / (size_m / 2)
     rings = scale[:, None, None] * rest[edge].astype(np.float64)

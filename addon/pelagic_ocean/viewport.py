@@ -17,6 +17,7 @@ from . import compat, handlers, light, ocean
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
+from .presets import PELAGIC_MT_presets
 from .sea import Job
 
 SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need the mesh
@@ -371,8 +372,11 @@ class PELAGIC_PT_preview(bpy.types.Panel):
 
 
 def _header(self, context):
+    row = self.layout.row(align=True)
     if PELAGIC_OT_viewport_preview.poll(context):
-        self.layout.operator(PELAGIC_OT_viewport_preview.bl_idname, text="", icon="MOD_OCEAN", depress=is_on())
+        row.operator(PELAGIC_OT_viewport_preview.bl_idname, text="", icon="MOD_OCEAN", depress=is_on())
+    if pelagic is not None and ocean.is_ocean(context.object):
+        row.menu(PELAGIC_MT_presets.bl_idname, text="", icon="PRESET")
 
 
 CLASSES = (PELAGIC_OT_viewport_preview, PELAGIC_PG_preview, PELAGIC_PT_preview)

@@ -301,7 +301,7 @@ with checking("keyframed settings: each frame has its own sea"):
 with checking("a render has its own resolution, and the viewport gets its own back"):
     fresh_file()
     obj = add_ocean()
-    obj.pelagic.viewport_percentage = 25
+    obj.pelagic.viewport_vertices = 90
     bpy.context.view_layer.update()
     assert len(obj.data.vertices) == 9**2
     counts = []

@@ -32,9 +32,9 @@ def fresh_file():
     bpy.data.objects.remove(bpy.data.objects["Cube"])
 
 
-def add_ocean(horizon=False, **settings):
+def add_ocean(horizon=False, how="EXEC_DEFAULT", **settings):
     """A small ocean without a horizon, with all attributes, which it is before its sea is first built; settings are keys with
-    their dots as __, such as sea__wind_speed_mps."""
+    their dots as __, such as sea__wind_speed_mps. how: INVOKE_DEFAULT is as an artist does it."""
     from pelagic_ocean import ocean
 
     make = ocean.make
@@ -48,7 +48,7 @@ def add_ocean(horizon=False, **settings):
 
     ocean.make = make_small
     try:
-        bpy.ops.pelagic.add_ocean()
+        bpy.ops.pelagic.add_ocean(how)
     finally:
         ocean.make = make
     obj = bpy.context.object

@@ -203,6 +203,26 @@ with checking("its cells are coarser where the viewport's share is less"):
     bpy.context.view_layer.update()
     assert 0.2 * before < len(obj.data.vertices) < 0.35 * before
 
+with checking("a budget of vertices holds in the viewport, of the grid and of a patch; the panel's numbers are the mesh's and the render's"):
+    obj.pelagic.viewport_percentage, obj.pelagic.viewport_vertices = 100, 3000
+    scene.frame_set(1)
+    whole = len(core_grid(1)["position"])
+    assert 2700 < len(obj.data.vertices) <= 3000 and play.vertices_of(obj) == (len(obj.data.vertices), whole)
+    obj.pelagic.viewport_percentage = 10  # the smaller counts
+    bpy.context.view_layer.update()
+    assert len(obj.data.vertices) < 0.015 * whole
+    obj.pelagic.viewport_percentage = 100
+    for horizon in (False, True):
+        obj.pelagic.surface.kind, obj.pelagic.horizon = "patch", horizon
+        for budget in (0, 700, 1):
+            obj.pelagic.viewport_vertices = budget
+            bpy.context.view_layer.update()
+            count = len(obj.data.vertices)
+            whole = count if budget == 0 else whole
+            assert (0.7 * budget < count <= budget or budget < 2) and play.vertices_of(obj) == (count, whole), (budget, count)
+    obj.pelagic.surface.kind, obj.pelagic.viewport_vertices = "projected-grid", 500_000
+    bpy.context.view_layer.update()
+
 with checking("it follows a camera that is moved by hand, also under water and looking up"):
     camera.animation_data_clear()
     for height_m, tilt in ((2.0, 1.5), (-3.0, 1.5), (5.0, 2.8), (5.0, 0.0)):

@@ -1,15 +1,18 @@
 """Presets: the core's each give a sea; the user's own are saved, applied, deleted."""
 
 import os
+import runpy
 import sys
+import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
 import pelagic
-from pelagic_ocean import ocean, play, presets
+from pelagic_ocean import ocean, panels, play, presets, viewport
 
 fresh_file()
 obj = add_ocean()
@@ -28,6 +31,29 @@ with checking("the core's presets: a sea each, and higher waves with each force 
         heights[preset["name"]] = simulation.sea.significant_height_m
     beaufort = [heights[f"beaufort-{force}"] for force in range(13)]
     assert beaufort == sorted(beaufort) and beaufort[0] < 0.05 and beaufort[12] > 10, beaufort
+
+with checking("the menu is the main panel's first row, and in a view's header for an active ocean alone; each preset says what it is"):
+    class Layout:
+        """Writes down what is drawn."""
+
+        def __init__(self):
+            self.drawn = []
+
+        def __getattr__(self, what):
+            return lambda *words, **_: self.drawn.append((what, *words)) or self
+
+    def drawn(draw, on):
+        draw(on, bpy.context)
+        return on.layout.drawn
+
+    menu = ("menu", "PELAGIC_MT_presets")
+    assert drawn(panels.Main.draw, SimpleNamespace(layout=Layout()))[0] == menu
+    assert menu in drawn(viewport._header, SimpleNamespace(layout=Layout()))
+    bpy.context.view_layer.objects.active = bpy.data.objects["Camera"]
+    assert menu not in drawn(viewport._header, SimpleNamespace(layout=Layout()))
+    bpy.context.view_layer.objects.active = obj
+    told = {presets.PELAGIC_OT_preset_apply.description(None, SimpleNamespace(name=preset["name"])) for preset in pelagic.presets()}
+    assert len(told) == len(pelagic.presets()) and all(words[0].isupper() and ". Sets " in words for words in told), told
 
 with checking("a preset of one's own: saved, applied, and only the sea, the light and the water are in it"):
     assert Path(os.environ["BLENDER_USER_SCRIPTS"]) in presets.folder(create=True).parents
@@ -52,3 +78,19 @@ with checking("deleted, it is gone"):
     bpy.ops.pelagic.preset_delete(name=name)
     assert not presets.own_presets()
     assert refused(lambda: bpy.ops.pelagic.preset_delete(name=name), "no preset")
+
+with checking("a library of assets: thumbnails, empty meshes, and an ocean of the preset where one arrives"):  # two seas are rendered
+    library = Path(tempfile.mkdtemp()) / "presets.blend"
+    sys.argv = ["blender", "--", str(library), "--presets", "beaufort-10,glassy-swell", "--samples", "1", "--size", "32"]
+    runpy.run_path(str(ROOT / "examples" / "blender-presets.py"), run_name="__main__")
+    fresh_file()
+    with bpy.data.libraries.load(str(library), assets_only=True) as (there, here):
+        here.objects = there.objects
+    storm, swell = (bpy.data.objects[name] for name in ("10 Storm", "Glassy swell"))
+    for each in (storm, swell):
+        picture = np.array(each.preview.image_pixels_float[:]).reshape(32, 32, 4)[..., :3]
+        assert not len(each.data.vertices) and picture.std() > 0.02 and library.stat().st_size < 2e6, library.stat().st_size
+        bpy.context.collection.objects.link(each)
+    bpy.context.view_layer.update()
+    assert numbers(storm.data)[:, 2].std() > 3 * numbers(swell.data)[:, 2].std() > 0
+    assert storm.data.materials[0] != swell.data.materials[0]

@@ -1,6 +1,7 @@
 """Every property at both ends of its range, and each choice: a sea, or a sentence that says why there is none."""
 
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from harness import *  # noqa: F403
 
 enable()
 import pelagic
-from pelagic_ocean import ocean, play, properties
+from pelagic_ocean import ocean, play, properties, translations
 
 scene = bpy.context.scene
 obj = add_ocean()
@@ -41,6 +42,41 @@ def ends(key):
         return set(), set(words)
     return ("", "no such file.exr")
 
+
+# Names and abbreviations, which German writes as they are.
+SAME = {"JONSWAP", "TMA", "FFT", "USDA", "USDC", "Elfouhaily", "Phillips", "Hasselmann", "Omega 2", "Monahan 1980", "Monahan 1986",
+        "Callaghan 2008", "Planet", "Chlorophyll", "Voxel", "Pelagic", "Presets", "Level Set"}
+with checking("each label, operator and sentence has German words, with the same numbers in them; Blender says them while it is on"):
+    def names(rna):
+        shown = [each for each in rna.properties if not each.is_hidden and each.name != each.identifier
+                 and (each.identifier not in ("name", "rna_type") and not each.identifier.startswith("bl_"))]
+        return {each.name for each in shown} | {item.name for each in shown if each.type == "ENUM" for item in each.enum_items}
+
+    said = {getattr(bpy.types, name).bl_label for name in dir(bpy.types) if name.startswith("PELAGIC_")
+            and hasattr(getattr(bpy.types, name), "bl_label")}
+    for each in (*bpy.types.PropertyGroup.__subclasses__(), *(getattr(bpy.ops.pelagic, name) for name in dir(bpy.ops.pelagic))):
+        if hasattr(each, "get_rna_type") or each.__name__.startswith("PELAGIC_"):
+            rna = each.get_rna_type() if hasattr(each, "get_rna_type") else each.bl_rna
+            said |= names(rna) | ({rna.name} if hasattr(each, "get_rna_type") else set())
+    for path in (ROOT / "addon" / "pelagic_ocean").glob("*.py"):
+        said |= set(re.findall(r'(?:text=|heading=|say\(|draw_words\(layout.box\(\), )"([^"]+)"', path.read_text(encoding="utf-8")))
+    said |= {preset["label"] for preset in pelagic.presets() if preset["group"] == "beaufort"}
+    missing = {text for text in said if translations.base(text)[0] not in {*translations.GERMAN, *SAME} and text not in translations.GERMAN}
+    assert len(said) > 150 and not missing, missing
+    for text, german in translations.GERMAN.items():
+        assert re.findall("{.*?}", text) == re.findall("{.*?}", german), text
+    view = bpy.context.preferences.view
+    before, view.language = view.language, next(each for each in ("de_DE", "de") if each in bpy.app.translations.locales)
+    view.use_translate_interface = True
+    spoken = {"Significant height": "Signifikante Wellenhöhe", "Wind direction (°)": "Windrichtung (°)", "Fetch": "Streichlänge"}
+    for text, german in spoken.items():
+        assert translations.say(text) == german, (text, translations.say(text))
+    assert bpy.app.translations.pgettext_iface("Use Mesh as Ocean", "Operator") == "Netz als Ozean"
+    assert translations.say("Viewport: {} of {} vertices", 1, 2) == "Ansicht: 1 von 2 Punkten"
+    translations.unregister()
+    assert [translations.say(text) for text in spoken] == [*spoken]
+    translations.register()
+    view.language = before
 
 with checking("one menu for quality: levels, and a budget that chooses the mesh"):
     quality, settings = obj.pelagic.quality, obj.pelagic

@@ -42,9 +42,35 @@ def steps():
         bpy.data.objects.remove(bpy.data.objects["Cube"])
         area.spaces.active.region_3d.view_perspective = "CAMERA"
         bpy.ops.ed.undo_push(message="start")
-        obj = add_ocean(surface__resolution=64)
-        bpy.ops.ed.undo_push(message="ocean")
-        scene = bpy.context.scene
+
+    with checking("by hand: waves at once, foam and look from timers; one step of undo, to which the look comes back"):
+        def is_whole():
+            data = the_ocean().data
+            return len(data.materials) == 1 and numbers(data, "whitecap_coverage").any() and "UVMap" in data.uv_layers
+
+        with bpy.context.temp_override(**here):
+            obj = add_ocean(how="INVOKE_DEFAULT")
+            assert np.ptp(numbers(obj.data)[:, 2]) > 0.1 and not is_whole()
+            bpy.ops.ed.undo_push(message="ocean")
+        waves = numbers(obj.data)
+        yield is_whole
+        assert np.array_equal(numbers(obj.data), waves) and bpy.data.scenes[0].world.name == "Pelagic Sky"
+        with bpy.context.temp_override(**here):
+            bpy.ops.ed.undo_push(message="more")
+            bpy.ops.ed.undo()
+        assert not is_whole()
+        yield is_whole
+        with bpy.context.temp_override(**here):
+            bpy.ops.ed.undo()
+        assert "Ocean" not in bpy.data.objects and bpy.data.scenes[0].world.name == "World"
+        with bpy.context.temp_override(**here):
+            bpy.ops.ed.redo()
+        yield is_whole
+
+    obj, scene = the_ocean(), bpy.data.scenes[0]
+    obj.pelagic.surface.resolution = 64
+    with bpy.context.temp_override(**here):
+        bpy.ops.ed.undo_push(message="64")
     yield lambda: np.ptp(numbers(obj.data)[:, 2]) > 0 and len(obj.data.vertices) == 65**2
 
     with checking("while another sea is built, the old one plays on; then the new one is shown"):

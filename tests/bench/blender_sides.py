@@ -94,7 +94,7 @@ class AddOn(Side):
             self.step()
             return
         settings = self.object.pelagic
-        settings.horizon, settings.viewport_percentage = False, 100
+        settings.horizon, settings.viewport_vertices = False, 0
         settings.uv_map = settings.velocity = all_attributes
         shot = pelagic.Scene()
         shot.surface.size_m, shot.surface.resolution = SIZE_M, n

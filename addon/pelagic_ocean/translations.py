@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on in other languages: labels, names of operators and their tooltips, what panels say. Where Blender
+knows a word itself its own comes first, but for the labels of keys. What keys accept, and what the core says of a shot, is English.
+
+Another language is another table. Words in braces are numbers or names, and stay.
+"""
+
+import re
+
+import bpy
+
+from .properties import FIELDS, entry_fields, label_of
+
+GERMAN = {
+    # Tables of keys, panels
+    "Sea": "Seegang", "Waves": "Wellen", "Surface": "Oberfläche", "Effects": "Effekte", "Light": "Licht", "Output": "Ausgabe",
+    "Water": "Wasser", "Quality": "Qualität", "Shot": "Aufnahme", "Presets": "Voreinstellungen", "Floating": "Schwimmt",
+    "Pelagic Bake": "Pelagic-Bake", "Pelagic Ocean": "Pelagic-Ozean", "Pelagic Volume": "Pelagic-Volumen",
+    "Viewport Preview": "Vorschau in der Ansicht",
+    # Keys
+    "Seed": "Startwert", "Loop": "Schleife", "Time scale": "Zeitmaßstab", "Time offset": "Zeitversatz",
+    "Wind speed": "Windgeschwindigkeit", "Wind direction": "Windrichtung", "Fetch": "Streichlänge", "Depth": "Wassertiefe",
+    "Spectrum": "Spektrum", "Short waves": "Kurze Wellen", "Significant height": "Signifikante Wellenhöhe",
+    "Spreading": "Richtungsverteilung", "Directionality": "Richtungsbündelung", "Gust strength": "Böenstärke",
+    "Gust size": "Böengröße", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
+    "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",
+    "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen",
+    "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
+    "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe",
+    "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
+    "Visibility km": "Sichtweite", "Type": "Wasserart", "Whitecaps": "Schaumkronen", "Whitecap law": "Schaumkronengesetz",
+    "Sea minus air c": "Wasser minus Luft", "Whitecap amount": "Menge der Schaumkronen", "Breaking from": "Brecher ab",
+    "Foam decay": "Schaumabbau", "Foam drift": "Schaumdrift", "Foam structure": "Schaumstruktur", "Foam streaks": "Schaumstreifen",
+    "Spray": "Gischt", "Spray gain": "Gischtverstärkung", "Level": "Stufe", "Max error": "Größter Fehler", "Frame": "Einzelbild",
+    "Mesh": "Netz", "Attributes": "Attribute", "Maps": "Karten", "Map resolution": "Kartenauflösung",
+    "Cascade tiles": "Kaskadenkacheln", "Mesh scheme": "Netzschema", "Volumes": "Volumen",
+    # Choices
+    "Pierson moskowitz": "Pierson-Moskowitz", "Jonswap 1973": "JONSWAP 1973", "Donelan banner": "Donelan-Banner", "File": "Datei",
+    "None": "Keine", "Cosine": "Kosinus", "Trochoid": "Trochoide", "Random": "Zufällig", "Periodic": "Periodisch",
+    "Patch": "Ausschnitt", "Projected grid": "Projiziertes Gitter", "Near far": "Nah bis fern", "Cage": "Käfig", "Ocean": "Ozean",
+    "Coastal": "Küste", "Turbid": "Trüb", "Draft": "Entwurf", "Preview": "Vorschau", "Final": "Endfassung", "Reference": "Referenz",
+    "Custom budget": "Eigenes Budget", "Normal": "Normale", "Velocity": "Geschwindigkeit", "Slope variance": "Neigungsvarianz",
+    "Displacement": "Auslenkung", "CatmullClark": "Catmull-Clark", "Level set": "Level-Set",
+    # What Blender alone has
+    "To the horizon": "Bis zum Horizont", "UV Map": "UV-Karte", "See Through": "Durchsichtig", "Viewport": "Ansicht",
+    "Viewport at Most": "Ansicht höchstens", "Size by Hand": "Größe von Hand", "Length": "Länge", "Width": "Breite",
+    "Damping": "Dämpfung", "Tilt": "Neigung", "Drift": "Drift", "Folder": "Ordner", "Offset": "Versatz", "Halvings": "Halbierungen",
+    "Bake": "Backen", "Exposure": "Belichtung", "Sun and Sky": "Sonne und Himmel", "See the horizon": "Horizont sehen",
+    "Volume": "Volumen", "Camera and Frames": "Kamera und Bilder", "Material, Sun and Sky": "Material, Sonne und Himmel",
+    "Name": "Name", "Into": "Wohin", "Keyframes": "Keyframes", "Attribute": "Attribut", "Text": "Text", "File Path": "Dateipfad",
+    "Use Existing Materials": "Vorhandene Materialien",
+    # Operators
+    "Add": "Hinzufügen", "Remove": "Entfernen", "Delete": "Löschen", "Stop": "Anhalten", "Water Material": "Wassermaterial",
+    "Bake Volume": "Volumen backen", "Bake Spray Volume": "Gischt als Volumen backen",
+    "Bake Level Set Volume": "Level-Set als Volumen backen", "Export Pelagic Shot": "Pelagic-Aufnahme exportieren",
+    "Import Pelagic Shot": "Pelagic-Aufnahme importieren", "Pelagic Shot (.toml)": "Pelagic-Aufnahme (.toml)",
+    "Pelagic Bake (.json, .usda)": "Pelagic-Bake (.json, .usda)", "Play Pelagic Bake": "Pelagic-Bake abspielen",
+    "Float": "Schwimmen lassen", "Float No More": "Nicht mehr schwimmen lassen", "Apply Preset": "Voreinstellung anwenden",
+    "Delete Preset": "Voreinstellung löschen", "Save Preset": "Voreinstellung speichern", "Save…": "Speichern …",
+    "Release Mesh": "Netz freigeben", "Replace Ocean Modifier": "Ozean-Modifikator ersetzen",
+    "Sample Sea Heights": "Wasserstand abtasten", "Use Mesh as Cage of an Ocean": "Netz als Käfig eines Ozeans",
+    "Use Mesh as Ocean": "Netz als Ozean",
+    # Tooltips
+    "Add the open sea: its surface, water, sun and sky, moving with the timeline":
+        "Die offene See hinzufügen: Oberfläche, Wasser, Sonne und Himmel, bewegt von der Zeitleiste",
+    "Make the active mesh a sea: its vertices are the surface at rest":
+        "Aus dem aktiven Netz eine See machen: seine Punkte sind die Oberfläche in Ruhe",
+    "Add a sea on the smooth surface of the active mesh, its creases kept: the mesh is its cage, and can go on changing":
+        "Eine See auf der glatten Fläche des aktiven Netzes, mit seinen Falten: es ist ihr Käfig und darf sich weiter ändern",
+    "Make the ocean an ordinary mesh again: its own vertices go back to rest, another's stay as they are":
+        "Den Ozean wieder zum gewöhnlichen Netz machen: eigene Punkte kehren in die Ruhelage zurück, andere bleiben",
+    "Weathers and seas with a name, and your own: one makes itself the ocean's sea":
+        "Wetter und Seegänge mit Namen, auch eigene: ein Klick macht sie zum Seegang des Ozeans",
+    "Keep the ocean's sea, light and water under a name, for all files":
+        "Seegang, Licht und Wasser des Ozeans unter einem Namen behalten, für alle Dateien",
+    "Make the ocean's sun and sky the scene's: a world, a lamp, and the exposure for them":
+        "Sonne und Himmel des Ozeans für die Szene: eine Welt, eine Lampe und die Belichtung dafür",
+    "Draw the sea in solid and material views as it is lit, to the horizon, and hide its mesh; or stop that":
+        "Die See in Ansichten beleuchtet bis zum Horizont zeichnen und ihr Netz verbergen; oder damit aufhören",
+    "Vertices a side while you work, as a share of what a render has":
+        "Punkte je Seite beim Arbeiten, als Anteil an denen eines Renderings",
+    # What panels say
+    "Wind": "Wind", "Seas": "Seegänge", "Your own": "Eigene", "automatic": "selbsttätig", "infinite": "unendlich",
+    "0 Calm": "0 Windstille", "1 Light air": "1 Leiser Zug", "2 Light breeze": "2 Leichte Brise", "3 Gentle breeze": "3 Schwache Brise",
+    "4 Moderate breeze": "4 Mäßige Brise", "5 Fresh breeze": "5 Frische Brise", "6 Strong breeze": "6 Starker Wind",
+    "7 Near gale": "7 Steifer Wind", "8 Gale": "8 Stürmischer Wind", "9 Strong gale": "9 Sturm", "10 Storm": "10 Schwerer Sturm",
+    "11 Violent storm": "11 Orkanartiger Sturm", "12 Hurricane": "12 Orkan",
+    "Building the sea…": "Die See entsteht …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
+    "The object's own mesh": "Das eigene Netz des Objekts",
+    "Waves of {:.1f} m (significant height)": "Signifikante Wellenhöhe {:.1f} m",
+    "Vertices: {}": "Punkte: {}", "Viewport: {} of {} vertices": "Ansicht: {} von {} Punkten",
+    "Waiting: a view in Rendered or Wireframe shows the mesh": "Wartet: eine Ansicht als Rendering oder Drahtgitter zeigt das Netz",
+    "The view is under water, which can't be drawn: raise it":
+        "Die Ansicht ist unter Wasser, was sich nicht zeichnen lässt: sie muss höher",
+    "This ocean was made by a newer Pelagic: what is new in it is missing here":
+        "Diesen Ozean hat ein neueres Pelagic gemacht: was darin neu ist, fehlt hier",
+}
+TABLES = {"de": GERMAN}
+CONTEXT = "Pelagic"  # of what say() says: Blender's own German for a fetch is "Holen"
+
+
+def base(label):
+    """A label without its unit, and the unit in brackets."""
+    return re.fullmatch(r"(.*?)((?: \([^()]*\))?)", label).groups()
+
+
+def _with_units(words):
+    """The table, with the keys' labels as properties have them."""
+    labels = [label_of(key) for field in FIELDS for key in (field.key, *(inner.key for inner in entry_fields(field)))]
+    return words | {label: words[base(label)[0]] + base(label)[1] for label in labels if base(label)[0] in words}
+
+
+def say(text, *values):
+    """A label, or a sentence with its numbers and names, in the language of the interface."""
+    return bpy.app.translations.pgettext_iface(text, CONTEXT).format(*values)
+
+
+def register():
+    bpy.app.translations.register(__package__, {
+        language: {(context, text): said for text, said in _with_units(words).items() for context in ("*", "Operator", CONTEXT)}
+        for language, words in TABLES.items()})
+
+
+def unregister():
+    bpy.app.translations.unregister(__package__)

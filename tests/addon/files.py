@@ -164,7 +164,7 @@ with checking("linked from another file, instanced, or overridden, it plays as a
     at_home = {}
     for frame in (1, 12):
         go_to(frame)
-        at_home[frame] = {name: (numbers(bpy.data.objects[name].data), numbers(bpy.data.objects[name].data, "velocity"))
+        at_home[frame] = {name: (numbers(bpy.data.objects[name].data), numbers(bpy.data.objects[name].data, "slope_variance"))
                           for name in names}
     seas_file = str(folder / "seas.blend")
     bpy.ops.wm.save_as_mainfile(filepath=seas_file)
@@ -172,7 +172,7 @@ with checking("linked from another file, instanced, or overridden, it plays as a
     def expect_at_home(objects, frame):
         for obj in objects:
             held = at_home[frame][obj.name]
-            assert np.array_equal(numbers(obj.data), held[0]) and np.array_equal(numbers(obj.data, "velocity"), held[1]), obj.name
+            assert np.array_equal(numbers(obj.data), held[0]) and np.array_equal(numbers(obj.data, "slope_variance"), held[1]), obj.name
             assert obj.data.library and obj.data.materials[0] and (obj.pelagic.own_mesh or obj.data.polygons[3].use_smooth)
 
     for how in ("link", "instance", "override"):

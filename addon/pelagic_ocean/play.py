@@ -389,6 +389,8 @@ def _on_load(*_):
     _on_other_data()
     if bpy.app.background:  # nobody comes back to it: who looks at the meshes next finds the seas
         _on_frame(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
+    else:  # a window's first evaluation of a file calls no handler
+        bpy.app.timers.register(_on_other_data, first_interval=0.0)
 
 
 @persistent

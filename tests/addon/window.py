@@ -169,5 +169,16 @@ def steps():
         lower = shown[high // 3:high // 2, wide // 4:wide // 2]
         assert lower.std() > 0.01, lower.std()
 
+    with checking("a file that can't be written leaves the mesh; saved and opened in a window, the sea is there"):
+        held, mesh, file = numbers(obj.data), obj.data, str(Path(picture).with_suffix(".blend"))
+        assert refused(lambda: bpy.ops.wm.save_as_mainfile(filepath=str(Path(file) / "no.blend")), "no.blend")
+        yield lambda: obj.data == mesh
+        bpy.ops.wm.save_as_mainfile(filepath=file)
+        assert obj.data == mesh and np.array_equal(numbers(mesh), held) and Path(file).stat().st_size < 5e6
+        bpy.ops.wm.open_mainfile(filepath=file)
+        until = time.monotonic() + 60
+        yield lambda: len(the_ocean().data.vertices) == len(held) or time.monotonic() > until
+        assert np.array_equal(numbers(the_ocean().data), held)
+
 
 in_window(steps)

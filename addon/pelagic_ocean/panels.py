@@ -95,6 +95,8 @@ class Main:
         else:
             if context.object.pelagic.version > VERSION:
                 draw_words(layout.box(), "This ocean was made by a newer Pelagic: what is new in it is missing here")
+            if context.object.data.library:
+                draw_words(layout.box(), "The mesh is linked, which plays slowly. Object, Relations, Make Local plays fast")
             wrong_size = ocean.unit_warning(context.object, context.scene)
             if wrong_size:
                 draw_words(layout.box(), wrong_size)

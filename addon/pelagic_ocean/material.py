@@ -5,7 +5,7 @@ import math
 
 import bpy
 
-from . import depths
+from . import compat, depths
 from .facets import WATER_INDEX, add_facets, transformed
 from .foam import DENSE, add_foam
 from .light import sky_of
@@ -133,8 +133,14 @@ def new_material():
     under_foam = water * WATER_INDEX**2  # bubbles are in the water: what they scatter needn't leave it through its surface
     white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, white_foam),
                                                 "Normal": part["Foam Normal"]})
-    tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
-        0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})})
+    def show(mirror, **settings):
+        tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
+            0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})}, **settings)
+
+    show(mirror)
+    if not compat.eevee_mirrors_in_facets():
+        show(tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"], "Anisotropy": 0.0},
+                      distribution="BECKMANN"), target="EEVEE")
     depths.add_depths(tree, part, coverage, mirror, foam["Foam"], white)
     return material
 

@@ -222,7 +222,7 @@ with checking("what is no bake is refused in words, and a damaged frame leaves t
 with checking("baked in Blender as exported and baked on the command line, byte by byte"):
     fresh_file()
     sea = add_ocean(sea__wind_speed_mps=11.3, surface__size_m=77.7, light__sun_elevation_deg=12.1,
-                    effects__foam_decay_s=4.0)
+                    effects__foam_decay_s=1.0)
     sea.name = "our sea"
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = 1, 3

@@ -222,14 +222,15 @@ with checking("what is no bake is refused in words, and a damaged frame leaves t
 
 with checking("baked in Blender as exported and baked on the command line, byte by byte"):
     fresh_file()
-    sea = add_ocean(sea__wind_speed_mps=11.3, surface__size_m=77.7, light__sun_elevation_deg=12.1)
+    sea = add_ocean(sea__wind_speed_mps=11.3, surface__size_m=77.7, light__sun_elevation_deg=12.1,
+                    effects__foam_decay_s=1.0)
     sea.name = "our sea"
     scene = bpy.context.scene
-    scene.frame_start, scene.frame_end = 1, 5
+    scene.frame_start, scene.frame_end = 1, 3
     scene.render.fps, scene.render.fps_base = 30, 1.001
     scene.camera.data.keyframe_insert("lens", frame=1)
     scene.camera.data.lens = 80
-    scene.camera.data.keyframe_insert("lens", frame=5)
+    scene.camera.data.keyframe_insert("lens", frame=3)
     for kind in ("patch", "projected-grid"):
         change(sea, surface__kind=kind, output__maps={"displacement"}, output__map_resolution=32)
         sea.pelagic.surface.cell_px = 20
@@ -241,7 +242,7 @@ with checking("baked in Blender as exported and baked on the command line, byte 
         subprocess.run([program, "bake", str(shot), "--out", str(theirs)], check=True, capture_output=True)
         names = sorted(str(file.relative_to(ours)) for file in ours.rglob("*") if file.is_file())
         assert names == sorted(str(file.relative_to(theirs)) for file in theirs.rglob("*") if file.is_file())
-        assert sum(name.startswith("maps/") for name in names) == 5 and "our_sea.sky.exr" in names and len(names) > 12
+        assert sum(name.startswith("maps/") for name in names) == 3 and "our_sea.sky.exr" in names and len(names) > 8
         for name in names:
             assert (ours / name).read_bytes() == (theirs / name).read_bytes(), name
 
@@ -251,6 +252,7 @@ with checking("a second bake keeps what is there"):
     assert before == {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
 
 with checking("a folder that can't be written, // of a file that isn't saved, the own mesh: words"):
+    scene.frame_end = 1
     sea.pelagic_bake.folder = "/proc/bakes"
     assert refused(bpy.ops.pelagic.bake, "/proc/bakes")
     sea.pelagic_bake.folder = "//bakes"

@@ -14,7 +14,7 @@ from harness import *  # noqa: F403
 enable()
 from pelagic_ocean import baking
 
-FRAMES = 500
+FRAMES = 150
 folder = Path(tempfile.mkdtemp())
 
 

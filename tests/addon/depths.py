@@ -8,7 +8,7 @@ from types import SimpleNamespace
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
-enable()
+enable(sky_width=None)
 import pelagic
 from pelagic_ocean import compat, depths, light, material, nodes
 from pictures import cycles_exr

@@ -25,7 +25,7 @@ def picture():
 
 
 def run():
-    enable()
+    enable(sky_width=None)
     import pelagic
     from pictures import shot_in_blender
 

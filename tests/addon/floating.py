@@ -183,7 +183,7 @@ with checking("a setting of the sea moves what floats"):
 
 with checking("in the projected grid's sea, too, and in an own mesh's"):
     scene.frame_set(60)
-    change(sea, surface__kind="projected-grid")
+    change(sea, surface__kind="projected-grid", surface__cell_px=30.0)
     bpy.context.view_layer.update()
     assert np.allclose(state(raft)[0], shown[0], atol=0.1) and state(raft) != shown, (state(raft), shown)
     change(sea, surface__kind="patch")

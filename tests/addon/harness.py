@@ -19,11 +19,19 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "addon"))
 
 
-def enable():
-    """The add-on, registered from the sources; the compiled module comes from PYTHONPATH."""
+def enable(sky_width=128):
+    """The add-on, registered from the sources; the compiled module comes from PYTHONPATH. sky_width: of the sky's picture in pixels,
+    which each new light makes anew; None: the add-on's own, for tests of light."""
     import pelagic_ocean
+    from pelagic_ocean import light
+    light.SKY_WIDTH = sky_width or light.SKY_WIDTH
     pelagic_ocean.register()
     return pelagic_ocean
+
+
+def at_night():
+    """Whether there is time to ask at length."""
+    return "PELAGIC_AT_NIGHT" in os.environ
 
 
 def fresh_file():
@@ -33,8 +41,8 @@ def fresh_file():
 
 
 def add_ocean(horizon=False, how="EXEC_DEFAULT", **settings):
-    """A small ocean without a horizon, with all attributes, which it is before its sea is first built; settings are keys with
-    their dots as __, such as sea__wind_speed_mps. how: INVOKE_DEFAULT is as an artist does it."""
+    """A small ocean without a horizon, with all attributes, whose foam has no past to be found at each jump, all before its sea is
+    first built; settings are keys with their dots as __, such as sea__wind_speed_mps. how: INVOKE_DEFAULT is as an artist does it."""
     from pelagic_ocean import ocean
 
     make = ocean.make
@@ -44,6 +52,7 @@ def add_ocean(horizon=False, how="EXEC_DEFAULT", **settings):
         obj.pelagic.horizon = horizon
         obj.pelagic.surface.resolution = 32
         obj.pelagic.uv_map = obj.pelagic.velocity = True
+        obj.pelagic.effects.foam_decay_s = 0.0
         return obj
 
     ocean.make = make_small

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
-enable()
+enable(sky_width=None)
 import math
 
 import pelagic
@@ -134,7 +134,7 @@ with checking("foam is dense where waves break and thin in what they left, by th
 with checking("settings reach light and material; an artist's own colour, world and lamp stay"):
     fresh_file()
     bpy_scene = bpy.context.scene
-    obj = add_ocean()
+    obj = add_ocean(effects__foam_decay_s=4.0)
     nodes, lamp = obj.data.materials[0].node_tree.nodes, light.own_sun(bpy_scene)
     before, height, exposure = tuple(nodes["Water Color"].outputs[0].default_value), lamp.matrix_world.copy(), bpy_scene.view_settings.exposure
     densities = [nodes[name].outputs[0].default_value for name in ("Active Foam Density", "Residual Foam Density")]

@@ -13,7 +13,7 @@ import pelagic
 from pelagic_ocean import ocean, play, properties, translations
 
 scene = bpy.context.scene
-obj = add_ocean()
+obj = add_ocean(effects__foam_decay_s=pelagic.Scene().effects.foam_decay_s)
 obj.pelagic.viewport_percentage = 1  # so that the largest resolution is one that can be tried
 TOO_LARGE = {"waves.cascades[].resolution"}  # gigabytes at its upper end: asked for, not built
 

@@ -12,9 +12,20 @@ enable()
 import pelagic
 from mathutils import Matrix, Vector
 
-from pelagic_ocean import camera, exchange
+from pelagic_ocean import camera, exchange, ocean
 
 folder = Path(tempfile.mkdtemp())
+make = ocean.make
+
+
+def make_coarse(name, collection):
+    """Of meshes there is no question here: whole ones are made at night."""
+    obj = make(name, collection)
+    obj.pelagic.viewport_percentage = 100 if at_night() else 2
+    return obj
+
+
+ocean.make = make_coarse
 
 
 def imported(path):

@@ -281,7 +281,7 @@ def steps():
         look(-4.0, 12.0)
 
     with checking("two views at once: they come to rest, also where foam lives"):
-        obj.pelagic.effects.foam_decay_s = 1.0
+        obj.pelagic.effects.foam_decay_s = 0.2
         with in_view():
             bpy.ops.screen.back_to_previous()
         settle()

@@ -100,7 +100,7 @@ run("g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", *cflags, EXAMPLES / "fir
 expect(" m high" in run(folder / "first_sea"), "the first sea says nothing")
 
 # The shared library, from C, without any other library's package: the example by pkg-config and by CMake, the same mesh.
-example, shot = SOURCE / "examples/procedural.c", SOURCE / "examples/first-shot.toml"
+example, shot = SOURCE / "examples/procedural.c", SOURCE / "tests/plugin/host/procedural/small_picture.toml"
 procedural = [run("pkg-config", flag, "pelagic", env=pc).split() for flag in ("--cflags", "--libs")]
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror")
 run("cc", *STRICT, *procedural[0], example, "-o", folder / "procedural", *procedural[1])

@@ -25,6 +25,7 @@ Scene small_shot() {
     scene.surface.size_m = 80.0;
     scene.waves.cascades = {{400.0, 128}, {60.0, 64}};
     scene.camera.resolution = {24, 14};
+    scene.effects.foam_decay_s = 1.0;  // a shorter past
     return scene;
 }
 

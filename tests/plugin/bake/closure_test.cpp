@@ -342,6 +342,12 @@ class Closure : public ::testing::Test {
     std::map<std::string, std::string> source_of_, fingerprint_of_;
 };
 
+// By day, of a shot that shares its other keys with another one, which is asked about them.
+BaseShot only(BaseShot base, std::vector<std::string> tables) {
+    base.tables = std::move(tables);
+    return base;
+}
+
 TEST_F(Closure, OfAPatch) {
     expect_closed(patch_shot());
 }
@@ -355,6 +361,9 @@ TEST_F(Closure, OfTrainsOverCascades) {
     expect_closed(trains_shot());
 }
 TEST_F(Closure, OfAProjectedGrid) {
+    expect_closed(only(grid_shot(), {"shot", "surface", "camera", "output"}));
+}
+TEST_F(Closure, OfAProjectedGridByAllKeys) {
     expect_closed(grid_shot());
 }
 TEST_F(Closure, OfAProjectedGridOverAutomaticCascades) {
@@ -373,6 +382,9 @@ TEST_F(Closure, OfABuoysSpectrum) {
     expect_closed(buoy_shot());
 }
 TEST_F(Closure, OfPicturesByDaylight) {
+    expect_closed(only(daylight_shot(), {"camera", "light", "water", "effects"}));
+}
+TEST_F(Closure, OfPicturesByDaylightByAllKeys) {
     expect_closed(daylight_shot());
 }
 TEST_F(Closure, OfPicturesUnderAPictureOfASky) {

@@ -27,12 +27,12 @@ inline SeaHandle open_text(const std::string& text, const pelagic_open_options* 
     return SeaHandle(sea);
 }
 
-inline SeaHandle open_file(const std::string& path) {
+inline SeaHandle open_file(const std::string& path, const pelagic_open_options* options = nullptr) {
     pelagic_source source = PELAGIC_INIT(pelagic_source);
     source.path = path.c_str();
     pelagic_sea* sea = nullptr;
     pelagic_error error;
-    EXPECT_EQ(pelagic_open(&source, nullptr, &sea, &error), PELAGIC_OK) << error.message;
+    EXPECT_EQ(pelagic_open(&source, options, &sea, &error), PELAGIC_OK) << error.message;
     return SeaHandle(sea);
 }
 

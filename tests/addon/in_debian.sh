@@ -53,6 +53,6 @@ trap 'rm -rf "$unpacked"' EXIT
     mount -t tmpfs tmpfs "$root/tmp"
     cd "$project"
     chroot "$root" env HOME=/root blender --version | head -n 1
-    chroot "$root" env HOME=/root ctest --test-dir "$project/build/release/tests/addon" --exclude-regex "^addon\.zip\$" \
+    chroot "$root" env HOME=/root ctest --test-dir "$project/build/release/tests/addon" --exclude-regex "^addon\.zip\$|nightly\$" \
         --fixture-exclude-setup . --no-tests=error --output-on-failure "$@"
 ' in_debian.sh "$root" "$PELAGIC_ROOT" "$unpacked/pelagic_ocean/lib" "$@"

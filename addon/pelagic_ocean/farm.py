@@ -85,7 +85,7 @@ def _faults_of_volume(obj, bpy_scene):
 
 def check(bpy_scene):
     """What needs the add-on on farm nodes, and what is wrong: two lists of sentences."""
-    needs, faults = [], []
+    needs, faults = [], [module.problem] if module.problem else []
     floats = floating.floats(bpy_scene)
     objects = _rendered(bpy_scene)
     for obj in objects:
@@ -100,7 +100,8 @@ def check(bpy_scene):
             told = _faults_of_volume(obj, bpy_scene)
         elif obj in floats:
             needs.append(f"{obj.name_full} floats")
-        faults += [f"{obj.name_full}: {fault}" for fault in told]
+        if module.pelagic is not None:
+            faults += [f"{obj.name_full}: {fault}" for fault in told]
     drivers = list(dict.fromkeys(_with_drivers()))
     needs += [f"{name} has drivers that ask for the water" for name in drivers]
     if drivers:

@@ -38,6 +38,8 @@ with checking("a file with an ocean opens, keeps its settings, and has a marker 
     bpy.ops.wm.open_mainfile(filepath=blend)
     obj = bpy.data.objects["Ocean"]
     assert obj.pelagic.is_ocean and len(obj.data.polygons) == 128 and "needs the add-on" in obj["Pelagic Ocean"]
+    assert bpy.ops.pelagic.check_farm() == {"FINISHED"}
+    assert "can't be loaded" in bpy.data.texts[0].as_string() and "Ocean is a live sea" in bpy.data.texts[0].as_string()
     bpy.context.scene.frame_set(5)
     bpy.ops.wm.save_as_mainfile(filepath=blend)
     with_the_module(f"bpy.ops.wm.open_mainfile(filepath={blend!r})\n"

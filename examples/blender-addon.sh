@@ -34,6 +34,7 @@ else
     cat <<EOT
 
 The add-on is $zip
-In Blender 3.4: Edit > Preferences > Add-ons > Install…, choose it, and tick Pelagic Ocean. Then Add > Mesh > Pelagic Ocean
+In Blender: Edit > Preferences > Add-ons > Install… (since 4.2 Install from Disk…), choose it, and tick Pelagic Ocean. Then
+Add > Mesh > Pelagic Ocean
 EOT
 fi

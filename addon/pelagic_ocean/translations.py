@@ -16,7 +16,9 @@ GERMAN = {
     "Sea": "Seegang", "Waves": "Wellen", "Surface": "Oberfläche", "Effects": "Effekte", "Light": "Licht", "Output": "Ausgabe",
     "Water": "Wasser", "Quality": "Qualität", "Shot": "Aufnahme", "Presets": "Voreinstellungen", "Floating": "Schwimmt",
     "Pelagic Bake": "Pelagic-Bake", "Pelagic Ocean": "Pelagic-Ozean", "Pelagic Volume": "Pelagic-Volumen",
-    "Viewport Preview": "Vorschau in der Ansicht",
+    "Viewport Preview": "Vorschau in der Ansicht", "Check for the Farm": "Für die Renderfarm prüfen",
+    "The mesh is linked, which plays slowly. Object, Relations, Make Local plays fast":
+        "Das Netz ist verknüpft und spielt langsam. Objekt, Relationen, Lokal machen spielt schnell",
     # Keys
     "Seed": "Startwert", "Loop": "Schleife", "Time scale": "Zeitmaßstab", "Time offset": "Zeitversatz",
     "Wind speed": "Windgeschwindigkeit", "Wind direction": "Windrichtung", "Fetch": "Streichlänge", "Depth": "Wassertiefe",

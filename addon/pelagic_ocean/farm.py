@@ -6,11 +6,11 @@ from pathlib import Path
 
 import bpy
 
-from . import baked, bl_info, floating, module, ocean, play, volumes
+from . import baked, floating, module, ocean, play, volumes
 from .properties import FIELDS
 
 TEXT = "Check for the Farm"
-ADD_ON = "{} {}.{}.{}".format(bl_info["name"], *bl_info["version"])
+ADD_ON = "{} {}.{}.{}".format(module.TITLE, *module.VERSION)
 
 
 def _rendered(bpy_scene):

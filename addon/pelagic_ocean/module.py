@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The compiled module: `pelagic`, and `problem`, a sentence that says why it is None if it is."""
+"""The compiled module: `pelagic`, and `problem`, a sentence that says why it is None if it is. The add-on's name and version."""
 
 import importlib.util
 import sys
 from pathlib import Path
 
+TITLE, VERSION = "Pelagic Ocean", (0, 1, 0)  # bl_info's, which Blender takes away from an extension
 NAME = "pelagic"
 LIB = Path(__file__).parent / "lib"
 THIS_PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"

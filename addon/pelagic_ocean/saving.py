@@ -11,12 +11,12 @@ from contextlib import suppress
 import bpy
 from bpy.app.handlers import persistent
 
-from . import bl_info, handlers, meshes, ocean, play
-from .module import pelagic
+from . import handlers, meshes, ocean, play
+from .module import TITLE, VERSION, pelagic
 
-TITLE = bl_info["name"]  # of a custom property of oceans, which everybody can read
+# The custom property of oceans of the name TITLE, which everybody can read.
 WORDS = ("This sea needs the add-on {} {}.{}.{}. Without it, a chequered square is in its place, or the sea of one "
-         "frame").format(TITLE, *bl_info["version"])
+         "frame").format(TITLE, *VERSION)
 SQUARES = 16  # a side of the marker
 
 _away = []  # what isn't in the file that is being written: pairs of a mesh, and the marker in its place

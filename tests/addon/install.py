@@ -39,7 +39,8 @@ with checking("installing and enabling"):
     from pelagic_ocean import module
     assert folder in Path(pelagic_ocean.__file__).parents
     assert folder in Path(module.pelagic.__file__).parents, module.pelagic.__file__
-    assert manifest["version"] == ".".join(map(str, pelagic_ocean.bl_info["version"])) == module.pelagic.__version__
+    assert manifest["version"] == ".".join(map(str, module.VERSION)) == module.pelagic.__version__
+    assert (pelagic_ocean.bl_info["name"], pelagic_ocean.bl_info["version"]) == (module.TITLE, module.VERSION)
     bpy.ops.pelagic.add_ocean()
     assert np.ptp(numbers(bpy.context.object.data)[:1000, 2]) > 0.1
 

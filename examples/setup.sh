@@ -4,6 +4,12 @@
 PELAGIC_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 PELAGIC_PYTHONS=$PELAGIC_ROOT/build/pythons # headers of others than this machine's, once plugin/host/python/headers.sh has fetched them
 
+# debian_mirror: where apt has this Debian's packages from, which most likely has other Debians' too; nothing if it can't be told.
+debian_mirror() {
+    # shellcheck disable=SC2016
+    apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' | head -n 1
+}
+
 # missing_packages [SECTION…]: those of the list's sections that aren't installed; of all without an argument.
 missing_packages() {
     local section="" line package command

@@ -133,6 +133,7 @@ def new_material():
     under_foam = water * WATER_INDEX**2  # bubbles are in the water: what they scatter needn't leave it through its surface
     white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, white_foam),
                                                 "Normal": part["Foam Normal"]})
+
     def show(mirror, **settings):
         tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
             0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})}, **settings)

@@ -21,9 +21,9 @@ build release pelagic pelagic_python addon-zip
 build=$PELAGIC_ROOT/build/release
 
 root=$PELAGIC_ROOT/build/$suite
-mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' | head -n 1)
+mirror=$(debian_mirror)
 make_root() {
-    [ -x "$root/usr/bin/apt-get" ] || "${as_root[@]}" debootstrap --variant=minbase "$suite" "$root" "${mirror:-http://deb.debian.org/debian}"
+    [ -x "$root/usr/bin/apt-get" ] || "${as_root[@]}" debootstrap --variant=minbase "$suite" "$root" ${mirror:+"$mirror"}
     "${as_root[@]}" cp /etc/resolv.conf "$root/etc/"
     # Services don't start; sid's mirror may be some weeks old. What the command line is linked with and the zip doesn't have is here too.
     printf '#!/bin/sh\nexit 101\n' | "${as_root[@]}" tee "$root/usr/sbin/policy-rc.d" >/dev/null

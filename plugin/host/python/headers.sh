@@ -12,13 +12,16 @@ case "$#${1:-}" in
 esac
 [ ! -d "$2" ] || exit 0
 version=$1 folder=$(realpath -m "$2")
+# shellcheck source=../../../examples/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../../../examples/setup.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' | head -n 1)
+mirror=$(debian_mirror)
+[ -n "$mirror" ] || { echo "headers.sh: apt names no mirror of Debian 12; add one to its sources" >&2 && exit 1; }
 keys=/usr/share/keyrings/debian-archive-keyring.gpg
 mkdir -p "$work"/{lists,cache}/partial
-echo "deb [signed-by=$keys] ${mirror:-http://deb.debian.org/debian} $suite main" >"$work/sources.list"
+echo "deb [signed-by=$keys] $mirror $suite main" >"$work/sources.list"
 cd "$work"
 # A state of its own: apt on this machine doesn't hear of the other Debian.
 options=(-q -o Dir::Etc::SourceList="$work/sources.list" -o Dir::Etc::SourceParts=/dev/null -o Dir::State::Lists="$work/lists"

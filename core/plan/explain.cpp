@@ -116,7 +116,7 @@ std::string cost_text(const Plan& plan, const EffectRow& row) {
 std::string explain(const Plan& plan) {
     const Scene& scene = plan.from->scene;
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
-    std::string page = "Sea\n";
+    std::string page = format("Sea, with the defaults of edition %d\n", scene.shot.edition);
     page += format("  wind %g m/s towards %g°, spectrum %s, Hs %.3g m", scene.sea.wind_speed_mps,
                    scene.sea.wind_direction_deg, std::string(word_of(scene.sea.spectrum)).c_str(),
                    4.0 * std::sqrt(spectrum.m0()));

@@ -37,6 +37,11 @@ void add_shot(Built& out) {
         frames_of, set_frames};
     add_table<&Scene::shot>(
         out.tables, out.keys, {"shot", "what is made", {}, {}},
+        row<&Shot::edition>(
+            {.name = "edition",
+             .help = "whose defaults count where the file doesn't say; one that should look the same for years names it",
+             .range = limits::kEdition,
+             .key_parts = key_parts(KeyPart::Waves, KeyPart::Light)}),
         row<&Shot::name>({.name = "name",
                           .help = "names the files and the stage's root prim",
                           .accepted = "a string, of letters, digits, _ and -, at most 200",
@@ -126,6 +131,13 @@ void add_sea(Built& out) {
         row<&SeaState::spectrum>({.name = "spectrum",
                                   .help = "how the energy is shared among the wavelengths",
                                   .key_parts = kWaves}),
+        row<&SeaState::growth>(
+            {.name = "growth",
+             .help =
+                 "of the wind's waves. height-and-peak: both are the growth law's, the peak goes with significant_height_m, "
+                 "and what the sun's glitter shows of short waves is left to the wind; height: the height is the growth "
+                 "law's and the spectrum's shape gives the peak, which then keeps its place",
+             .key_parts = kWaves}),
         row<&SeaState::short_waves>(
             {.name = "short_waves",
              .help =
@@ -412,7 +424,7 @@ void add_light_and_water(Built& out) {
                           .accepted = "\"daylight\", or the path of an .exr, from the shot file's folder",
                           .key_parts = kLight}),
         row<&Light::turbidity>({.name = "turbidity",
-                                .help = "haze of the daylight's air; 2 is very clear, 6 is hazy",
+                                .help = "haze of the daylight's air; 2 is the open sea's, 3 land's, 6 is hazy",
                                 .range = limits::kTurbidity,
                                 .key_parts = kLight}),
         row<&Light::visibility_km>(

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/scene/cascade_bands.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 
@@ -26,6 +27,7 @@ namespace limits {
 
 inline constexpr int kNameLength = 200;  // file systems stop at 255 bytes, and a bake's suffixes need some
 
+inline constexpr Range kEdition{1.0, kNewestEdition};
 inline constexpr Range kFrame{-1e8, 1e8};  // a time (frame − 1)/fps that a double still holds to 1e-5 s
 inline constexpr Range kFps{1e-3, 1e4};    // a frame a quarter of an hour … high-speed camera
 inline constexpr Range kLoop_s{0.0, 1e7};  // four months

@@ -22,6 +22,10 @@ constexpr std::array kShortWaves = std::to_array<Word<ShortWaves>>({
     {ShortWaves::Elfouhaily, "elfouhaily"},
     {ShortWaves::None, "none"},
 });
+constexpr std::array kGrowthLaws = std::to_array<Word<GrowthLaw>>({
+    {GrowthLaw::HeightAndPeak, "height-and-peak"},
+    {GrowthLaw::Height, "height"},
+});
 constexpr std::array kWhitecapLaws = std::to_array<Word<WhitecapLaw>>({
     {WhitecapLaw::Monahan1980, "monahan-1980"},
     {WhitecapLaw::Monahan1986, "monahan-1986"},
@@ -126,6 +130,9 @@ std::span<const Word<SpectrumKind>> words_of(SpectrumKind) {
 }
 std::span<const Word<ShortWaves>> words_of(ShortWaves) {
     return kShortWaves;
+}
+std::span<const Word<GrowthLaw>> words_of(GrowthLaw) {
+    return kGrowthLaws;
 }
 std::span<const Word<WhitecapLaw>> words_of(WhitecapLaw) {
     return kWhitecapLaws;

@@ -23,6 +23,7 @@ struct Word {
 // The words of a choice, in the order of the enumeration.
 std::span<const Word<SpectrumKind>> words_of(SpectrumKind);
 std::span<const Word<ShortWaves>> words_of(ShortWaves);
+std::span<const Word<GrowthLaw>> words_of(GrowthLaw);
 std::span<const Word<WhitecapLaw>> words_of(WhitecapLaw);
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind);
 std::span<const Word<WaveModel>> words_of(WaveModel);

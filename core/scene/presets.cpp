@@ -4,6 +4,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "core/scene/editions.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 
@@ -151,7 +152,9 @@ void apply(const Preset& preset, Scene& scene) {
     for (const auto& [path, value] : preset.values) {
         // A measured spectrum would otherwise replace any other one.
         if (path == "sea.spectrum") scene.sea.measured.reset();
-        if (const auto problem = set_value(scene, key_of(path), value))
+        // What a preset leaves at its default stays at the edition's.
+        const Key& key = key_of(path);
+        if (const auto problem = set_value(scene, key, value == key.fallback ? fallback_in(scene.shot.edition, key) : value))
             throw std::logic_error("a preset that doesn't fit its key: " + text_of(*problem));
     }
 }

@@ -39,6 +39,7 @@ const Preset* find_preset(std::string_view name);
 // What is wrong with a name that no preset has, for `key`; with the nearest that there is.
 Problem unknown_preset(const std::string& key, const std::string& name);
 
+// Into a scene of any edition: what the preset leaves at its default gets that edition's.
 void apply(const Preset& preset, Scene& scene);
 
 }  // namespace pelagic

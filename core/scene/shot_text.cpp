@@ -1,8 +1,15 @@
 #include "core/scene/shot_text.h"
 
+#include "core/scene/editions.h"
 #include "core/scene/keys.h"
 
 namespace pelagic {
+
+std::string shot_text(const Scene& scene) {
+    Scene nameless = scene_of_edition(scene.shot.edition);
+    nameless.shot.edition = 0;
+    return shot_text(scene, nameless);
+}
 
 std::string shot_text(const Scene& scene, const Scene& base) {
     std::string text;

@@ -15,12 +15,10 @@ constexpr double kNotableShare = 0.02;
 DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains)
     : dispersion_{sea.depth_m}, systems_(WaveSystem::sea(sea, dispersion_)) {
     for (const Swell& swell : sea.swell) {
-        if (swell.height_m > 0.0) systems_.push_back(WaveSystem::swell(swell, dispersion_));
+        if (swell.height_m > 0.0) systems_.push_back(WaveSystem::swell(swell, dispersion_).directed(sea.directionality));
     }
-    for (WaveSystem& system : systems_) {
-        if (sea.directionality != 1.0) system = system.directed(sea.directionality);
-        if (!gains.empty()) system = system.gained(BandGains(gains), dispersion_);
-    }
+    if (!gains.empty())
+        for (WaveSystem& system : systems_) system = system.gained(BandGains(gains), dispersion_);
     std::erase_if(systems_, [](const WaveSystem& system) { return !(system.m0() > 0.0); });
 
     for (const WaveSystem& system : systems_) {

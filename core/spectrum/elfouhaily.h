@@ -77,6 +77,9 @@ struct Elfouhaily {
         alpha_m = 1e-2 * std::max(0.0, 1.0 + (reduced > 0.0 ? 3.0 : 1.0) * reduced);
     }
 
+    // Under the same wind, the peak's frequency `ratio` of this one's.
+    Elfouhaily aged(double ratio) const { return {std::sqrt(kGravity * age * age / k_p), Age{age * ratio}}; }
+
     // S_k [m³] at k > 0 [rad/m].
     double density_k(double k) const {
         const double root = std::sqrt(k / k_p);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -36,12 +37,16 @@ using EnergyLaw = std::variant<PiersonMoskowitz, JonswapShape, Tma, Elfouhaily, 
 using SpreadingLaw = std::variant<HasselmannSpreading, DonelanBannerSpreading, CosineSpreading,
                                   ElfouhailySpreading, SwellSpreading, MeasuredSpreading>;
 
-// The share of a system's energy that counts, by wavenumber [rad/m]: all of it, or what is left of the join or right of
-// it. A quintic in ln k, twice differentiable at both ends.
-struct Join {
-    enum class Side { None, Left, Right };
-    Side side = Side::None;
+// Where a system's energy begins or ends, by wavenumber [rad/m]: a quintic in ln k, twice differentiable at both ends.
+struct Edge {
     double from = 0.0, to = 0.0;
+
+    double rise(double k) const;  // 0 … 1
+};
+
+// The share of a system's energy that counts: right of one edge and left of another, where there are any.
+struct Edges {
+    std::optional<Edge> lower{}, upper{};
 
     double share(double k) const;
 };
@@ -51,7 +56,8 @@ class WaveSystem {
     static WaveSystem swell(const Swell& swell, const Dispersion& dispersion);
     // What SeaState has beside its swells: the wind's waves or the measured ones, and the short ones joined to them. Its
     // height is significant_height_m, or what follows from the law, but at most kMostHeightOverDepth times the depth: higher
-    // waves have broken. Empty without wind. Throws std::invalid_argument, see MeasuredEnergy.
+    // waves have broken. Its peak is that of the law's sea when it has grown, or has still to grow, to that height (SeaState::growth);
+    // directionality is that of the long waves. Empty without wind. Throws std::invalid_argument, see MeasuredEnergy.
     static std::vector<WaveSystem> sea(const SeaState& sea, const Dispersion& dispersion);
 
     // Hs over depth that waves can have (Thornton & Guza 1982 saw 0.42 … 0.6).
@@ -79,6 +85,7 @@ class WaveSystem {
 
     double peak_wavenumber() const { return peak_wavenumber_; }  // of the frequency spectrum's peak [rad/m]
     double m0() const { return m0_; }                            // [m²]
+    double mss() const { return mss_; }                          // slope variance, of both directions
 
     // Rising wavenumbers: the range that holds all but 1e-12 of m0 cut into panels (see
     // DirectionalSpectrum::panels).
@@ -87,19 +94,21 @@ class WaveSystem {
 
   private:
     WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double direction, const Dispersion& dispersion,
-               Join join = {});
+               Edges edges = {});
+    // The waves of this law and the wind's short ones joined to them.
+    static std::vector<WaveSystem> with_short_waves(const SeaState& sea, const EnergyLaw& energy, const Dispersion& dispersion);
     double law_energy(const WavePoint& point) const;
     void find_panels(const Dispersion& dispersion);
-    void find_energy(const Dispersion& dispersion);  // panels and m0
+    void find_energy(const Dispersion& dispersion);  // panels, m0 and mss
 
     EnergyLaw energy_;
     SpreadingLaw spreading_;
     double direction_;
-    Join join_;
+    Edges edges_;
     double scale_ = 1.0, directionality_ = 1.0;
     BandGains gains_;
     double peak_wavenumber_ = 0.0;
-    double m0_ = 0.0;
+    double m0_ = 0.0, mss_ = 0.0;
     std::vector<double> panels_;
     std::vector<double> kinks_;
 };

@@ -24,6 +24,7 @@ inline namespace PELAGIC_VERSION_NAMESPACE {
 
 enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
 enum class ShortWaves { Elfouhaily, None };
+enum class GrowthLaw { HeightAndPeak, Height };
 enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
@@ -38,8 +39,12 @@ enum class MapKind { Displacement, Normal, SlopeVariance, Whitecaps };
 enum class MeshScheme { None, CatmullClark };
 enum class VolumeKind { Spray, LevelSet };
 
+// What an artist's shot means where it doesn't say: its defaults (core/scene/editions.h has what each edition changed).
+inline constexpr int kNewestEdition = 2;
+
 // [shot]
 struct Shot {
+    int edition = kNewestEdition;  // 1 … kNewestEdition
     std::string name = "sea";  // letters, digits, _ and -
     int first_frame = 1;       // both included; time_s() says what a frame shows
     int last_frame = 48;
@@ -89,6 +94,7 @@ struct SeaState {
     double fetch_m = 300e3;                                    // > 0
     double depth_m = std::numeric_limits<double>::infinity();  // > 0
     SpectrumKind spectrum = SpectrumKind::Jonswap;
+    GrowthLaw growth = GrowthLaw::HeightAndPeak;
     // The tail and the spreading that take the spectrum's place beyond a few peak wavenumbers.
     ShortWaves short_waves = ShortWaves::Elfouhaily;
     std::optional<double> significant_height_m;  // of the wind sea or the measured one, instead of its own
@@ -123,7 +129,7 @@ struct Waves {
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
-    int trains = 60;  // 1 … 10000
+    int trains = 250;  // 1 … 10000
     std::optional<double> shortest_m, longest_m;
 };
 
@@ -163,7 +169,7 @@ struct Light {
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
     // "daylight", or the path of a lat-long picture, as the host that loaded the scene finds it.
     std::string sky = "daylight";
-    double turbidity = 3.0;                 // of the daylight: 1.7 … 10, haze
+    double turbidity = 2.0;                 // of the daylight: 1.7 … 10, haze; 2 is the open sea's, 3 land's
     std::optional<double> visibility_km{};  // of the air under a picture's sky; without: clear
 };
 
@@ -178,7 +184,7 @@ struct Effects {
     bool whitecaps = true;
     double foam_decay_s = 4.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
     double foam_drift = 0.02;   // of the wind's speed, along the wind
-    WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
+    WhitecapLaw whitecap_law = WhitecapLaw::Callaghan2008;
     double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986
     double whitecap_amount = 1.0;  // ≥ 0, times the law
     double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do

@@ -1,4 +1,5 @@
 // The help of all keys. See shot.h.
+#include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "plugin/format/shot/shot.h"
@@ -12,6 +13,9 @@ void describe(std::string& out, const Key& key) {
     out += "  " + key.path + (fallback.empty() ? "" : " = " + fallback) + '\n';
     out += "      " + key.help + (key.unit.empty() ? "" : " [" + key.unit + "]") + '\n';
     out += "      " + key.accepted + '\n';
+    for (const EditionChange& change : edition_changes())
+        if (change.path == key.path)
+            out += "      before edition " + std::to_string(change.edition) + ": " + value_text(key, change.before) + '\n';
     if (key.key_parts.any()) out += "      feeds " + text_of(key.key_parts) + '\n';
     for (const Key& inner : key.entry_keys) describe(out, inner);
 }

@@ -44,7 +44,9 @@ std::string with_key(const std::string& text, const std::string& table, const st
 
 std::string edited_shot(std::string_view text, const Scene& scene, const Scene& base) {
     std::string edited(text);
-    std::istringstream changes(shot_text(scene, base));
+    Scene read = base;
+    if (toml::parse(text)["shot"]["edition"].node() == nullptr) read.shot.edition = 0;  // to be written
+    std::istringstream changes(shot_text(scene, read));
     std::string table;
     try {
         for (std::string line; std::getline(changes, line);) {

@@ -8,7 +8,7 @@
 
 namespace pelagic {
 
-// `text`, a shot file that describes `base`, with the keys written into it whose values differ in `scene`: each where
+// `text`, a shot file that describes `base`, with the keys written into it whose values differ in `scene`, and its edition: each where
 // it stands, or else in its table. Comments and everything else stay. Text that gives its tables in another way than
 // under their [headers] or inline may come out wrong: read it again, with parse_shot(). ShotError for text that is no
 // TOML.

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/presets.h"
@@ -341,6 +342,12 @@ void read_table(Reader& reader, const toml::table& table, const KeyTable& about,
     }
 }
 
+// The edition, which all else lies on; where it can't be read, read_key() says so.
+int edition_of(const toml::table& root) {
+    const auto edition = root["shot"]["edition"].value_exact<std::int64_t>();
+    return edition && limits::kEdition.holds(static_cast<double>(*edition)) ? static_cast<int>(*edition) : kNewestEdition;
+}
+
 // The preset on which all other keys lie. Only a string can stand there: a table would be the file's own.
 void read_preset(Reader& reader, const toml::node& node, Scene& scene) {
     const toml::source_position at = node.source().begin;
@@ -354,7 +361,8 @@ void read_preset(Reader& reader, const toml::node& node, Scene& scene) {
 
 }  // namespace
 
-void read_scene(Reader& reader, const toml::table& root, Scene& scene) {
+Scene read_scene(Reader& reader, const toml::table& root) {
+    Scene scene = scene_of_edition(edition_of(root));
     if (const toml::node* preset = root.get("preset")) read_preset(reader, *preset, scene);
     KnownKeys tables;
     for (const KeyTable& table : key_tables()) {
@@ -380,6 +388,7 @@ void read_scene(Reader& reader, const toml::table& root, Scene& scene) {
                            "a table, [" + table->name + "], of " + joined_names(table->keys)});
         }
     }
+    return scene;
 }
 
 }  // namespace pelagic

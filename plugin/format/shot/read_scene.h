@@ -8,8 +8,8 @@
 
 namespace pelagic {
 
-// Values that can't be used are told to the reader, and stay at their defaults. A measured spectrum, a
+// Values that can't be used are told to the reader, and stay at the defaults of the file's edition. A measured spectrum, a
 // cage and a sky's picture are not loaded here.
-void read_scene(Reader& reader, const toml::table& root, Scene& scene);
+Scene read_scene(Reader& reader, const toml::table& root);
 
 }  // namespace pelagic

@@ -127,8 +127,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
                         "; accepted: TOML 1.0 in UTF-8");
     }
     Reader reader(name);
-    Scene scene;
-    read_scene(reader, root, scene);
+    Scene scene = read_scene(reader, root);
     load_measured(reader, file.parent_path(), scene.sea);
     load_cage(reader, file.parent_path(), scene.surface);
     find_sky(reader, file.parent_path(), scene.light);

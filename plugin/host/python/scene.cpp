@@ -12,6 +12,7 @@
 #include "core/plan/prepared_scene.h"
 #include "core/scene/budget.h"
 #include "core/scene/canonical.h"
+#include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/shot_text.h"
@@ -155,6 +156,10 @@ py::dict described_key(const Key& key) {
     out["help"] = key.help;
     out["accepted"] = key.accepted;
     out["default"] = key.is_required ? py::none() : to_python(key, key.fallback);
+    py::list before;
+    for (const EditionChange& change : edition_changes())
+        if (change.path == key.path) before.append(py::make_tuple(change.edition, to_python(key, change.before)));
+    out["defaults_before"] = before;
     out["required"] = key.is_required;
     out["range"] = range_of(key);
     out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());

@@ -95,7 +95,7 @@ TEST(Jonswap, UnitEnergyIsTheIntegral) {
         const JonswapShape unit{1.0 / (kGravity * kGravity), 1.0, std::log(gamma)};
         const auto density = [&](double w) { return unit.density(w); };
         const double m0 = log_simpson(0.1, 1.0, 4000, density) + log_simpson(1.0, 300.0, 4000, density);
-        EXPECT_NEAR(Jonswap::unit_m0(std::log(gamma)) / m0, 1.0, 1e-8) << gamma;
+        EXPECT_NEAR(jonswap_unit_m0(std::log(gamma)) / m0, 1.0, 1e-8) << gamma;
     }
 }
 

@@ -36,12 +36,18 @@ std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, gl
     return bytes;
 }
 
+double exposure_of_ev100(double ev) {
+    constexpr double kCalibration = 12.5e-5;  // K/100 [kcd/m²]
+    return 0.18 / (kCalibration * std::exp2(ev));
+}
+
 double exposure_for(double log_mean_luminance) {
-    // The display value of a mean of 1 kcd/m², a little above middle grey, since the bright sky is part of the
-    // mean; and how much of a change of the light is left in the picture: civil twilight, eight stops below noon,
-    // is one stop darker.
-    constexpr double kShown = 0.24, kLeft = 0.13;
-    return kShown * std::pow(log_mean_luminance, kLeft - 1.0);
+    // By day a brighter light gives a slightly brighter picture; the display value of a mean of 1 kcd/m² is a little above middle
+    // grey, since the bright sky is part of the mean. In twilight the eye adapts and still knows that it is no day: a tenth of
+    // the light looks half as bright.
+    constexpr double kShown = 0.255, kLeftByDay = 0.13, kLeftAtNight = 0.3;
+    const double day = log_mean_luminance * log_mean_luminance;
+    return kShown * std::pow(log_mean_luminance, kLeftAtNight - 1.0) * std::pow(1.0 + day, 0.5 * (kLeftByDay - kLeftAtNight));
 }
 
 }  // namespace pelagic

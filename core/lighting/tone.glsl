@@ -17,17 +17,43 @@ float srgb_encoded(float linear) {
     return 1.055f * pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
+// Oklab (Ottosson 2020, "A perceptual color space for image processing"): from linear sRGB to lightness and two opponent colours,
+// and back. A colour that goes to white along a straight line there keeps the hue that one sees; in linear light orange turns pink
+// on the way.
+vec3 oklab_of(vec3 colour) {
+    vec3 cones = vec3(dot(vec3(0.4122214708f, 0.5363325363f, 0.0514459929f), colour),
+                      dot(vec3(0.2119034982f, 0.6806995451f, 0.1073969566f), colour),
+                      dot(vec3(0.0883024619f, 0.2817188376f, 0.6299787005f), colour));
+    vec3 felt = pow(cones, vec3(1.0f / 3.0f));
+    return vec3(dot(vec3(0.2104542553f, 0.7936177850f, -0.0040720468f), felt),
+                dot(vec3(1.9779984951f, -2.4285922050f, 0.4505937099f), felt),
+                dot(vec3(0.0259040371f, 0.7827717662f, -0.8086757660f), felt));
+}
+
+vec3 colour_of_oklab(vec3 lab) {
+    vec3 felt = vec3(dot(vec3(1.0f, 0.3963377774f, 0.2158037573f), lab), dot(vec3(1.0f, -0.1055613458f, -0.0638541728f), lab),
+                     dot(vec3(1.0f, -0.0894841775f, -1.2914855480f), lab));
+    vec3 cones = felt * felt * felt;
+    return vec3(dot(vec3(4.0767416621f, -3.3077115913f, 0.2309699292f), cones),
+                dot(vec3(-1.2684380046f, 2.6097574011f, -0.3413193965f), cones),
+                dot(vec3(-0.0041960863f, -0.7034186147f, 1.7076147010f), cones));
+}
+
 // The sRGB display value, 0 … 1, of a radiance. exposure: radiance × exposure = 0.18 is middle grey.
 //
-// The curve is applied to the largest component, and the others keep their ratio to it: a curve per component
-// would turn the orange of a low sun's glitter into yellow. Bright colours desaturate linearly towards white,
-// as on film and in the eye, by the cube of the curve: colours hold up to half its range.
+// The curve is applied to the largest component, and the others keep their ratio to it: a curve per component would turn the orange
+// of a low sun's glitter into yellow. Very bright colours go to white, as on film and in the eye, by the twelfth power of the curve:
+// a low sun's light keeps two thirds of its saturation two stops above white paper, and the sun's disc is white.
 vec3 display_colour(vec3 radiance, float exposure) {
     vec3 light = clamp(radiance * exposure, vec3(0.0f), vec3(1e30f));  // no ratios of infinities
     float strongest = max(max(light.x, light.y), light.z);
     if (!(strongest > 0.0f)) return vec3(0.0f);
     float shown = film_curve(strongest);
-    vec3 colour = mix(light / strongest, vec3(1.0f), shown * shown * shown);
-    vec3 linear = min(shown * colour, vec3(1.0f));
+    float fourth = (shown * shown) * (shown * shown);
+    float white = fourth * fourth * fourth;
+    vec3 colour = light / strongest;
+    // Where nothing is to be changed rounding shouldn't change anything.
+    if (white > 1e-5f) colour = colour_of_oklab(mix(oklab_of(colour), vec3(1.0f, 0.0f, 0.0f), white));
+    vec3 linear = shown * clamp(colour, vec3(0.0f), vec3(1.0f));
     return vec3(srgb_encoded(linear.x), srgb_encoded(linear.y), srgb_encoded(linear.z));
 }

@@ -19,6 +19,10 @@ std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, gl
 // Those random numbers, 0 … 1 (1 excluded), one for each component.
 glm::vec3 dither(glm::ivec2 pixel);
 
+// The exposure of a photographer's meter that shows this number at ISO 100 (ISO 2720: L = K 2^EV/100, K = 12.5 cd/m²): middle grey
+// is a luminance of L.
+double exposure_of_ev100(double ev);
+
 // The exposure for pictures whose luminance has this logarithmic mean [kcd/m²], > 0. A brighter light gives a brighter
 // picture, but by far less than it is brighter, as the eye adapts.
 double exposure_for(double log_mean_luminance);

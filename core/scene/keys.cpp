@@ -398,7 +398,21 @@ void add_camera(Built& out) {
                                   .unit = "pixels",
                                   .range = limits::kImageResolution,
                                   .form = "[width, height], two integers, each ",
-                                  .key_parts = kView}));
+                                  .key_parts = kView}),
+        row<&Camera::exposure_ev>({.name = "exposure_ev",
+                                   .help = "of pictures on a screen: so many stops brighter; EXRs hold the light itself",
+                                   .unit = "stops",
+                                   .range = limits::kExposure_ev,
+                                   .soft = SoftRange{-4.0, 4.0},
+                                   .key_parts = key_parts(KeyPart::Light)}),
+        row<&Camera::ev100>(
+            {.name = "ev100",
+             .help = "the exposure that a photographer's meter shows at ISO 100: 15 in full sun, 12 at sunset, 5 in deep dusk. "
+                     "Without it the shot's views are metered",
+             .unit = "stops",
+             .range = limits::kEv100,
+             .soft = SoftRange{0.0, 17.0},
+             .key_parts = key_parts(KeyPart::Light)}));
 }
 
 void add_light_and_water(Built& out) {

@@ -86,6 +86,8 @@ inline constexpr Range kCageLevel{0, 6};
 inline constexpr Range kCameraCoordinate_m{-1e9, 1e9};  // beyond any orbit we draw
 inline constexpr double kOnTarget_m = 1e-6;  // nearer than this, rounding decides where a camera looks
 inline constexpr Range kFov_deg{1.0, 179.0};
+inline constexpr Range kExposure_ev{-20.0, 20.0};
+inline constexpr Range kEv100{-20.0, 40.0};
 inline constexpr Range kImageResolution{1, 65536};
 
 inline constexpr Range kSunElevation_deg{-90.0, 90.0};

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "core/base/constants.h"
 #include "core/lighting/air.h"
 #include "core/lighting/background.h"
 #include "core/lighting/colour.h"
@@ -13,6 +14,7 @@
 #include "core/lighting/tone.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/surface/earth.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 
 namespace pelagic {
@@ -26,6 +28,9 @@ constexpr double kDarkest = 1e-5;  // [kcd/m²]
 // Parts of a view that are this many times darker than its brightest part without the sun aren't metered, such as
 // space beside the earth: pictures show them black whatever their exposure.
 constexpr double kRange = 1024.0;
+// Light times exposure of dense foam, which the exposure approaches from below: the film curve's 0.83, so that foam in the sun
+// keeps its shades. Over a dark sea seen from above the mean alone would burn it out.
+constexpr double kBrightestFoam = 2.2;
 // Heights that differ by less than this, as a logarithm, share one table of air, which takes tens of milliseconds.
 constexpr double kSameHeight = 0.1;
 
@@ -110,6 +115,15 @@ class Meter {
     std::size_t count_ = 0;
 };
 
+// Of dense white foam that lies level [kcd/m²]; 0 where there is none to be seen.
+double foam_luminance(const Scene& scene, const Sky& sky) {
+    constexpr double kReflectance = 0.55;  // foam.glsl
+    constexpr double kSeen = 0.005;        // the coverage from which on it counts whole
+    if (!scene.effects.whitecaps) return 0.0;
+    const double seen = std::min(1.0, law_coverage(scene) / kSeen);
+    return seen * kReflectance / kPi * luminance(glm::dvec3(sky.sun_irradiance + sky.sky_irradiance));
+}
+
 }  // namespace
 
 std::vector<View> metered_views(const Scene& scene) {
@@ -125,9 +139,13 @@ std::vector<View> metered_views(const Scene& scene) {
 }
 
 float shot_exposure(const Scene& scene, const Sky& sky, double stops) {
+    stops += scene.camera.exposure_ev;
+    if (scene.camera.ev100) return static_cast<float>(exposure_of_ev100(*scene.camera.ev100 - stops));
     Meter meter(scene, sky);
     for (const View& view : metered_views(scene)) meter.add(view);
-    return static_cast<float>(exposure_for(meter.log_mean()) * std::exp2(stops));
+    const double metered = exposure_for(meter.log_mean()), most = kBrightestFoam / std::max(foam_luminance(scene, sky), 1e-30);
+    const double share = metered / most;
+    return static_cast<float>(metered / std::sqrt(std::sqrt(1.0 + (share * share) * (share * share))) * std::exp2(stops));
 }
 
 }  // namespace pelagic

@@ -161,6 +161,8 @@ struct Camera {
     CameraInterpolation interpolation = CameraInterpolation::Linear;  // between keys
     double fov_deg = 50.0;                                            // horizontal, 1 … 179
     glm::ivec2 resolution{1280, 720};                                 // 1 … 65536 each
+    double exposure_ev = 0.0;       // stops brighter than metered, or than ev100
+    std::optional<double> ev100{};  // the exposure, as a photographer's meter gives it at ISO 100; without: metered
 };
 
 // [light]

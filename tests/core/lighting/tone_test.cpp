@@ -56,19 +56,39 @@ TEST(Tone, RisesWithTheLightAndStaysInRange) {
     for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(display_colour(glm::vec3(most), 1e3f)[c]));
 }
 
-// The hue of a glitter: differences to the smallest component keep their ratios, from dark to nearly white.
-// Curves per component would change the middle one by half and more.
-TEST(Tone, KeepsTheHue) {
-    const glm::vec3 orange(1.0f, 0.45f, 0.1f);
-    const double asked = (0.45 - 0.1) / (1.0 - 0.1);
-    for (float strength = 1e-2f; strength < 20.0f; strength *= 1.3f) {
-        const glm::vec3 shown = display_colour(orange * strength, 1.0f);
-        const double r = light_of(shown.x), g = light_of(shown.y), b = light_of(shown.z);
-        EXPECT_NEAR((g - b) / (r - b), asked, 1e-4) << strength;
-    }
+// Hue as it is seen, the angle of Oklab's two opponent colours [degrees], and saturation as a colour picker has it.
+double hue_deg(glm::dvec3 linear) {
+    const glm::dvec3 felt(std::cbrt(0.4122214708 * linear.x + 0.5363325363 * linear.y + 0.0514459929 * linear.z),
+                          std::cbrt(0.2119034982 * linear.x + 0.6806995451 * linear.y + 0.1073969566 * linear.z),
+                          std::cbrt(0.0883024619 * linear.x + 0.2817188376 * linear.y + 0.6299787005 * linear.z));
+    return std::atan2(0.0259040371 * felt.x + 0.7827717662 * felt.y - 0.8086757660 * felt.z,
+                      1.9779984951 * felt.x - 2.4285922050 * felt.y + 0.4505937099 * felt.z) *
+           180.0 / kPi;
+}
+double saturation(glm::dvec3 colour) {
+    const double most = std::max({colour.x, colour.y, colour.z});
+    return (most - std::min({colour.x, colour.y, colour.z})) / most;
 }
 
-// A brighter light looks brighter, but far less than it is: from noon to deep dusk, 18 stops, by two and a third.
+// From dark to nearly white the colours of low suns, sky and water keep their hue, and half of their saturation up to two stops above
+// middle grey's white. A curve per component would make the orange yellow; white mixed into linear light makes it pink.
+TEST(Tone, KeepsHueAndSaturation) {
+    for (const glm::dvec3 colour : {glm::dvec3(66.6, 34.1, 8.2), glm::dvec3(1.0, 0.45, 0.1), glm::dvec3(1.0, 0.7, 0.4),
+                                    glm::dvec3(0.3, 0.6, 1.0), glm::dvec3(0.2, 0.8, 1.0)}) {
+        const glm::dvec3 unit = colour / std::max({colour.x, colour.y, colour.z});
+        for (double strength = 1e-2; strength < 40.0; strength *= 1.3) {
+            const glm::vec3 shown = display_colour(glm::vec3(unit * strength), 1.0f);
+            const glm::dvec3 light(light_of(shown.x), light_of(shown.y), light_of(shown.z));
+            EXPECT_NEAR(hue_deg(light), hue_deg(unit), 5.0) << strength << ' ' << colour.x;
+            if (strength < 4.0) EXPECT_GT(saturation(glm::dvec3(shown)) / saturation(unit), 0.45) << strength << ' ' << colour.x;
+        }
+    }
+    // A low sun's path, at the exposure with which it was a pale pink before: (238, 218, 201), 0.18 of its saturation.
+    const glm::vec3 path = display_colour(glm::vec3(66.6f, 34.1f, 8.2f), 2.5f / 66.6f);
+    EXPECT_GT(saturation(glm::dvec3(path)) / saturation(glm::dvec3(66.6, 34.1, 8.2)), 0.6);
+}
+
+// By day a brighter light looks slightly brighter; in twilight a tenth of it looks half as bright.
 TEST(Exposure, FollowsTheLightALittle) {
     double exposure_before = std::numeric_limits<double>::infinity(), shown_before = 0.0;
     for (double mean = 1e-5; mean < 1e3; mean *= 1.5) {
@@ -78,8 +98,15 @@ TEST(Exposure, FollowsTheLightALittle) {
         exposure_before = exposure;
         shown_before = exposure * mean;
     }
-    EXPECT_NEAR(std::log2(4.0 * exposure_for(4.0) / (4.0 * 0x1p-18 * exposure_for(4.0 * 0x1p-18))), 2.34,
-                0.01);
+    const auto shown = [](double mean) { return mean * exposure_for(mean); };
+    EXPECT_NEAR(std::log2(shown(8.0) / shown(4.0)), 0.13, 0.01);
+    EXPECT_NEAR(shown(1e-3) / shown(1e-2), 0.5, 0.01);
+}
+
+// A photographer's table: 15 for a landscape in the sun, whose middle grey has 4.1 kcd/m².
+TEST(Exposure, IsThatOfAPhotographersMeter) {
+    EXPECT_NEAR(exposure_of_ev100(15.0) * 4.096, 0.18, 1e-6);
+    EXPECT_NEAR(exposure_of_ev100(14.0) / exposure_of_ev100(15.0), 2.0, 1e-12);
 }
 
 // 8-bit values have the mean of the light, where rounding would show a step; the ends stay clean. The same pixel

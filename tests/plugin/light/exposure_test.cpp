@@ -116,6 +116,33 @@ TEST(Exposure, BelongsToTheShot) {
     EXPECT_NEAR(shot_exposure(scene, sky) / from, 1.0, 1e-5);
 }
 
+// Stops count on top of the meter, and of a fixed exposure, which doesn't look at the scene.
+TEST(Exposure, MayBeFixed) {
+    Scene scene = scene_in({30.0, 3.0});
+    const Sky sky = make_sky(scene);
+    const float metered = shot_exposure(scene, sky);
+    scene.camera.exposure_ev = -1.5;
+    EXPECT_NEAR(shot_exposure(scene, sky) / metered, std::exp2(-1.5), 1e-6);
+    scene.camera.ev100 = 14.0;
+    EXPECT_NEAR(static_cast<double>(shot_exposure(scene, sky)) / exposure_of_ev100(15.5), 1.0, 1e-6);
+    EXPECT_NEAR(shot_exposure(scene, make_sky(scene_in({-5.0, 3.0}))) / shot_exposure(scene, sky), 1.0, 1e-6);
+}
+
+// Seen from above a storm is dark water and white foam, which keeps its shades; without foam the water alone counts.
+TEST(Exposure, DoesNotBurnFoam) {
+    Scene scene = scene_in({50.0, 2.0});
+    scene.sea.wind_speed_mps = 24.0;
+    scene.camera.position_m = {0.0, 0.0, 300.0};
+    scene.camera.look_at_m = {0.0, 100.0, 0.0};
+    const Sky sky = make_sky(scene);
+    const float foam = 0.55f / 3.14159f * (sky.sun_irradiance + sky.sky_irradiance).y;
+    const float with = shot_exposure(scene, sky);
+    scene.effects.whitecaps = false;
+    EXPECT_GT(shot_exposure(scene, sky) * foam, 2.5f);
+    EXPECT_LT(with * foam, 2.2f);
+    EXPECT_GT(with * foam, 1.2f);
+}
+
 // Night, and a sky that is black or very bright: finite.
 TEST(Exposure, IsFinite) {
     Scene scene = scene_in({-30.0, 3.0});

@@ -11,6 +11,7 @@
 
 #include "core/base/constants.h"
 #include "core/scene/cascade_bands.h"
+#include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
@@ -286,22 +287,22 @@ void check_trains(SceneChecker& check, const Waves& waves) {
                       "more than " + number_text(finest_wave_m) + " m, or finer cascades"});
 }
 
-void check_no_trains(SceneChecker& check, const Waves& waves) {
+void check_no_trains(SceneChecker& check, const Waves& waves, int edition) {
     const auto refuse = [&](const char* key, std::string value) {
         if (!check.is_good(key)) return;
         check.refuse({key, std::move(value), "speaks of wave trains, and the model has none",
                       "model = \"trochoid\", or a file without this key"});
     };
-    if (waves.trains != Waves{}.trains) refuse("waves.trains", std::to_string(waves.trains));
+    if (waves.trains != scene_of_edition(edition).waves.trains) refuse("waves.trains", std::to_string(waves.trains));
     if (waves.shortest_m) refuse("waves.shortest_m", number_text(*waves.shortest_m));
     if (waves.longest_m) refuse("waves.longest_m", number_text(*waves.longest_m));
 }
 
-void check_waves(SceneChecker& check, const Waves& waves) {
+void check_waves(SceneChecker& check, const Waves& waves, int edition) {
     if (waves.model == WaveModel::Trochoid) {
         check_trains(check, waves);
     } else {
-        check_no_trains(check, waves);
+        check_no_trains(check, waves, edition);
     }
     for (std::size_t i = 0; i < waves.band_gains.size(); ++i) {
         const BandGain& band = waves.band_gains[i];
@@ -539,7 +540,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_each_value(check, scene);
     check_shot(check, scene.shot);
     check_sea(check, scene.sea);
-    check_waves(check, scene.waves);
+    check_waves(check, scene.waves, scene.shot.edition);
     check_camera(check, scene.camera);
     check_near_far(check, scene);
     check_planet(check, scene);

@@ -80,7 +80,9 @@ TEST(Tone, KeepsHueAndSaturation) {
             const glm::vec3 shown = display_colour(glm::vec3(unit * strength), 1.0f);
             const glm::dvec3 light(light_of(shown.x), light_of(shown.y), light_of(shown.z));
             EXPECT_NEAR(hue_deg(light), hue_deg(unit), 5.0) << strength << ' ' << colour.x;
-            if (strength < 4.0) EXPECT_GT(saturation(glm::dvec3(shown)) / saturation(unit), 0.45) << strength << ' ' << colour.x;
+            if (strength < 4.0) {
+                EXPECT_GT(saturation(glm::dvec3(shown)) / saturation(unit), 0.45) << strength << ' ' << colour.x;
+            }
         }
     }
     // A low sun's path, at the exposure with which it was a pale pink before: (238, 218, 201), 0.18 of its saturation.

@@ -19,9 +19,10 @@ vec3 foam_reflectance(vec3 water_reflectance, float dense) {
 }
 
 // Diffuse facets with Gaussian slopes. Sunlight falls on the facets that the eye sees (their mean slope leans
-// towards the eye) as far as no wave shades them; skylight falls on their mean tilt.
+// towards the eye) as far as no wave shades them; skylight falls on their mean tilt. slope: of the foam's own relief, where a pixel
+// resolves it, rising towards the sun.
 vec3 foam_radiance(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float sun_angular_radius,
-                   vec3 sky_irradiance, vec3 reflectance) {
+                   vec3 sky_irradiance, vec3 reflectance, float slope) {
     vec3 variance = foam_variance(frame.variance);
     vec3 v = into_frame(frame, to_eye);
     vec3 l = into_frame(frame, to_sun);
@@ -34,7 +35,7 @@ vec3 foam_radiance(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance
              1.0e-12f);
     // The mean of l·f/f_z: E max(l_z − l_xy·ζ, 0) for normal ζ with the mean and variance of the visible
     // slopes.
-    float lit = (l.z - mean.x * l.x - mean.y * l.y) / spread;
+    float lit = (l.z - mean.x * l.x - mean.y * l.y - slope * sqrt(l.x * l.x + l.y * l.y)) / spread;
     float a = min(abs(lit) * 0.70710678f, 1.0e3f);
     float tail = spread * 0.39894228f * exp(-a * a) * erfcx_remainder(a);
     float facing = max(lit, 0.0f) * spread + tail;

@@ -1,5 +1,5 @@
-// What foam looks like from near: dense where waves break, then a net of filaments whose holes grow as bubbles burst,
-// drawn out along the wind. Pixels that don't resolve the pattern show the coverage.
+// What foam looks like from near: a dense, rough roller where waves break, then lace, torn and bent, with round holes of many sizes
+// that grow as bubbles burst, then a faint film, drawn out along the wind. Pixels that don't resolve the pattern show the coverage.
 //
 // The pattern is a sum of layers. Each has the normal distribution with variance 1 at a random place, and they are
 // independent, so that the sum with weights whose squares add up to 1 has it too. Foam lies where the sum is above
@@ -22,15 +22,16 @@ struct FoamPattern {
 struct SeenFoam {
     float share;
     float dense;
+    float slope;  // of its relief, rising towards the sun
 };
 
-const float kFoamGrain = 0.1f;     // the part of the pattern's variance that is never resolved, which softens edges
+const float kFoamGrain = 0.03f;    // the part of the pattern's variance that is never resolved, which softens edges
 const float kThinFoam = 0.15f;     // dense foam in what looks thin
 const float kFaintFoam = 1.0e-3f;  // less coverage than this begins to lose its pattern, which nobody would see
 
 // Coverage without a pattern, of all ages.
 SeenFoam plain_foam(float coverage) {
-    return SeenFoam(coverage, kDenseFoam);
+    return SeenFoam(coverage, kDenseFoam, 0.0f);
 }
 
 // The z that a normal variable exceeds with the chance p, 0 < p ≤ 0.5; p's relative error is 6e-6. Fitted in √(−2 ln p), which z
@@ -67,15 +68,23 @@ struct FoamCell {
     vec2 rest;
 };
 
-// `halvings` from the largest cells, moved by some of its own.
-FoamCell foam_cell(vec2 cell, vec2 rest, int halvings, vec2 moved) {
+// `halvings` from the largest cells, moved by some of its own. turned: by 45°, cells √2 times as small, so that layers don't show
+// one grid.
+FoamCell foam_cell(vec2 cell, vec2 rest, int halvings, vec2 moved, bool turned) {
     float finer = float(1 << halvings);
     vec2 place = rest * finer + moved;
+    uint x = uint(cell.x) * uint(finer);
+    uint y = uint(cell.y) * uint(finer);
+    if (turned) {
+        place = vec2(place.x + place.y, place.y - place.x);
+        uint sum = x + y;
+        y = y - x;
+        x = sum;
+    }
     vec2 low = floor(place);
     // Patterns repeat after 65536 of the largest cells, 2000 km.
     uint most = (65536u << uint(halvings)) - 1u;
-    return FoamCell((uint(cell.x) * uint(finer) + uint(int(low.x))) & most,
-                    (uint(cell.y) * uint(finer) + uint(int(low.y))) & most, place - low);
+    return FoamCell((x + uint(int(low.x))) & most, (y + uint(int(low.y))) & most, place - low);
 }
 
 // Normal, variance 1: values at a grid's corners, each a sum of four bytes, and their smooth mean between, scaled to keep the variance.
@@ -95,25 +104,23 @@ float foam_clouds(FoamCell at, uint layer) {
     return sum * inversesqrt(squares * 21845.0f);
 }
 
-// Worley's cells: how much farther away the second nearest of random points is than the nearest one, 0 on the net between
-// them. Made normal, variance 1, largest on the net: a fit to its distribution at random places, within 0.0013 of it.
-float foam_net(FoamCell at, uint layer) {
-    float first = 9.0f;
-    float second = 9.0f;
+// Round holes of random sizes: the distance from the nearest hole's middle, over its radius. Made normal, variance 1, least in the
+// holes: a fit to its distribution at random places, within 0.005 of it.
+float foam_holes(FoamCell at, uint layer) {
+    float nearest = 9.0f;
     for (int i = 0; i < 9; ++i) {
         int x = i % 3 - 1;
         int y = i / 3 - 1;
         uint h = foam_hash(at.x + uint(x), at.y + uint(y), layer);
-        // 0.84: no farther from their cells' middles than lets nine cells hold both points.
-        float dx = float(x) + 0.5f + 0.84f * (float(h & 65535u) / 65536.0f - 0.5f) - at.rest.x;
-        float dy = float(y) + 0.5f + 0.84f * (float(h >> 16u) / 65536.0f - 0.5f) - at.rest.y;
-        float d = dx * dx + dy * dy;
-        second = min(second, max(first, d));
-        first = min(first, d);
+        // 0.66: no farther from their cells' middles than lets nine cells hold all that is nearer than `farthest`.
+        float dx = float(x) + 0.5f + 0.66f * (float(h & 1023u) / 1024.0f - 0.5f) - at.rest.x;
+        float dy = float(y) + 0.5f + 0.66f * (float((h >> 10u) & 1023u) / 1024.0f - 0.5f) - at.rest.y;
+        float radius = 0.45f + 0.55f * (float(h >> 20u) / 4096.0f);
+        nearest = min(nearest, (dx * dx + dy * dy) / (radius * radius));
     }
-    float s = sqrt(max(sqrt(second) - sqrt(first), 0.0f));
-    return 3.114043f +
-           s * (-14.373566f + s * (39.047683f + s * (-73.364101f + s * (68.69483f - s * 26.567438f))));
+    float farthest = 1.17f;
+    float s = min(sqrt(nearest), farthest);
+    return -3.041654f + s * (11.212288f + s * (-23.509151f + s * (36.653262f + s * (-27.733232f + s * 8.195414f))));
 }
 
 // How coarse a pattern a pixel sees, from its width and long axis: between the two, since layers aren't filtered along one alone.
@@ -145,59 +152,67 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     vec2 rest = vec2(place.x, place.z);
 
     float old = age_s / (age_s + 3.0f);
-    float streaks = pattern.look.y * (0.15f + 0.35f * old);
-    float bubbles = 0.06f;
-    float nets = 1.0f - kFoamGrain - streaks - bubbles - 0.15f;
-    float clouds = 0.15f;
+    float young = exp(-age_s / 1.2f);
+    float streaks = pattern.look.y * (0.1f + 0.3f * old);
+    float bubbles = 0.05f;
+    float lace = (0.6f - 0.3f * young) * (1.0f - 0.4f * streaks);
+    float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
     FoamNoise noise = FoamNoise(0.0f, 0.0f);
-    // Bends the nets, in metres.
+    // What turbulence bends, in metres.
     vec2 bent = vec2(0.0f);
-    float shown = foam_weight(4.0f, footprint_m);
-    if (shown > 0.0f) {
-        FoamCell slow = foam_cell(cells, rest, 4, vec2(0.0f));
-        FoamCell fast = foam_cell(cells, rest, 6, vec2(0.0f));
-        bent = 0.25f * vec2(foam_clouds(slow, 101u), foam_clouds(slow, 102u)) +
-               0.06f * vec2(foam_clouds(fast, 103u), foam_clouds(fast, 104u));
+    if (foam_weight(4.0f, footprint_m) > 0.0f) {
+        ivec3 halvings = ivec3(4, 6, 7);  // 2, 1/2 and 1/4 m
+        vec3 reach_m = vec3(0.34f, 0.1f, 0.045f);
+        for (int k = 0; k < 3; ++k) {
+            FoamCell at = foam_cell(cells, rest, halvings[k], vec2(0.0f), false);
+            bent += reach_m[k] * vec2(foam_clouds(at, uint(101 + 2 * k)), foam_clouds(at, uint(102 + 2 * k)));
+        }
     }
-    // A net, and one with cells half as large at 0.55 of its weight. Cells begin at 1/4 and 1/8 m, and grow by 0.75
-    // octaves for each doubling of 1 s + age.
-    float octave = 1.0f + 0.75f * log2(1.0f + age_s);
-    octave = min(octave, 5.0f);
+    // Holes of one size, and smaller ones between. The largest begin at 1/4 m, and grow by 0.8 octaves for each doubling of
+    // 1 s + age.
+    float octave = min(1.2f + 0.8f * log2(1.0f + age_s), 5.0f);
     float all = 0.0f;
-    float nets_shown = 0.0f;
-    float nets_variance = 0.0f;
-    for (int k = max(int(floor(octave)) - 1, 0); k <= int(floor(octave)) + 1; ++k) {
-        float from = float(k) - octave;
-        float weight = max(1.0f - abs(from), 0.0f) + 0.55f * max(1.0f - abs(from + 1.0f), 0.0f);
+    float lace_shown = 0.0f;
+    float lace_variance = 0.0f;
+    for (int k = max(int(floor(octave)) - 3, 0); k <= int(floor(octave)) + 1; ++k) {
+        float finer = octave - float(k);
+        float weight = max(1.0f - abs(finer), 0.0f) + 0.6f * max(1.0f - abs(finer - 1.0f), 0.0f) +
+                       0.42f * max(1.0f - abs(finer - 2.0f), 0.0f) + 0.3f * max(1.0f - abs(finer - 3.0f), 0.0f);
         all += weight * weight;
         float size_m = 0.125f * float(1 << k);
         float through = weight * foam_weight(size_m, footprint_m);
         if (through > 0.0f) {
-            nets_shown += through * foam_net(foam_cell(cells, rest, 8 - k, bent / size_m), uint(k));
-            nets_variance += through * through;
+            lace_shown += through * foam_holes(foam_cell(cells, rest, 8 - k, bent / size_m, k % 2 == 1), uint(k));
+            lace_variance += through * through;
         }
     }
-    noise.shown += sqrt(nets / all) * nets_shown;
-    noise.variance += nets / all * nets_variance;
+    noise.shown += sqrt(lace / all) * lace_shown;
+    noise.variance += lace / all * lace_variance;
 
     float fine = foam_weight(1.0f / 16.0f, footprint_m);
     if (fine > 0.0f) {
-        noise.shown += sqrt(bubbles) * fine * foam_clouds(foam_cell(cells, rest, 9, vec2(0.0f)), 60u);
+        noise.shown += sqrt(bubbles) * fine * foam_holes(foam_cell(cells, rest, 9, 8.0f * bent, true), 60u);
         noise.variance += bubbles * fine * fine;
     }
-    // Patches and streaks: a fifth of their variance in the finer ones.
-    vec2 streak_cells = vec2(cell.y, cell.z);
-    vec2 streak_rest = vec2(place.y, place.z);
+    // Patches down to the roller's own roughness.
+    ivec4 halvings = ivec4(3, 5, 6, 8);  // 4, 1, 1/2 and 1/8 m
+    vec4 parts = clouds * vec4(0.35f, 0.3f, 0.2f, 0.15f);
     for (int k = 0; k < 4; ++k) {
-        bool is_streak = k < 2;
-        int halvings = k % 2 == 0 ? 3 : 5;
-        float size_m = k % 2 == 0 ? 4.0f : 1.0f;
-        float part = (is_streak ? streaks : clouds) * (k % 2 == 0 ? 0.6f : 0.4f);
+        float size_m = float(kFoamCell_m) / float(1 << halvings[k]);
+        float part = parts[k];
         float through = foam_weight(size_m, footprint_m);
         if (part * through > 0.0f) {
-            FoamCell at = foam_cell(is_streak ? streak_cells : cells, is_streak ? streak_rest : rest, halvings,
-                                    vec2(0.0f, bent.y / size_m));
+            noise.shown += sqrt(part) * through * foam_clouds(foam_cell(cells, rest, halvings[k], bent / size_m, false), uint(54 + k));
+            noise.variance += part * through * through;
+        }
+    }
+    for (int k = 0; k < 2; ++k) {
+        float size_m = k == 0 ? 4.0f : 1.0f;
+        float part = streaks * (k == 0 ? 0.6f : 0.4f);
+        float through = foam_weight(size_m, footprint_m);
+        if (part * through > 0.0f) {
+            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 3 + 2 * k, vec2(0.0f, bent.y / size_m), false);
             noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
             noise.variance += part * through * through;
         }
@@ -217,18 +232,35 @@ SeenFoam foam_seen_in(FoamNoise noise, float coverage, float dense) {
     float cores = clamp((dense - kThinFoam) / (1.0f - kThinFoam), 0.0f, 1.0f);
     float edge = min(kThinFoam, dense);
     float core = min(foam_above(noise, cores * coverage), share);
-    return SeenFoam(share, share > 0.0f ? (core + edge * (share - core)) / share : dense);
+    return SeenFoam(share, share > 0.0f ? (core + edge * (share - core)) / share : dense, 0.0f);
 }
 
+// Dense foam is as thick as its pattern is high: this much for a deviation. Its facets are as steep as their own roughness has it
+// (kFoamSlopeVariance), no steeper.
+const float kFoamRelief_m = 0.02f;
+const float kSteepestRelief = 0.6f;
+
 // pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;
-// age_s: since the rest broke, on average.
-SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverage, float breaking, float age_s) {
+// age_s: since the rest broke, on average. sun: its direction, in the axes of rest_m.
+SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverage, float breaking, float age_s, vec3 sun) {
     float c = clamp(coverage, 0.0f, 1.0f);
     float fresh = clamp(breaking / max(c, 1.0e-12f), 0.0f, 1.0f);
     float dense = pattern.look.w + fresh * (pattern.look.z - pattern.look.w);
     float strength = pattern.look.x * smoothstep(0.1f * kFaintFoam, kFaintFoam, c);
-    if (!(strength > 0.0f)) return SeenFoam(c, dense);
-    FoamNoise noise = foam_noise(pattern, rest_m, foam_footprint(pixel_m), (1.0f - fresh) * age_s);
-    if (!(noise.variance > 0.0f)) return SeenFoam(c, dense);
-    return foam_seen_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, dense);
+    if (!(strength > 0.0f)) return SeenFoam(c, dense, 0.0f);
+    float footprint_m = foam_footprint(pixel_m);
+    float since_s = (1.0f - fresh) * age_s;
+    FoamNoise noise = foam_noise(pattern, rest_m, footprint_m, since_s);
+    if (!(noise.variance > 0.0f)) return SeenFoam(c, dense, 0.0f);
+    SeenFoam seen = foam_seen_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, dense);
+    // Where pixels are too large for the smaller half of the pattern its slopes are lost.
+    float relief_m = kFoamRelief_m * strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.03f, 0.12f, footprint_m));
+    if (relief_m * seen.share * seen.dense > 1.0e-4f) {
+        float step_m = max(footprint_m, 0.02f);
+        vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);
+        FoamNoise ahead = foam_noise(pattern, rest_m + step_m * to_sun, footprint_m, since_s);
+        float slope = relief_m * (ahead.shown - noise.shown) / step_m;
+        seen.slope = kSteepestRelief * slope / sqrt(kSteepestRelief * kSteepestRelief + slope * slope);
+    }
+    return seen;
 }

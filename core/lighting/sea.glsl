@@ -31,7 +31,7 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam se
         clear = 1.0f - foam;
         terms.foam = foam * foam_radiance(to_eye, light.sun_direction, frame, light.sun_radiance,
                                           light.sun_angular_radius, light.sky_irradiance,
-                                          foam_reflectance(light.water_reflectance, seen.dense));
+                                          foam_reflectance(light.water_reflectance, seen.dense), seen.slope);
     }
     if (kSky) terms.sky = clear * sky_reflection(to_eye, frame);
     if (!kSun && !kWater) return terms;

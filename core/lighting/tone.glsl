@@ -42,7 +42,7 @@ vec3 colour_of_oklab(vec3 lab) {
 // The sRGB display value, 0 … 1, of a radiance. exposure: radiance × exposure = 0.18 is middle grey.
 //
 // The curve is applied to the largest component, and the others keep their ratio to it: a curve per component would turn the orange
-// of a low sun's glitter into yellow. Very bright colours go to white, as on film and in the eye, by the twelfth power of the curve:
+// of a low sun's glitter into yellow. Very bright colours go to white, as on film and in the eye, by the sixteenth power of the curve:
 // a low sun's light keeps two thirds of its saturation two stops above white paper, and the sun's disc is white.
 vec3 display_colour(vec3 radiance, float exposure) {
     vec3 light = clamp(radiance * exposure, vec3(0.0f), vec3(1e30f));  // no ratios of infinities
@@ -50,7 +50,7 @@ vec3 display_colour(vec3 radiance, float exposure) {
     if (!(strongest > 0.0f)) return vec3(0.0f);
     float shown = film_curve(strongest);
     float fourth = (shown * shown) * (shown * shown);
-    float white = fourth * fourth * fourth;
+    float white = (fourth * fourth) * (fourth * fourth);
     vec3 colour = light / strongest;
     // Where nothing is to be changed rounding shouldn't change anything.
     if (white > 1e-5f) colour = colour_of_oklab(mix(oklab_of(colour), vec3(1.0f, 0.0f, 0.0f), white));

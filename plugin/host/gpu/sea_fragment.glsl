@@ -23,7 +23,7 @@ void main() {
     SeenFoam foam = plain_foam(0.0);
     if (kWhitecaps)
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look), rest_m,
-                         pixel, all.coverage, all.breaking, all.age_s);
+                         pixel, all.coverage, all.breaking, all.age_s, sun_direction);
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
                         answer.slope_variance, foam,

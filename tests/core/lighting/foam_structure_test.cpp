@@ -28,6 +28,7 @@ Optics::FoamPattern pattern_of(double structure, double streaks, double wind_deg
         foam_pattern({.structure = structure, .streaks = streaks, .wind_direction_deg = wind_deg}, origin_m));
 }
 
+const glm::vec3 kSun(0.36f, 0.48f, 0.8f);
 constexpr std::array kCoverages{0.01f, 0.03f, 0.1f, 0.3f, 0.5f, 0.7f, 0.9f};
 constexpr std::array kFootprints_m{1e-3f, 0.02f, 0.06f, 0.15f, 0.4f, 1.0f, 2.5f, 8.0f, 1e3f};
 constexpr std::array kAges_s{0.0f, 0.7f, 2.0f, 5.0f, 20.0f};
@@ -70,7 +71,7 @@ TEST(FoamStructure, FadesToTheCoverage) {
     const auto pattern = pattern_of(1.0, 0.5);
     for (const float coverage : {0.0f, 1e-5f, 0.01f, 0.4f, 0.97f, 1.0f}) {
         const auto seen =
-            shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage, 1.0f, 0.0f);
+            shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage, 1.0f, 0.0f, kSun);
         EXPECT_EQ(seen.share, coverage);
         EXPECT_EQ(seen.dense, 0.4f);
     }
@@ -84,7 +85,7 @@ TEST(FoamStructure, OffIsSmoothCoverage) {
     for (int i = 0; i < 1000; ++i) {
         const float coverage = unit(random);
         const auto seen = shading.seen_foam(pattern, {unit(random), unit(random)},
-                                            glm::vec3(1e-3f, 0.0f, 0.0f), coverage, 1.0f, 3.0f);
+                                            glm::vec3(1e-3f, 0.0f, 0.0f), coverage, 1.0f, 3.0f, kSun);
         EXPECT_EQ(seen.share, coverage);
         EXPECT_EQ(seen.dense, 0.4f);
     }
@@ -100,7 +101,7 @@ TEST(FoamStructure, IsThere) {
     for (int i = 0; i < kPlaces; ++i) {
         const float share = shading
                                 .seen_foam(pattern, {place(random), place(random)},
-                                           glm::vec3(0.01f, 0.0f, 0.0f), 0.4f, 1.0f, 0.0f)
+                                           glm::vec3(0.01f, 0.0f, 0.0f), 0.4f, 1.0f, 0.0f, kSun)
                                 .share;
         decided += share < 0.1f || share > 0.9f;
     }

@@ -56,7 +56,7 @@ TEST(Foam, SingleIsDouble) {
         const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
         const double expected = foam(normalize(dvec3(v)), normalize(dvec3(l)), dvec3(s));
         const vec3 found =
-            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), vec3(1.0f));
+            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), vec3(1.0f), 0.0f);
         ASSERT_NEAR(found.x, expected, 1e-4 * expected) << i;
     }
 }
@@ -80,7 +80,7 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
                                  q = std::sqrt(1.0 - z * z);
                     const vec3 l(dvec3(q * std::cos(a), q * std::sin(a), z));
                     const vec3 found = optics.foam_radiance(v, l, frame, vec3(1.0f), float(kFoamRadius),
-                                                            vec3(0.0f), vec3(1.0f));
+                                                            vec3(0.0f), vec3(1.0f), 0.0f);
                     sum += static_cast<double>(found.x) /
                            (oracle::kPi * kFoamRadius * kFoamRadius);  // per solid angle of the sun
                 }

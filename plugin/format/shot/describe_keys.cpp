@@ -25,7 +25,9 @@ void describe(std::string& out, const Key& key) {
 std::string describe_keys() {
     std::string out =
         "preset\n      a named sea, first in the file; all below lies on top of it\n"
-        "      a string, one of what pelagic presets lists\n";
+        "      a string, one of what pelagic presets lists\n"
+        "preset_parts\n      what of the preset counts; all without it\n"
+        "      a list of \"sea\", \"light\", \"camera\" and \"water\"\n";
     for (const KeyTable& table : key_tables()) {
         out += "\n[" + table.name + "]  " + table.help + '\n';
         for (const Key& key : table.keys) describe(out, key);

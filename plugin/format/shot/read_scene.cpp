@@ -348,14 +348,34 @@ int edition_of(const toml::table& root) {
     return edition && limits::kEdition.holds(static_cast<double>(*edition)) ? static_cast<int>(*edition) : kNewestEdition;
 }
 
+// Which parts of the preset count; all without preset_parts.
+PresetParts read_preset_parts(Reader& reader, const toml::table& root) {
+    const toml::node* node = root.get("preset_parts");
+    if (!node) return ~PresetParts();
+    constexpr const char* kAccepted = "a list of \"sea\", \"light\", \"camera\" and \"water\", beside preset";
+    PresetParts parts;
+    const auto refuse = [&](const toml::node& at, std::string problem) {
+        reader.refuse(at.source().begin, {"preset_parts", text_of(at), std::move(problem), kAccepted});
+    };
+    const toml::array* list = node->as_array();
+    if (!list || !root.get("preset")) return refuse(*node, list ? "is there without a preset" : "is " + type_of(*node)), parts;
+    for (const toml::node& part : *list) {
+        const auto* word = part.as_string();
+        const auto at = std::find(kPresetParts.begin(), kPresetParts.end(), word ? word->get() : std::string());
+        if (at == kPresetParts.end()) return refuse(part, "is no part of a preset"), parts;
+        parts.set(static_cast<std::size_t>(at - kPresetParts.begin()));
+    }
+    return parts;
+}
+
 // The preset on which all other keys lie. Only a string can stand there: a table would be the file's own.
-void read_preset(Reader& reader, const toml::node& node, Scene& scene) {
+void read_preset(Reader& reader, const toml::node& node, PresetParts parts, Scene& scene) {
     const toml::source_position at = node.source().begin;
     const auto* name = node.as_string();
     if (!name)
         return reader.refuse(at, {"preset", text_of(node), "is " + type_of(node),
                                   "a string, the name of a preset: pelagic presets lists them"});
-    if (const Preset* preset = find_preset(name->get())) return apply(*preset, scene);
+    if (const Preset* preset = find_preset(name->get())) return apply(*preset, scene, parts);
     reader.refuse(at, unknown_preset("preset", name->get()));
 }
 
@@ -363,15 +383,16 @@ void read_preset(Reader& reader, const toml::node& node, Scene& scene) {
 
 Scene read_scene(Reader& reader, const toml::table& root) {
     Scene scene = scene_of_edition(edition_of(root));
-    if (const toml::node* preset = root.get("preset")) read_preset(reader, *preset, scene);
+    const PresetParts parts = read_preset_parts(reader, root);
+    if (const toml::node* preset = root.get("preset")) read_preset(reader, *preset, parts, scene);
     KnownKeys tables;
     for (const KeyTable& table : key_tables()) {
-        tables.accepted += (tables.names.empty() ? "preset and the tables " : ", ") + table.name;
+        tables.accepted += (tables.names.empty() ? "preset, preset_parts and the tables " : ", ") + table.name;
         tables.names.push_back(table.name);
     }
     for (const auto& at : in_order(root)) {
         const auto& [name_in_file, node] = at;
-        if (name_in_file.str() == "preset") continue;
+        if (name_in_file.str() == "preset" || name_in_file.str() == "preset_parts") continue;
         const auto table =
             std::find_if(key_tables().begin(), key_tables().end(),
                          [&, name = name_in_file.str()](const KeyTable& t) { return t.name == name; });

@@ -269,12 +269,15 @@ const char* const kKeysFooter =
 
 const char* const kPresets =
     "List the named seas, or print one.\n"
-    "A shot file that begins with preset = \"NAME\" lies on top of it.";
+    "A shot file that begins with preset = \"NAME\" lies on top of it: sea, light, camera and water, or those that\n"
+    "preset_parts = [\"sea\", …] beside it names.";
 const char* const kPresetName = "Print this one's keys, as a shot file has them";
+const char* const kPresetSheet = "Draw a small picture of each into this file";
 const char* const kPresetsFooter =
     "Examples:\n"
     "  pelagic presets\n"
-    "  pelagic presets beaufort-7";
+    "  pelagic presets beaufort-7\n"
+    "  pelagic presets --sheet presets.png    a small picture of each; a minute or two";
 
 const char* const kCalibrate =
     "Measure this machine anew, for shots with quality.frame_ms.\n"

@@ -73,6 +73,7 @@ extern const char* const kPresets;
 extern const char* const kPresetsFooter;
 extern const char* const kCalibrate;
 extern const char* const kCalibrateFooter;
+extern const char* const kPresetSheet;
 extern const char* const kPresetName;
 extern const char* const kKeys;
 extern const char* const kKeysFooter;

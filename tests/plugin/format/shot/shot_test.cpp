@@ -232,9 +232,9 @@ TEST(Shot, UnknownKeysNameTheNearest) {
                    "2:1: sea.wind_sped_mps = 3: is an unknown key, the nearest is sea.wind_speed_mps",
                    "in sea the keys wind_speed_mps, wind_direction_deg");
     expect_refused("[see]\n", "1:2: see = { }: is an unknown table, the nearest is sea",
-                   "preset and the tables shot, sea,");
+                   "preset, preset_parts and the tables shot, sea,");
     expect_refused("fps = 24\n", "1:1: fps = 24: is an unknown key, the nearest is shot.fps",
-                   "preset and the tables shot");
+                   "preset, preset_parts and the tables shot");
     expect_refused("[waves]\n\n  fps = 24\n",
                    "3:3: waves.fps = 24: is an unknown key, the nearest is shot.fps",
                    "in waves the keys model");

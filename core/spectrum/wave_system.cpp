@@ -29,6 +29,8 @@ constexpr double kTurnedFrom = 1.0, kTurnedTo = 2.5;
 // The short waves' energy is that which gives the glitter's slopes with what the longer ones have, by no more than this factor and
 // its inverse; without it they are off by −17 … 33 % at 3 … 25 m/s.
 constexpr double kLeastRipples = 0.5;
+// Below this wind [m/s] the glitter's law, which leaves a calm some slope, counts less and less.
+constexpr double kGlittered = 3.0;
 // ω̃p ∝ ε̃^−0.3 on the way of growth (Kahma & Calkoen 1992: X̃^−0.27 and X̃^0.9).
 constexpr double kPeakByEnergy = growth::kPeakExponent / growth::kEnergyExponent;
 // Elfouhaily's sea is given from full development to this inverse wave age (Eq. 3).
@@ -210,8 +212,13 @@ std::vector<WaveSystem> WaveSystem::sea(const SeaState& sea, const Dispersion& d
     const double glitter = CoxMunk::at_wind(sea.wind_speed_mps).total;
     auto [m0, mss] = totals();
     double ripples = 1.0;
-    const auto bounded = [](double gain) { return std::clamp(gain, kLeastRipples, 1.0 / kLeastRipples); };
-    if (!is_by_height && mss[1] > 0.0) ripples = bounded((glitter - mss[0]) / mss[1]);
+    const double glittered = std::min(1.0, sea.wind_speed_mps / kGlittered);
+    const auto bounded = [&](double gain) {
+        return std::pow(std::clamp(gain, kLeastRipples, 1.0 / kLeastRipples), glittered);
+    };
+    // Who asks for Elfouhaily's spectrum has his short waves as they are.
+    const bool is_theirs = is_by_height || std::holds_alternative<Elfouhaily>(energy);
+    if (!is_theirs && mss[1] > 0.0) ripples = bounded((glitter - mss[0]) / mss[1]);
     const double own = m0[0] + ripples * m0[1];
     double wanted = own;
     if (sea.significant_height_m) {
@@ -220,7 +227,7 @@ std::vector<WaveSystem> WaveSystem::sea(const SeaState& sea, const Dispersion& d
             // A sea of another height is one of another age. Its ripples and its longer waves have two numbers to hold.
             systems = with_short_waves(sea, aged(energy, std::pow(wanted / own, -kPeakByEnergy)), dispersion);
             std::tie(m0, mss) = totals();
-            if (mss[1] > 0.0) ripples = bounded((m0[0] * glitter - mss[0] * wanted) / (m0[0] * mss[1] - mss[0] * m0[1]));
+            if (!is_theirs && mss[1] > 0.0) ripples = bounded((m0[0] * glitter - mss[0] * wanted) / (m0[0] * mss[1] - mss[0] * m0[1]));
         }
     }
     wanted = std::min(wanted, m0_of(kMostHeightOverDepth * sea.depth_m));

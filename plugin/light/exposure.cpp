@@ -12,6 +12,7 @@
 #include "core/lighting/colour.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/tone.h"
+#include "core/plan/effects.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/surface/earth.h"
 #include "core/waves/whitecaps.h"
@@ -119,7 +120,7 @@ class Meter {
 double foam_luminance(const Scene& scene, const Sky& sky) {
     constexpr double kReflectance = 0.55;  // foam.glsl
     constexpr double kSeen = 0.005;        // the coverage from which on it counts whole
-    if (!scene.effects.whitecaps) return 0.0;
+    if (!is_on(Effect::Whitecaps, scene)) return 0.0;
     const double seen = std::min(1.0, law_coverage(scene) / kSeen);
     return seen * kReflectance / kPi * luminance(glm::dvec3(sky.sun_irradiance + sky.sky_irradiance));
 }

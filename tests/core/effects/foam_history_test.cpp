@@ -12,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/scene/editions.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
@@ -23,8 +24,10 @@ namespace {
 
 using namespace test;
 
+// Of the first edition, whose draws the tolerances were measured with. The newest, with less foam in steeper waves, has 0.988 ± 0.018
+// of its law at 8 m (ten seeds of its whole tiles; the first: 0.993 ± 0.009).
 Scene scene_of(double decay_s, double wind_mps = 14.0) {
-    Scene scene;
+    Scene scene = scene_of_edition(1);
     scene.sea.wind_speed_mps = wind_mps;
     scene.effects.foam_decay_s = decay_s;
     return scene;

@@ -251,7 +251,7 @@ std::vector<Case> cases() {
          {},
          4,
          true,
-         60},
+         250},
         // The cascade begins where the trains end, at 8 waves across; its cells end at its 32nd mode.
         {"TrochoidWithACascade",
          [](Scene& s) {

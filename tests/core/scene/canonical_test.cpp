@@ -98,7 +98,7 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.water.type = WaterType::Turbid; },
         [](Scene& s) { s.water.chlorophyll_mg_m3 = 0.2; },
         [](Scene& s) { s.effects.whitecaps = false; },
-        [](Scene& s) { s.effects.whitecap_law = WhitecapLaw::Callaghan2008; },
+        [](Scene& s) { s.effects.whitecap_law = WhitecapLaw::Monahan1980; },
         [](Scene& s) { s.effects.sea_minus_air_c = 2.0; },
         [](Scene& s) { s.effects.whitecap_amount = 2.0; },
         [](Scene& s) { s.effects.breaking_from_m = 2.0; },

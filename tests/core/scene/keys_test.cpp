@@ -208,7 +208,7 @@ TEST(Keys, TheCanonicalTextHasALineAKey) {
     scene.sea.swell = {{1.0, 9.0, 0.0}, {2.0, 10.0, 1.0}};
     EXPECT_EQ(canonical(scene, key_parts(KeyPart::Foam, KeyPart::Grid)),
               "surface.cell_px = 8\nsurface.earth_curvature = true\neffects.whitecaps = true\n"
-              "effects.whitecap_law = \"monahan-1980\"\neffects.sea_minus_air_c = 0\n"
+              "effects.whitecap_law = \"callaghan-2008\"\neffects.sea_minus_air_c = 0\n"
               "effects.whitecap_amount = 1\neffects.breaking_from_m = 1\n"
               "effects.foam_decay_s = 4\neffects.foam_drift = 0.02\n");
     EXPECT_NE(canonical(scene).find(
@@ -272,7 +272,7 @@ TEST(Keys, AnIntegerMayHaveAnotherWord) {
     EXPECT_FALSE(set_value(scene, level, std::string("adaptive")).has_value());
     EXPECT_TRUE(scene.surface.cage_level.is_adaptive);
     EXPECT_EQ(value_text(level, value_of(scene, level)), "\"adaptive\"");
-    EXPECT_EQ(shot_text(scene), "[surface]\ncage_level = \"adaptive\"\n");
+    EXPECT_EQ(shot_text(scene, Scene{}), "[surface]\ncage_level = \"adaptive\"\n");
     const auto problem = set_value(scene, level, std::string("adaptiv"));
     ASSERT_TRUE(problem);
     EXPECT_EQ(problem->problem, "is not the word \"adaptive\"");
@@ -282,7 +282,7 @@ TEST(Keys, AnIntegerMayHaveAnotherWord) {
 }
 
 TEST(ShotText, NothingDiffersIsNoText) {
-    EXPECT_EQ(shot_text(Scene{}), "");
+    EXPECT_EQ(shot_text(Scene{}), "[shot]\nedition = 2\n");
     Scene scene;
     scene.sea.fetch_m = 1e5;
     EXPECT_EQ(shot_text(scene, scene), "");
@@ -297,7 +297,9 @@ TEST(ShotText, OnlyWhatDiffersInTheTablesOfAShotFile) {
     now.water.type = WaterType::Turbid;
     now.effects.whitecaps = false;
     EXPECT_EQ(shot_text(now),
-              "[sea]\n"
+              "[shot]\n"
+              "edition = 2\n"
+              "\n[sea]\n"
               "wind_speed_mps = 12.5\n"
               "fetch_m = 100000\n"
               "swell = [{ height_m = 1.5, period_s = 11, direction_deg = 80 }]\n"

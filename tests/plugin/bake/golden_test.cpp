@@ -28,6 +28,7 @@
 #include "core/base/instruction_set.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/outputs.h"
+#include "core/scene/editions.h"
 #include "core/scene/names.h"
 #include "pelagic/version.h"
 #include "plugin/bake/bake.h"
@@ -116,9 +117,20 @@ struct Golden {
 };
 using Hashes = std::map<std::string, Golden>;  // by output
 
-// Two frames of a shot with trains over cascades: every formula of the sea is in them.
-Scene golden_shot() {
-    Scene scene = trains_shot().scene;
+// What the shot leaves at its default becomes the edition's.
+Scene in_edition(int edition, Scene scene) {
+    for (const EditionChange& change : edition_changes()) {
+        const Key& key = key_of(change.path);
+        if (value_of(scene, key) == key.fallback) set_value(scene, key, fallback_in(edition, key));
+    }
+    scene.shot.edition = edition;
+    return scene;
+}
+
+// Two frames of a shot with trains over cascades: every formula of the sea is in them. The first edition's sea has the bits that it
+// had before there were editions.
+Scene golden_shot(int edition) {
+    Scene scene = in_edition(edition, trains_shot().scene);
     scene.shot.name = "golden";
     scene.shot.first_frame = scene.shot.last_frame = 7;
     scene.waves.cascades = {{.size_m = 30.0, .resolution = 64}, {.size_m = 9.0, .resolution = 32}};
@@ -192,15 +204,20 @@ TEST(Golden, BitsChangeOnlyWithTheRevisionOfTheirOutput) {
     const fs::path folder = fs::temp_directory_path() / ("pelagic-golden-" + std::to_string(getpid()));
     fs::remove_all(folder);
     Hashes hashes;
-    Scene scene = golden_shot();
-    add_bake(scene, folder, hashes);
-    scene.output.mesh = MeshFormat::Usdc;
-    scene.output.maps.clear();
-    scene.output.cascade_tiles = false;
-    add_bake(scene, folder, hashes);
-    scene.camera.position_m = {0.0, -30.0, 5.0};
-    add_picture(scene, folder, hashes);
-    fs::remove_all(folder);
+    for (int edition = 1; edition <= kNewestEdition; ++edition) {
+        Hashes made;
+        Scene scene = golden_shot(edition);
+        add_bake(scene, folder, made);
+        scene.output.mesh = MeshFormat::Usdc;
+        scene.output.maps.clear();
+        scene.output.cascade_tiles = false;
+        add_bake(scene, folder, made);
+        scene.camera.position_m = {0.0, -30.0, 5.0};
+        add_picture(scene, folder, made);
+        fs::remove_all(folder);
+        for (const auto& [output, golden] : made)
+            hashes[output + (edition > 1 ? "@" + std::to_string(edition) : "")] = golden;
+    }
 
     if (update) {
         known[set] = hashes;

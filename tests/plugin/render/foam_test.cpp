@@ -7,14 +7,16 @@
 #include <numeric>
 #include <vector>
 
+#include "core/scene/editions.h"
 #include "plugin/render/render.h"
 #include "tests/plugin/render/uniform_sky.h"
 
 namespace pelagic {
 namespace {
 
+// Of the first edition, with more foam.
 Scene scene_of(double decay_s) {
-    Scene scene;
+    Scene scene = scene_of_edition(1);
     scene.quality.level = QualityLevel::Draft;
     scene.sea.wind_speed_mps = 16.0;
     scene.effects.foam_decay_s = decay_s;

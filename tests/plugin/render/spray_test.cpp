@@ -1,4 +1,5 @@
 // Spray in pictures: against small steps through the sea itself, and what it must not change.
+#include "core/scene/editions.h"
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/render/render.h"
@@ -23,7 +24,7 @@ namespace {
 
 // A spray_storm, from among its crests.
 Scene spray_storm(double gain) {
-    Scene scene;
+    Scene scene = scene_of_edition(1);
     scene.sea.wind_speed_mps = 22.0;
     scene.waves.cascades = {{1200.0, 256}, {180.0, 128}, {31.0, 128}};
     scene.quality.level = QualityLevel::Draft;

@@ -19,6 +19,7 @@ Scene read(const std::string& text) {
 
 constexpr const char* kText = R"(# Größe ünd Wellen: ein Sturm
 [shot]
+edition = 2
 name = "edited" # its name
 
 [sea]
@@ -47,6 +48,17 @@ void expect_edited(const std::string& text, const Scene& wanted, const std::stri
         EXPECT_TRUE(is_in_a_value || found != std::string::npos) << comment << " in\n" << edited;
         EXPECT_EQ(edited.find(comment, found + 1), std::string::npos) << comment << " in\n" << edited;
     }
+}
+
+// What was read without an edition means the newest, and says so from then on.
+TEST(EditShot, TheEditionIsWritten) {
+    const Scene base = read("[sea]\nfetch_m = 1e5\n");
+    EXPECT_EQ(edited_shot("[sea]\nfetch_m = 1e5\n", base, base), "[sea]\nfetch_m = 1e5\n\n[shot]\nedition = 2\n");
+    const std::string old = "[shot]\nedition = 1\n";
+    Scene scene = read(old);
+    EXPECT_EQ(edited_shot(old, scene, read(old)), old);
+    scene.light.turbidity = 2.0;
+    expect_edited(old, scene, edited_shot(old, scene, read(old)));
 }
 
 TEST(EditShot, ValuesAreReplacedWhereTheyStandAndOthersAreAdded) {

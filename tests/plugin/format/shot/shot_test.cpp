@@ -90,7 +90,7 @@ resolution = [1280, 720]
 sun_elevation_deg = 20.0
 sun_azimuth_deg = 90.0
 sky = "daylight"
-turbidity = 3.0
+turbidity = 2.0
 [water]
 type = "ocean"
 chlorophyll_mg_m3 = 0.1
@@ -335,7 +335,7 @@ TEST(Shot, Trains) {
     EXPECT_EQ(all.waves.longest_m, 30.0);
     EXPECT_TRUE(all.waves.cascades.empty());
     const Scene none = parse("[waves]\nmodel = \"trochoid\"\n");
-    EXPECT_EQ(none.waves.trains, 60);
+    EXPECT_EQ(none.waves.trains, 250);
     EXPECT_FALSE(none.waves.shortest_m || none.waves.longest_m);
     expect_refused("[waves]\nmodel = \"trochoid\"\ntrains = 1.5\n", "3:10: waves.trains = 1.5: is a",
                    "an integer, 1 … 10000");
@@ -463,7 +463,7 @@ TEST(Shot, AllProblemsInTheOrderOfTheFile) {
         "s.toml:2:14: surface.resolution = 0: is outside the range; accepted: 1 … 8192\n"
         "s.toml:4:18: sea.wind_speed_mps = -1: is outside the range; accepted: 0 … 80\n"
         "s.toml:5:1: sea.fetch = 3: is an unknown key, the nearest is sea.fetch_m; accepted: in sea the keys "
-        "wind_speed_mps, wind_direction_deg, fetch_m, depth_m, spectrum, short_waves, significant_height_m, "
+        "wind_speed_mps, wind_direction_deg, fetch_m, depth_m, spectrum, growth, short_waves, significant_height_m, "
         "spreading, directionality, gust_strength, gust_size_m, swell, spectrum_file, spectrum_time\n"
         "s.toml:6:12: sea.spectrum = 1: is an integer; accepted: one of \"pierson-moskowitz\" \"jonswap\" "
         "\"jonswap-1973\" \"tma\" \"elfouhaily\" \"omega-2\" \"phillips\" \"file\"\n"
@@ -671,7 +671,7 @@ TEST(Shot, HelpNamesEveryKey) {
     const std::string help = describe_keys();
     for (const char* part :
          {"[shot]", "  shot.fps = 24\n", "[1/s]", "sea.swell[].period_s", "camera.keys[].frame",
-          "waves.cascades = \"auto\"", "waves.trains = 60", "  waves.longest_m\n", "  quality.max_error\n",
+          "waves.cascades = \"auto\"", "waves.trains = 250", "  waves.longest_m\n", "  quality.max_error\n",
           "0 … 80", "output.attributes = [\"normal\", \"velocity\", \"slope-variance\", \"whitecaps\"]"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part;
     }

@@ -28,7 +28,7 @@ constexpr double kCell_m = 1.0;
 
 // Waves below four metres don't break: footprints of up to two metres have the same foam.
 std::string shot_text(double decay_s) {
-    return "[shot]\nframes = [1, 96]\n[quality]\nlevel = \"preview\"\n[sea]\nwind_speed_mps = 16.0\n"
+    return "[shot]\nedition = 1\nframes = [1, 96]\n[quality]\nlevel = \"preview\"\n[sea]\nwind_speed_mps = 16.0\n"
            "[effects]\nbreaking_from_m = 4.0\nfoam_decay_s = " +
            std::to_string(decay_s) +
            "\n[surface]\nsize_m = 64.0\nresolution = 64\n"

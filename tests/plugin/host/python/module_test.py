@@ -37,7 +37,7 @@ class Scene(unittest.TestCase):
 
     def test_trains_have_a_range_of_their_own_or_none(self):
         scene = pelagic.Scene()
-        self.assertEqual((scene.waves.trains, scene.waves.shortest_m, scene.waves.longest_m), (60, None, None))
+        self.assertEqual((scene.waves.trains, scene.waves.shortest_m, scene.waves.longest_m), (250, None, None))
         scene.waves.model = "trochoid"
         scene.waves.trains = 12
         scene.waves.longest_m = 30

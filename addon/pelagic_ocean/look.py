@@ -89,7 +89,7 @@ def _follow(bpy_scene, depsgraph):
     for obj in ocean.oceans():
         if bpy_scene not in obj.users_scene:
             continue
-        settings = ocean.settings_of(obj.evaluated_get(depsgraph))
+        settings = play.settings_read(obj, depsgraph)
         sea = play.simulation_of(obj).sea
         of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name

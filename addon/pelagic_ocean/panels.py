@@ -106,6 +106,8 @@ class Main:
             elif simulation.is_building:
                 layout.label(text="Building the sea…", icon="SORTTIME")
             elif simulation.sea:
+                if simulation.is_behind:
+                    layout.label(text="Foam follows…", icon="SORTTIME")
                 layout.label(text=say("Waves of {:.1f} m (significant height)", simulation.sea.significant_height_m), translate=False)
                 _draw_vertices(layout, context.object)
                 for warning in simulation.warnings:

@@ -87,7 +87,7 @@ GERMAN = {
     "4 Moderate breeze": "4 Mäßige Brise", "5 Fresh breeze": "5 Frische Brise", "6 Strong breeze": "6 Starker Wind",
     "7 Near gale": "7 Steifer Wind", "8 Gale": "8 Stürmischer Wind", "9 Strong gale": "9 Sturm", "10 Storm": "10 Schwerer Sturm",
     "11 Violent storm": "11 Orkanartiger Sturm", "12 Hurricane": "12 Orkan",
-    "Building the sea…": "Die See entsteht …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
+    "Building the sea…": "Die See entsteht …", "Foam follows…": "Der Schaum folgt …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
     "The object's own mesh": "Das eigene Netz des Objekts",
     "Waves of {:.1f} m (significant height)": "Signifikante Wellenhöhe {:.1f} m",
     "Vertices: {}": "Punkte: {}", "Viewport: {} of {} vertices": "Ansicht: {} von {} Punkten",

@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, handlers, light, ocean
+from . import compat, handlers, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -193,13 +193,6 @@ def _spaces():
                 yield area.spaces.active
 
 
-def _redraw():
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "PROPERTIES"}:
-                area.tag_redraw()
-
-
 def is_on():
     return _preview is not None
 
@@ -212,7 +205,7 @@ def turn_on(obj):
     if _problem:
         raise RuntimeError(_problem)
     _preview = Preview(obj)
-    _redraw()
+    play.redraw()
 
 
 def turn_off(problem=""):
@@ -222,7 +215,7 @@ def turn_off(problem=""):
     gone, _preview, _problem = _preview, None, problem
     gone.close()
     gone.show()
-    _redraw()
+    play.redraw()
 
 
 # ---- What a draw handler leaves to do
@@ -246,18 +239,18 @@ def _tend():
         return None
     if preview.poll() or preview.drawing.has_foam():
         preview.drawing.awaits_foam = False  # the next picture takes it, whenever a view shows the sea
-        _redraw()
+        play.redraw()
     if preview.wants_mesh():
         if preview.hidden_in:
             preview.show()
     elif preview.drawing.sea is not None and preview.hide():
-        _redraw()
+        play.redraw()
     if preview.is_building or preview.drawing.awaits_foam:
         return POLL_S
     if preview.drawing.is_coarse():
         # Views that were drawn since the last look are moving.
         if not preview.seen:
-            _redraw()
+            play.redraw()
             return None
         preview.seen = False
         return STILL_S
@@ -342,7 +335,7 @@ def _ocean_of(context):
 
 
 class PELAGIC_PG_preview(bpy.types.PropertyGroup):
-    show_sky: BoolProperty(name="Sky", default=False, update=lambda _group, _context: _redraw(),
+    show_sky: BoolProperty(name="Sky", default=False, update=lambda _group, _context: play.redraw(),
                            description="Draw the sky and the sun behind everything, too")
 
 

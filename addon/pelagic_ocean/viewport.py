@@ -63,11 +63,12 @@ class Preview:
     def scene(self, obj, bpy_scene):
         """The pelagic.Scene of the ocean as it is set now, or the last one that the core accepts; None before that."""
         turned = obj.matrix_world.to_euler().z
-        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned)
+        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned, light.kept_view(bpy_scene))
         if settings != self._settings:
             self._settings = settings
             try:
                 self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
+                light.see_by(settings[3], self._scene)
                 self._scene.light.sun_azimuth_deg -= math.degrees(turned)  # the sun stays where it is in the world
             except (ValueError, OSError) as error:
                 self.problem, self._refused = str(error), settings

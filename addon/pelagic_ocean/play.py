@@ -46,6 +46,7 @@ class Simulation:
         self.problem = ""  # why there is no sea for them, in words
         self.shown = None  # what is in the mesh, its foam too
         self.awaited = None  # what of whose foam is_behind waits for
+        self.due = None  # the moment of that, until it is begun
         self.whole = 0  # how many vertices a render has, where the mesh may have fewer
         self._built = None
         self._key = None
@@ -145,6 +146,7 @@ class Simulation:
             if self._job is None or (self._job.key, self._job.view) != (key, view):
                 if self.is_behind and not _is_shared(self):
                     self._built.drop()  # nobody wants its foam any more
+                    self.due = None
                 self._job = BuiltSea.job(key, self.scene, make_surface(), view, velocity)
             if wait:
                 self._take()
@@ -169,7 +171,7 @@ class Simulation:
             self._adopt(job.key, job.made)
 
     def _adopt(self, key, built):
-        self._key, self._built, self.problem = key, built, ""
+        self._key, self._built, self.problem, self.due = key, built, "", None
 
     def _refuse(self, key, problem):
         """The old sea plays on. A place in a file that nobody wrote is left out of the words."""
@@ -304,7 +306,7 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
-    if shown == simulation.awaited and not again and not wait and (simulation.is_building or simulation.progress < 1.0):
+    if shown == simulation.awaited and not again and not wait and (simulation.is_building or simulation.due or simulation.progress < 1.0):
         return
     # Waves first where nobody waits for foam, that is in a window: of a new sea at once, after a jump when it takes long.
     # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
@@ -326,9 +328,8 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
     meshes.put_frame(mesh, arrays)
     meshes.hand_over(mesh, obj.data)
     simulation.shown, simulation.awaited = (None, shown) if waves else (shown, None)
-    simulation.is_behind = waves is not None
+    simulation.is_behind, simulation.due = waves is not None, moment if waves else None
     if waves:
-        simulation.prepare(moment)
         _look_later()
 
 
@@ -432,7 +433,10 @@ def _poll():
     busy, progress = False, []
     for name, simulation in list(_simulations.items()):  # a render's thread may add to them
         news = simulation.poll()
-        if simulation.is_behind and not simulation.is_building:
+        if simulation.due and not simulation.is_building:  # Blender has copied and drawn the waves: threads are free
+            simulation.prepare(simulation.due)
+            simulation.due = None
+        elif simulation.is_behind and not simulation.is_building:
             progress.append(simulation.progress)
             if progress[-1] == 1.0:
                 news, simulation.is_behind = True, False

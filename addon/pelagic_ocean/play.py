@@ -281,7 +281,7 @@ def is_rendering():
 
 def settings_read(obj, depsgraph):
     """settings_of() an ocean as evaluated, for handlers after those here: reading takes 0.2 ms, once is enough."""
-    return _read.get(obj.name_full) or settings_of(obj.evaluated_get(depsgraph))
+    return _read.pop(obj.name_full, None) or settings_of(obj.evaluated_get(depsgraph))
 
 
 def brought_up(obj, bpy_scene, depsgraph, wait=False):
@@ -338,13 +338,14 @@ def _is_of_the_same_view(shown, before):
     return before is not None and shown[:2] == before[:2] and shown[2].seen_from == before[2].seen_from
 
 
+def forget(obj):
+    """The ocean is another one from here on, though another had its name."""
+    _simulations.pop(obj.name_full, None)
+
+
 def show(obj, bpy_scene, depsgraph, foam_later=False):
     """Brings an ocean to the present, and waits for it; foam_later: for its waves, and begins the rest."""
-    _show(obj, bpy_scene, depsgraph, True, True, foam_later)
-
-
-def is_rendering():
-    return bool(_rendering)
+    _show(obj, bpy_scene, depsgraph, False, True, foam_later)
 
 
 def _forget_deleted():

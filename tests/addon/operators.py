@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import compat, look, ocean, play
+from pelagic_ocean import compat, look, meshes, ocean, play
 
 
 def grid(side=8, size_m=40.0):
@@ -27,6 +27,15 @@ with checking("add_ocean: an object with a mesh that moves, selected and active"
     assert bpy.context.scene.camera.data.clip_end >= 60e3
     assert compat.can_denoise() or not bpy.context.scene.cycles.use_denoising, "Cycles couldn't render"
     assert all(polygon.use_smooth for polygon in sea.data.polygons[:100])
+
+with checking("a script's ocean is written into its mesh once, with its foam"):
+    fresh_file()
+    written, put_frame = [], meshes.put_frame
+    meshes.put_frame = lambda mesh, arrays: (written.append(arrays["coverage"].max()), put_frame(mesh, arrays))
+    bpy.ops.pelagic.add_ocean()
+    bpy.context.view_layer.update()
+    meshes.put_frame = put_frame
+    assert len(written) == 1 and written[0] > 0.0, written
 
 with checking("a look that fails, whatever the reason, leaves the sea and a warning"):
     said, give, try_to = [], look.give, look.try_to

@@ -100,7 +100,7 @@ def steps():
             yield lambda: not simulation.is_behind and has_foam()
             assert np.array_equal(numbers(obj.data), waves), how
             followed = {name: numbers(obj.data, name) for name in ("position", "whitecap_coverage", "foam_active", "foam_age")}
-            play.show(obj, bpy.data.scenes[0], bpy.context.evaluated_depsgraph_get())
+            play._show(obj, bpy.data.scenes[0], bpy.context.evaluated_depsgraph_get(), True, True)
             for name, values in followed.items():
                 assert np.array_equal(numbers(obj.data, name), values), (how, name)
 

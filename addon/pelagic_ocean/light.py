@@ -22,6 +22,7 @@ MARK = "pelagic_light"  # on the world and the lamp that are the add-on's
 EXPOSURE = "pelagic_exposure"  # on the world: the stops that were set last
 VIEW = "pelagic_view"  # on the world: the camera that they were metered by, Pinhole.numbers()
 SKY_WIDTH = 1024
+STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp
 PICTURE, DISC = "Pelagic Sky", "Pelagic Sun Disc"  # the world's nodes
 
 
@@ -42,9 +43,21 @@ def ensure_light(bpy_scene, scene, exposure=True):
         lamp = bpy.data.objects.new("Pelagic Sun", bpy.data.lights.new("Pelagic Sun", "SUN"))
         lamp[MARK] = True
         bpy_scene.collection.objects.link(lamp)
+        _hide_startup_lamp(bpy_scene)
     if exposure:
         world[EXPOSURE] = bpy_scene.view_settings.exposure
     update_light(bpy_scene, scene)
+
+
+def _hide_startup_lamp(bpy_scene):
+    """The lamp of Blender's start-up file, which nobody chose, goes as its grey world does; one that somebody touched stays."""
+    lamp = bpy_scene.objects.get("Light")
+    if (lamp and lamp.type == "LIGHT" and lamp.data.type == "POINT" and lamp.data.energy == 1000.0 and not lamp.animation_data
+            and (lamp.location - Vector(STARTUP_LAMP_M)).length < 1e-3):
+        lamp.hide_render = True
+        for layer in bpy_scene.view_layers:
+            if lamp.name in layer.objects:
+                lamp.hide_set(True, view_layer=layer)
 
 
 _put = None  # the image's name and the pelagic.Sky that was put into it last

@@ -147,6 +147,8 @@ with checking("a new ocean brings water, sun and sky; a world of the artist's ow
     grey = scene.world
     first = add_ocean()
     assert first.data.materials[0] and scene.world != grey
+    lamp = scene.objects["Light"]  # of the start-up file
+    assert lamp.hide_render and lamp.hide_get()
     assert any(obj.type == "LIGHT" and obj.data.type == "SUN" for obj in scene.objects)
     fresh_file()
     scene = bpy.context.scene
@@ -155,8 +157,9 @@ with checking("a new ocean brings water, sun and sky; a world of the artist's ow
     bpy.ops.pelagic.add_ocean()
     assert scene.world == own
     bpy.data.objects.remove(bpy.context.object)
+    scene.objects["Light"].location.z += 1.0  # somebody wants it
     bpy.ops.pelagic.add_ocean(light=True)
-    assert scene.world != own
+    assert scene.world != own and not scene.objects["Light"].hide_render
 
 with checking("where a Blender unit isn't a metre it says so, and an ocean that is scaled by hand is right"):
     fresh_file()

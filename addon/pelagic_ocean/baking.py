@@ -10,7 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 from bpy.props import PointerProperty, StringProperty
 
-from . import ocean
+from . import ocean, play
 from .exchange import PELAGIC_OT_export_shot, shot_of
 from .module import pelagic
 from .operators import NeedsOcean
@@ -134,13 +134,13 @@ class Bakes(NeedsOcean):
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         context.workspace.status_text_set(f"{_baking.text}   Esc: stop")
-        _redraw(context)
+        play.redraw()
         if not _baking.task.is_done:
             return {"PASS_THROUGH"}
         ended, _baking = _baking, None
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
-        _redraw(context)
+        play.redraw()
         return self._end(context, ended)
 
 
@@ -168,13 +168,6 @@ class PELAGIC_OT_stop_bake(bpy.types.Operator):
     def execute(self, _context):
         _baking.task.cancel()
         return {"FINISHED"}
-
-
-def _redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"PROPERTIES", "VIEW_3D"}:
-                area.tag_redraw()
 
 
 @persistent

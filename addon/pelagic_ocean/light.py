@@ -15,11 +15,14 @@ import numpy as np
 from mathutils import Vector
 
 from .module import pelagic
+from .ocean import Pinhole, pinhole_of
 from .nodes import Tree
 
 MARK = "pelagic_light"  # on the world and the lamp that are the add-on's
 EXPOSURE = "pelagic_exposure"  # on the world: the stops that were set last
+VIEW = "pelagic_view"  # on the world: the camera that they were metered by, Pinhole.numbers()
 SKY_WIDTH = 1024
+STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp
 PICTURE, DISC = "Pelagic Sky", "Pelagic Sun Disc"  # the world's nodes
 
 
@@ -40,9 +43,21 @@ def ensure_light(bpy_scene, scene, exposure=True):
         lamp = bpy.data.objects.new("Pelagic Sun", bpy.data.lights.new("Pelagic Sun", "SUN"))
         lamp[MARK] = True
         bpy_scene.collection.objects.link(lamp)
+        _hide_startup_lamp(bpy_scene)
     if exposure:
         world[EXPOSURE] = bpy_scene.view_settings.exposure
     update_light(bpy_scene, scene)
+
+
+def _hide_startup_lamp(bpy_scene):
+    """The lamp of Blender's start-up file, which nobody chose, goes as its grey world does; one that somebody touched stays."""
+    lamp = bpy_scene.objects.get("Light")
+    if (lamp and lamp.type == "LIGHT" and lamp.data.type == "POINT" and lamp.data.energy == 1000.0 and not lamp.animation_data
+            and (lamp.location - Vector(STARTUP_LAMP_M)).length < 1e-3):
+        lamp.hide_render = True
+        for layer in bpy_scene.view_layers:
+            if lamp.name in layer.objects:
+                lamp.hide_set(True, view_layer=layer)
 
 
 _put = None  # the image's name and the pelagic.Sky that was put into it last
@@ -75,10 +90,48 @@ def update_light(bpy_scene, scene):
     sky = sky_of(scene)
     if world is not None and MARK in world:
         _put_sky(world, sky)
-        if EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
-            bpy_scene.view_settings.exposure = world[EXPOSURE] = exposure_stops(sky, scene)
+        meter(bpy_scene, scene)
     if lamp is not None:
         _put_sun(lamp, sky)
+
+
+def meter(bpy_scene, scene):
+    """Exposes the picture for a scene in its light and before its camera, where the add-on's world does that."""
+    world = bpy_scene.world
+    if world is not None and EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
+        bpy_scene.view_settings.exposure = world[EXPOSURE] = exposure_stops(sky_of(scene), scene)
+
+
+def metered_view(obj, bpy_scene, depsgraph):
+    """Pinhole.numbers() of the camera that the exposure is metered by, None without one: as it is now; where frames move it, as
+    it last was at the first one. So the order of work doesn't matter, and a shot has one exposure."""
+    world, pinhole = bpy_scene.world, pinhole_of(obj, bpy_scene, depsgraph)
+    if world is None or EXPOSURE not in world or pinhole is None:
+        return None
+    if VIEW in world and bpy_scene.frame_current != bpy_scene.frame_start and _moves(bpy_scene.camera):
+        return kept_view(bpy_scene)
+    view = pinhole.numbers()
+    if view != kept_view(bpy_scene):
+        world[VIEW] = view
+    return view
+
+
+def kept_view(bpy_scene):
+    """What metered_view() said last."""
+    return tuple(bpy_scene.world[VIEW]) if bpy_scene.world and VIEW in bpy_scene.world else None
+
+
+def see_by(view, scene):
+    """Makes a metered view the scene's camera."""
+    if view is not None:
+        Pinhole.from_numbers(view).put_in(scene)
+
+
+def _moves(obj, known=()):
+    """Whether an object may go from frame to frame by itself."""
+    above = [obj.parent] + [getattr(each, "target", None) for each in obj.constraints]
+    return bool(obj.animation_data or obj.data and obj.data.animation_data or obj.rigid_body or obj.pelagic_float.enabled
+                or any(_moves(each, (*known, obj)) for each in above if each and each not in known))
 
 
 def own_sun(bpy_scene):

@@ -14,13 +14,13 @@ from .query import first_ocean
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or "clock" in field.key["feeds"]
-          or field.path in ("sea.wind_direction_deg", "shot.loop_s", "effects.foam_structure", "effects.foam_streaks")]
+          or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "surface.earth_curvature", "shot.loop_s", "effects.foam_structure", "effects.foam_streaks")]
 
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
 DUE = "pelagic_look_due"  # on an ocean that has no look yet: with sun and sky or not
 
-_shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last
+_shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last, and the view it is exposed for
 
 
 def is_untouched(world):
@@ -89,18 +89,24 @@ def _follow(bpy_scene, depsgraph):
     for obj in ocean.oceans():
         if bpy_scene not in obj.users_scene:
             continue
-        settings = ocean.settings_of(obj.evaluated_get(depsgraph))
+        settings = play.settings_read(obj, depsgraph)
         sea = play.simulation_of(obj).sea
         of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name
         wanted = [of_sea, ocean.frame_rate(bpy_scene), obj.pelagic.see_through] + [settings[place] for place in PLACES]
-        if _shown.get(key) == wanted:
+        is_first = first_ocean(bpy_scene) == obj
+        view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None
+        before, _shown[key] = _shown.get(key, (None, None)), (wanted, view)
+        if before == (wanted, view):
             continue
-        _shown[key] = wanted
         try:
             scene = ocean.scene_of(obj, bpy_scene, depsgraph, settings)
+            light.see_by(view, scene)
+            if before[0] == wanted:
+                light.meter(bpy_scene, scene)
+                continue
             material.update_material(obj, scene, *of_sea)
-            if first_ocean(bpy_scene) == obj:
+            if is_first:
                 light.update_light(bpy_scene, scene)
         except (ValueError, pelagic.ShotError) as error:
             print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
@@ -108,11 +114,11 @@ def _follow(bpy_scene, depsgraph):
 
 @persistent
 def _follow_updates(bpy_scene, depsgraph):
-    """A setting, the frame rate, a sea that came into its mesh: without any of them nothing here changes."""
+    """A setting, the frame rate, the camera, a sea that came into its mesh: without any of them nothing here changes."""
     for update in depsgraph.updates:
         changed = update.id
-        if (isinstance(changed, bpy.types.Scene) or isinstance(changed, bpy.types.Object) and ocean.is_ocean(changed)
-                or isinstance(changed, bpy.types.Mesh) and meshes.SIGNATURE in changed):
+        if (isinstance(changed, (bpy.types.Scene, bpy.types.Camera)) or isinstance(changed, bpy.types.Object)
+                and (ocean.is_ocean(changed) or changed.type == "CAMERA") or isinstance(changed, bpy.types.Mesh) and meshes.SIGNATURE in changed):
             _follow(bpy_scene, depsgraph)
             return
 

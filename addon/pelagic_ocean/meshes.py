@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A surface as a Blender mesh, and a frame's buffers in it."""
 
-import threading
 import zlib
 
 import bmesh
@@ -174,16 +173,6 @@ def attribute(mesh, name, kind):
     return found or mesh.attributes.new(name, kind, "POINT")
 
 
-def _tell(mesh):
-    """Says that the mesh's numbers are others. update() also leaves a note for the window, whose loop reads and frees such notes
-    meanwhile, its interface locked or not: from a render's own thread that ended Blender 3.4 now and then. There the tag alone does.
-    From 4.0 on update() also drops normals that the evaluated mesh shares, and hasn't been seen to end Blender."""
-    if bpy.app.version >= (4, 0) or threading.get_ident() == threading.main_thread().ident:
-        mesh.update()
-    else:
-        mesh.update_tag()
-
-
 def put_frame(mesh, arrays):
     """arrays: each product's, contiguous float32. Attributes whose products aren't there are taken away."""
     for name, kind, numbers, product in ATTRIBUTES:
@@ -192,4 +181,4 @@ def put_frame(mesh, arrays):
         elif name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])
     compat.set_positions(mesh, arrays["position"])
-    _tell(mesh)
+    compat.tell(mesh)

@@ -162,6 +162,15 @@ class Pinhole:
     resolution: tuple
     shift: tuple = (0.0, 0.0)  # of the picture's centre to the right and up, in half pictures
 
+    def numbers(self):
+        """All but the shift, as from_numbers() takes them."""
+        return tuple(map(float, (*self.position_m, *self.right, *self.up, *self.forward, self.tan_half_width, *self.resolution)))
+
+    @classmethod
+    def from_numbers(cls, numbers):
+        position_m, right, up, forward = (Vector(numbers[i:i + 3]) for i in range(0, 12, 3))
+        return cls(position_m, right, up, forward, numbers[12], tuple(map(int, numbers[13:])))
+
     def view(self):
         """A pelagic.View that shows all that is seen, with pixels as large. A View has no shift: it is the wider."""
         across, along = (1 + abs(each) for each in self.shift)

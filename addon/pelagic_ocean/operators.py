@@ -40,18 +40,19 @@ class GivesLook(NeedsModule):
         foam and look follow from timers. Returns its Simulation."""
         if not self.properties.is_property_set("light"):
             self.light = look.is_untouched(context.scene.world)
-        simulation = show_now(context, obj, foam_later=True)
+        simulation = show_now(context, obj, foam_later=self.by_hand)
         if self.by_hand:
             look.give_soon(obj, self.light)
-            return simulation
-        look.try_to(self, lambda: look.give(obj, context.scene, self.light))  # while threads look back at the foam's past
-        return show_now(context, obj)
+        else:
+            look.try_to(self, lambda: look.give(obj, context.scene, self.light))
+        return simulation
 
 
 def show_now(context, obj, foam_later=False):
     """The sea is in the mesh when the operator returns."""
     context.scene.render.use_lock_interface = True  # in a render frames change on its own thread
-    depsgraph = context.evaluated_depsgraph_get()
+    play.forget(obj)
+    depsgraph = context.evaluated_depsgraph_get()  # without a window this shows it already
     play.show(obj, context.scene, depsgraph, foam_later)
     return play.simulation_of(obj)
 

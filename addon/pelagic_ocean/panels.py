@@ -9,7 +9,7 @@ from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
-from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields, label_of
+from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields, unit_of
 from .translations import CONTEXT, say
 
 # Title → tables of keys.
@@ -40,20 +40,48 @@ def _draw_list(layout, group, field):
         remove.path, remove.index = field.path, index
 
 
+def _labelled(layout, text):
+    """A row beside its label, which has more than Blender's own two fifths of the width: that cuts most."""
+    parts = layout.split(factor=0.57)
+    name = parts.row()
+    name.alignment = "RIGHT"
+    name.label(text=say(text), translate=False)
+    return parts.row(align=True)
+
+
+def _draw_own(layout, settings, *names):
+    """What an ocean has in Blender alone."""
+    for name in names:
+        _labelled(layout, settings.bl_rna.properties[name].name).prop(settings, name, text="")
+
+
 def _draw_field(layout, group, field):
     if field.key["type"] == "entries":
         _draw_list(layout, group, field)
-    elif field.switch:
-        row = layout.row(heading=say(field.key["label"]), translate=False)
+        return
+    row = _labelled(layout, field.key["label"])
+    if field.switch:
         row.prop(group, field.switch, text="")
-        if getattr(group, field.switch):
-            row.prop(group, field.name, text="")
-        else:
+        if not getattr(group, field.switch):
             row.label(text="automatic" if field.absent is None else "infinite")
-    elif field.key["type"] == "words":
-        layout.column(heading=say(field.key["label"]), translate=False).prop(group, field.name, expand=True)
+            return
+    unit = unit_of(field.key)
+    if field.key["type"] == "words":
+        row.column().prop(group, field.name, text="", expand=True)
+    elif unit:
+        parts = row.split(factor=1.0 - 0.12 * len(unit))
+        parts.prop(group, field.name, text="")
+        parts.label(text=unit, translate=False)
     else:
-        layout.prop(group, field.name, text=say(label_of(field.key)), translate=False)
+        row.prop(group, field.name, text="")
+
+
+def _matters(field, settings):
+    """Whether a key does anything for the kind of surface that is chosen. The size is that of maps and volumes, too."""
+    kind, sized = settings.surface.kind, settings.output.maps or settings.output.volumes or settings.effects.spray or settings.uv_map
+    has_size = kind in ("patch", "near-far")
+    return {"surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
+            "surface.earth_curvature": kind in ("projected-grid", "near-far")}.get(field.path, True)
 
 
 def _draw_tables(layout, settings, tables, title):
@@ -65,13 +93,13 @@ def _draw_tables(layout, settings, tables, title):
             _draw_quality(column, settings)
             continue
         for field in FIELDS:
-            if field.table == table and counts(field, settings):
+            if field.table == table and counts(field, settings) and _matters(field, settings):
                 _draw_field(column, getattr(settings, table), field)
 
 
 def _draw_quality(layout, settings):
     """One menu; a custom budget is of error or of time."""
-    layout.prop(settings, "quality_menu")
+    _draw_own(layout, settings, "quality_menu")
     if settings.quality_menu == CUSTOM:
         for path in BUDGETS:
             _draw_field(layout, settings.quality, BY_PATH[path])
@@ -106,6 +134,8 @@ class Main:
             elif simulation.is_building:
                 layout.label(text="Building the sea…", icon="SORTTIME")
             elif simulation.sea:
+                if simulation.is_behind:
+                    layout.label(text="Foam follows…", icon="SORTTIME")
                 layout.label(text=say("Waves of {:.1f} m (significant height)", simulation.sea.significant_height_m), translate=False)
                 _draw_vertices(layout, context.object)
                 for warning in simulation.warnings:
@@ -122,7 +152,6 @@ class Sub:
 
     def draw(self, context):
         layout = self.layout
-        layout.use_property_split = True
         settings = context.object.pelagic
         if self.bl_label == "Light":
             row = layout.row(align=True)
@@ -134,7 +163,7 @@ class Sub:
                 return
         _draw_tables(layout, settings, self.tables, self.bl_label)
         if self.bl_label == "Light":
-            layout.prop(settings, "see_through")
+            _draw_own(layout, settings, "see_through")
 
 
 def _draw_vertices(layout, obj):
@@ -150,15 +179,12 @@ def _draw_surface(layout, settings):
         layout.operator(PELAGIC_OT_release_mesh.bl_idname)
         return
     if settings.surface.kind == "patch":
-        layout.prop(settings, "horizon")
+        _draw_own(layout, settings, "horizon")
     if settings.surface.kind == "cage":
-        layout.prop(settings, "cage")
+        _draw_own(layout, settings, "cage")
     if settings.surface.kind != "cage":
-        layout.prop(settings, "viewport_percentage")
-        layout.prop(settings, "viewport_vertices")
-    attributes = layout.column(heading="Attributes")
-    attributes.prop(settings, "uv_map")
-    attributes.prop(settings, "velocity")
+        _draw_own(layout, settings, "viewport_percentage", "viewport_vertices")
+    _draw_own(layout, settings, "uv_map", "velocity")
 
 
 PLACES = {"object": {"bl_space_type": "PROPERTIES", "bl_region_type": "WINDOW", "bl_context": "object"},

@@ -44,7 +44,9 @@ class Simulation:
         self._name = name  # of its ocean, for messages
         self.scene = None  # the pelagic.Scene of its settings
         self.problem = ""  # why there is no sea for them, in words
-        self.shown = None  # what is in the mesh
+        self.shown = None  # what is in the mesh, its foam too
+        self.awaited = None  # what of whose foam is_behind waits for
+        self.due = None  # the moment of that, until it is begun
         self.whole = 0  # how many vertices a render has, where the mesh may have fewer
         self._built = None
         self._key = None
@@ -52,7 +54,7 @@ class Simulation:
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
         self._last = None  # the frame that was last asked for, the step to it, the view
-        self.is_behind = False  # whether the mesh waits for the past of its foam
+        self.is_behind = False  # whether the mesh has waves alone, and waits for the past of their foam
 
     @property
     def sea(self):
@@ -91,6 +93,11 @@ class Simulation:
         """The same at once, with foam yet to come; None where foam needs no time."""
         return self._built.without_foam(moment) if self._built.looks_back else None
 
+    @property
+    def is_new(self):
+        """Whether nothing of the foam's past is known yet."""
+        return self._built.is_new
+
     def prepare(self, moment):
         self._built.prepare(moment)
 
@@ -114,7 +121,8 @@ class Simulation:
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
         None where that doesn't matter."""
         try:
-            settings = settled(settings_of(obj.evaluated_get(depsgraph)), obj, bpy_scene, depsgraph)
+            read = _read[obj.name_full] = settings_of(obj.evaluated_get(depsgraph))
+            settings = settled(read, obj, bpy_scene, depsgraph)
             surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
             asked = (settings, frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
             if asked != self._asked:
@@ -136,6 +144,9 @@ class Simulation:
             self._adopt(key, known)
         elif wait or self._job is None:
             if self._job is None or (self._job.key, self._job.view) != (key, view):
+                if self.is_behind and not _is_shared(self):
+                    self._built.drop()  # nobody wants its foam any more
+                    self.due = None
                 self._job = BuiltSea.job(key, self.scene, make_surface(), view, velocity)
             if wait:
                 self._take()
@@ -160,7 +171,7 @@ class Simulation:
             self._adopt(job.key, job.made)
 
     def _adopt(self, key, built):
-        self._key, self._built, self.problem = key, built, ""
+        self._key, self._built, self.problem, self.due = key, built, "", None
 
     def _refuse(self, key, problem):
         """The old sea plays on. A place in a file that nobody wrote is left out of the words."""
@@ -171,6 +182,7 @@ class Simulation:
 
 
 _simulations = {}  # by the names of their objects
+_read = {}  # the settings of oceans, by their names, as read since the last handler here began
 _rendering = set()  # names of scenes
 is_saving = False  # whether files' markers are in the meshes' place
 _is_told = False  # whether the pointer shows a progress
@@ -267,6 +279,11 @@ def is_rendering():
     return bool(_rendering)
 
 
+def settings_read(obj, depsgraph):
+    """settings_of() an ocean as evaluated, for handlers after those here: reading takes 0.2 ms, once is enough."""
+    return _read.pop(obj.name_full, None) or settings_of(obj.evaluated_get(depsgraph))
+
+
 def brought_up(obj, bpy_scene, depsgraph, wait=False):
     """The Simulation of an ocean, brought to its settings though nothing may show it; without waiting in a window it has
     its old sea, or none, while that is being built."""
@@ -289,17 +306,14 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
-    if simulation.is_behind and not again and not wait and simulation.progress < 1.0:
+    if shown == simulation.awaited and not again and not wait and (simulation.is_building or simulation.due or simulation.progress < 1.0):
         return
+    # Waves first where nobody waits for foam, that is in a window: of a new sea at once, after a jump when it takes long.
     # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
-    patience_s = None if wait or _is_shared(simulation) else PATIENCE_S
-    waves = simulation.without_foam(moment) if foam_later else None
-    buffers = waves or simulation.buffers(moment, patience_s)
-    simulation.is_behind = buffers is None or waves is not None
-    if simulation.is_behind:
-        _look_later()
+    waves = simulation.without_foam(moment) if foam_later or (not wait and simulation.is_new) else None
+    buffers = waves or simulation.buffers(moment, None if wait or _is_shared(simulation) else PATIENCE_S)
     if buffers is None:
-        return
+        buffers = waves = simulation.without_foam(moment)
     surface, arrays = buffers
     simulation.whole = surface.whole
     mesh = meshes.fillable(obj.data)
@@ -307,15 +321,16 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         if surface.faces is None:
             return
         meshes.put_surface(mesh, surface, obj.pelagic.uv_map and not waves)
-    elif surface.moves and not _is_of_the_same_view(shown, simulation.shown):
+    elif surface.moves and not _is_of_the_same_view(shown, simulation.shown or simulation.awaited):
         meshes.move_rest(mesh, surface)
     if surface.faces is not None and not waves:  # a mesh of the user's own keeps its maps
         meshes.keep_uv(mesh, surface, obj.pelagic.uv_map)
     meshes.put_frame(mesh, arrays)
     meshes.hand_over(mesh, obj.data)
-    simulation.shown = None if waves else shown
+    simulation.shown, simulation.awaited = (None, shown) if waves else (shown, None)
+    simulation.is_behind, simulation.due = waves is not None, moment if waves else None
     if waves:
-        simulation.prepare(moment)
+        _look_later()
 
 
 def _is_of_the_same_view(shown, before):
@@ -323,13 +338,14 @@ def _is_of_the_same_view(shown, before):
     return before is not None and shown[:2] == before[:2] and shown[2].seen_from == before[2].seen_from
 
 
+def forget(obj):
+    """The ocean is another one from here on, though another had its name."""
+    _simulations.pop(obj.name_full, None)
+
+
 def show(obj, bpy_scene, depsgraph, foam_later=False):
     """Brings an ocean to the present, and waits for it; foam_later: for its waves, and begins the rest."""
-    _show(obj, bpy_scene, depsgraph, True, True, foam_later)
-
-
-def is_rendering():
-    return bool(_rendering)
+    _show(obj, bpy_scene, depsgraph, False, True, foam_later)
 
 
 def _forget_deleted():
@@ -345,6 +361,7 @@ def _forget_deleted():
 @persistent
 def _on_frame(bpy_scene, depsgraph):
     with _turn:
+        _read.clear()
         _forget_deleted()
         cages.let_go(depsgraph)
         driven = _driven(bpy.data.objects, depsgraph)
@@ -358,6 +375,7 @@ def _on_frame(bpy_scene, depsgraph):
 @persistent
 def _on_update(bpy_scene, depsgraph):
     """A setting, the frame rate, an ocean shown again: whatever evaluates an ocean or the scene."""
+    _read.clear()
     cages.let_go(depsgraph)
     if _rendering:
         return
@@ -376,7 +394,7 @@ def _on_other_data(*_):
     """Undo, redo: meshes are of another moment now."""
     cages.forget()
     for simulation in _simulations.values():
-        simulation.shown = None
+        simulation.shown = simulation.awaited = None
     for obj in oceans():
         migrate(obj)
         obj.update_tag()
@@ -405,6 +423,7 @@ def _on_render_end(bpy_scene, _depsgraph=None):
 
 
 def _look_later():
+    redraw()
     if not bpy.app.timers.is_registered(_poll):
         bpy.app.timers.register(_poll, first_interval=POLL_S)
 
@@ -415,17 +434,30 @@ def _poll():
     busy, progress = False, []
     for name, simulation in list(_simulations.items()):  # a render's thread may add to them
         news = simulation.poll()
-        if simulation.is_behind:
+        if simulation.due and not simulation.is_building:  # Blender has copied and drawn the waves: threads are free
+            simulation.prepare(simulation.due)
+            simulation.due = None
+        elif simulation.is_behind and not simulation.is_building:
             progress.append(simulation.progress)
             if progress[-1] == 1.0:
                 news, simulation.is_behind = True, False
         if news:
+            redraw()
             obj = next((obj for obj in oceans() if obj.name_full == name), None)
             if obj is not None:
                 obj.update_tag()
         busy = busy or simulation.is_building or simulation.is_behind
     _tell(min(progress, default=1.0))
     return POLL_S if busy else None
+
+
+def redraw():
+    """The views, and the panels, whose words may be others."""
+    manager = bpy.context.window_manager
+    for window in manager.windows if manager else ():
+        for area in window.screen.areas:
+            if area.type in {"VIEW_3D", "PROPERTIES"}:
+                area.tag_redraw()
 
 
 def _tell(progress):

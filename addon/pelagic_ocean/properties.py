@@ -32,6 +32,7 @@ UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCI
          "s": {"subtype": "TIME_ABSOLUTE", "unit": "TIME"}, "pixels": {"subtype": "PIXEL"}}
 ABBREVIATIONS = {"fft", "jonswap", "tma", "usda", "usdc"}
 SIGNS = {"degrees": "°"}  # shorter in a label
+LABELS = {"light.visibility_km": "Visibility", "effects.sea_minus_air_c": "Sea warmer than air"}  # where a key's name makes none
 INTEGER_LIMIT = 2**31 - 1  # of Blender's
 
 
@@ -120,6 +121,7 @@ READERS = {
 
 
 def _field(key):
+    key = key | {"label": LABELS.get(key["path"], key["label"])}
     table = key["path"].split(".")[0]
     absent = 0
     if key["type"] in ("number", "integer"):
@@ -167,9 +169,13 @@ def _sentence(text):
     return text[:1].upper() + text[1:]
 
 
+def unit_of(key):
+    """The sign of a unit that Blender doesn't write itself, or ""."""
+    return "" if key["unit"] in UNITS else SIGNS.get(key["unit"], key["unit"])
+
+
 def label_of(key):
-    unit = SIGNS.get(key["unit"], key["unit"])
-    return key["label"] + (f" ({unit})" if unit and key["unit"] not in UNITS else "")
+    return key["label"] + (f" ({unit_of(key)})" if unit_of(key) else "")
 
 
 def _common(key):
@@ -203,7 +209,7 @@ def _choices(key, flags):
 
 
 def _number(key):
-    return FloatProperty(**_common(key), **_numeric(key), precision=3, **UNITS.get(key["unit"], {}))
+    return FloatProperty(**_common(key), **_numeric(key), precision=1 if key["unit"] in SIGNS else 3, **UNITS.get(key["unit"], {}))
 
 
 def _integer(key):

@@ -114,6 +114,11 @@ class BuiltSea:
             return self._surface, self._arrays
 
     @property
+    def is_new(self):
+        """Whether no moment was asked for yet."""
+        return self._coming is None
+
+    @property
     def looks_back(self):
         """Whether a moment may take long, because its foam has a past."""
         return "foam_age" in self.sea.products
@@ -164,7 +169,7 @@ class BuiltSea:
     def _begin(self, moment):
         if moment == (self._coming if self._task else self._moment):
             return
-        self._drop()
+        self.drop()
         surface = self._surface_at(moment)
         self._moment = None
         if self._surface is None or len(surface) != len(self._surface):
@@ -174,16 +179,17 @@ class BuiltSea:
         self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, **_footprints(surface), **self._arrays)
         self._coming = moment
 
-    def _drop(self):
+    def drop(self):
         """What was begun isn't wanted any more."""
-        if self._task is None:
-            return
-        task, self._task = self._task, None
-        task.cancel()
-        try:
-            task.result()
-        except pelagic.Cancelled:
-            pass
+        with self._lock:
+            if self._task is None:
+                return
+            task, self._task = self._task, None
+            task.cancel()
+            try:
+                task.result()
+            except pelagic.Cancelled:
+                pass
 
     def _finish(self):
         """Waits for what was begun, if anything was."""

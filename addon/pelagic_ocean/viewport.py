@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, handlers, light, ocean
+from . import compat, handlers, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -63,11 +63,12 @@ class Preview:
     def scene(self, obj, bpy_scene):
         """The pelagic.Scene of the ocean as it is set now, or the last one that the core accepts; None before that."""
         turned = obj.matrix_world.to_euler().z
-        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned)
+        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned, light.kept_view(bpy_scene))
         if settings != self._settings:
             self._settings = settings
             try:
                 self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
+                light.see_by(settings[3], self._scene)
                 self._scene.light.sun_azimuth_deg -= math.degrees(turned)  # the sun stays where it is in the world
             except (ValueError, OSError) as error:
                 self.problem, self._refused = str(error), settings
@@ -193,13 +194,6 @@ def _spaces():
                 yield area.spaces.active
 
 
-def _redraw():
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "PROPERTIES"}:
-                area.tag_redraw()
-
-
 def is_on():
     return _preview is not None
 
@@ -212,7 +206,7 @@ def turn_on(obj):
     if _problem:
         raise RuntimeError(_problem)
     _preview = Preview(obj)
-    _redraw()
+    play.redraw()
 
 
 def turn_off(problem=""):
@@ -222,7 +216,7 @@ def turn_off(problem=""):
     gone, _preview, _problem = _preview, None, problem
     gone.close()
     gone.show()
-    _redraw()
+    play.redraw()
 
 
 # ---- What a draw handler leaves to do
@@ -246,18 +240,18 @@ def _tend():
         return None
     if preview.poll() or preview.drawing.has_foam():
         preview.drawing.awaits_foam = False  # the next picture takes it, whenever a view shows the sea
-        _redraw()
+        play.redraw()
     if preview.wants_mesh():
         if preview.hidden_in:
             preview.show()
     elif preview.drawing.sea is not None and preview.hide():
-        _redraw()
+        play.redraw()
     if preview.is_building or preview.drawing.awaits_foam:
         return POLL_S
     if preview.drawing.is_coarse():
         # Views that were drawn since the last look are moving.
         if not preview.seen:
-            _redraw()
+            play.redraw()
             return None
         preview.seen = False
         return STILL_S
@@ -342,7 +336,7 @@ def _ocean_of(context):
 
 
 class PELAGIC_PG_preview(bpy.types.PropertyGroup):
-    show_sky: BoolProperty(name="Sky", default=False, update=lambda _group, _context: _redraw(),
+    show_sky: BoolProperty(name="Sky", default=False, update=lambda _group, _context: play.redraw(),
                            description="Draw the sky and the sun behind everything, too")
 
 

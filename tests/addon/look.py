@@ -158,6 +158,31 @@ with checking("settings reach light and material; an artist's own colour, world 
     bpy.ops.pelagic.add_material()
     assert light.own_sun(bpy_scene) and "Pelagic" in obj.data.materials[0].name
 
+with checking("the exposure is the scene's, whatever the order of work"):
+    def exposed(order, turns=False):
+        """The stops after these works, one after another; turns: the camera by itself, from frame to frame."""
+        fresh_file()
+        bpy_scene = bpy.context.scene
+        obj, eye = add_ocean(), bpy_scene.camera
+        if turns:
+            for frame, angle in ((1, 0.2), (40, 2.0)):
+                eye.rotation_euler.z = angle
+                eye.keyframe_insert("rotation_euler", frame=frame)
+            bpy_scene.frame_set(1)
+        works = {"light": lambda: change(obj, light__sun_elevation_deg=6.0), "wind": lambda: change(obj, sea__wind_speed_mps=3.0),
+                 "camera": lambda: setattr(eye, "rotation_euler", (1.5, 0.0, 1.9)), "lens": lambda: setattr(eye.data, "lens", 90.0)}
+        for work in order:
+            works[work]() if work in works else bpy_scene.frame_set(work)
+            bpy.context.view_layer.update()
+        return bpy_scene.view_settings.exposure
+
+    still = [exposed(order) for order in (("light", "wind", "camera", "lens", 20), ("lens", "camera", 20, "light", "wind"),
+                                          (20, "camera", "wind", 30, "lens", "light"))]
+    turning = [exposed(order, True) for order in (("light", "wind", 20), (1, 30, "wind", "light"), (9, "light", 1, 40, "wind", 2))]
+    before = exposed(("light", "wind"))
+    print("  ", np.round(still, 3), np.round(turning, 3), round(before, 3))
+    assert np.ptp(still) < 1e-4 and np.ptp(turning) < 1e-4 and abs(still[0] - before) > 0.05
+
 with checking("the ripples' clock is the sea's, and loops with it"):
     fresh_file()
     bpy_scene = bpy.context.scene

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import compat, look, ocean, play
+from pelagic_ocean import compat, look, meshes, ocean, play
 
 
 def grid(side=8, size_m=40.0):
@@ -27,6 +27,15 @@ with checking("add_ocean: an object with a mesh that moves, selected and active"
     assert bpy.context.scene.camera.data.clip_end >= 60e3
     assert compat.can_denoise() or not bpy.context.scene.cycles.use_denoising, "Cycles couldn't render"
     assert all(polygon.use_smooth for polygon in sea.data.polygons[:100])
+
+with checking("a script's ocean is written into its mesh once, with its foam"):
+    fresh_file()
+    written, put_frame = [], meshes.put_frame
+    meshes.put_frame = lambda mesh, arrays: (written.append(arrays["coverage"].max()), put_frame(mesh, arrays))
+    bpy.ops.pelagic.add_ocean()
+    bpy.context.view_layer.update()
+    meshes.put_frame = put_frame
+    assert len(written) == 1 and written[0] > 0.0, written
 
 with checking("a look that fails, whatever the reason, leaves the sea and a warning"):
     said, give, try_to = [], look.give, look.try_to
@@ -138,6 +147,8 @@ with checking("a new ocean brings water, sun and sky; a world of the artist's ow
     grey = scene.world
     first = add_ocean()
     assert first.data.materials[0] and scene.world != grey
+    lamp = scene.objects["Light"]  # of the start-up file
+    assert lamp.hide_render and lamp.hide_get()
     assert any(obj.type == "LIGHT" and obj.data.type == "SUN" for obj in scene.objects)
     fresh_file()
     scene = bpy.context.scene
@@ -146,8 +157,9 @@ with checking("a new ocean brings water, sun and sky; a world of the artist's ow
     bpy.ops.pelagic.add_ocean()
     assert scene.world == own
     bpy.data.objects.remove(bpy.context.object)
+    scene.objects["Light"].location.z += 1.0  # somebody wants it
     bpy.ops.pelagic.add_ocean(light=True)
-    assert scene.world != own
+    assert scene.world != own and not scene.objects["Light"].hide_render
 
 with checking("where a Blender unit isn't a metre it says so, and an ocean that is scaled by hand is right"):
     fresh_file()

@@ -10,7 +10,7 @@ from harness import *  # noqa: F403
 
 enable()
 import pelagic
-from pelagic_ocean import ocean, play, properties, translations
+from pelagic_ocean import ocean, panels, play, properties, translations
 
 scene = bpy.context.scene
 obj = add_ocean(effects__foam_decay_s=pelagic.Scene().effects.foam_decay_s)
@@ -77,6 +77,17 @@ with checking("each label, operator and sentence has German words, with the same
     assert [translations.say(text) for text in spoken] == [*spoken]
     translations.register()
     view.language = before
+
+with checking("panels show what matters to the surface, and a unit once, beside its number"):
+    obj.pelagic.uv_map = False
+    shown = {kind: [field.name for field in properties.FIELDS if field.table == "surface" and panels._matters(field, obj.pelagic)]
+             for kind in ("projected-grid", "patch") if not setattr(obj.pelagic.surface, "kind", kind)}
+    assert not {"size_m", "resolution"} & set(shown["projected-grid"]) and "cell_px" in shown["projected-grid"], shown
+    assert {"size_m", "resolution"} <= set(shown["patch"]) and "cell_px" not in shown["patch"], shown
+    obj.pelagic.uv_map = True
+    keys = [key for field in properties.FIELDS for key in (field.key, *(inner.key for inner in properties.entry_fields(field)))]
+    assert {properties.unit_of(key) for key in keys if key["name"].endswith("_deg")} == {"°"}
+    assert not [key["path"] for key in keys if key["unit"] and key["label"].lower().endswith((" km", " c", " deg"))]
 
 with checking("one menu for quality: levels, and a budget that chooses the mesh"):
     quality, settings = obj.pelagic.quality, obj.pelagic

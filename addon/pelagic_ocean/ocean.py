@@ -267,5 +267,10 @@ def migrate(obj):
         for name in ("uv_map", "velocity"):
             if not obj.pelagic.is_property_set(name):
                 setattr(obj.pelagic, name, True)
+    if obj.pelagic.version < 3:  # before there were editions: what nobody changed keeps the first one's value
+        for field in FIELDS:
+            group = getattr(obj.pelagic, field.table)
+            if field.key["defaults_before"] and not group.is_property_set(field.name):
+                field.write(group, field.key["defaults_before"][0][1])
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION

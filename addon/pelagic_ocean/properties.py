@@ -17,9 +17,10 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
 from . import cages
 from .module import pelagic
 
-VERSION = 2  # of the settings in a file; ocean.migrate() brings older ones here
+VERSION = 3  # of the settings in a file; ocean.migrate() brings older ones here
 
-FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps"}  # and the camera's: they come from the scene
+FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps",  # and the camera's: they come from the scene
+                "shot.edition"}  # the newest: all settings have values, and a file keeps those of its time (ocean.migrate)
 
 # Keys that the core refuses unless another key has a value: they are shown, and count, only then.
 ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", "file"), "sea.spectrum_time": ("sea.spectrum", "file"),

@@ -123,10 +123,16 @@ with checking("a file of the first version gets today's number, and keeps what e
         obj.pelagic.version = 0
         for name in ("uv_map", "velocity"):
             obj.pelagic.property_unset(name)
+        obj.pelagic.sea.property_unset("growth")
+        obj.pelagic.light.turbidity = 4.5
+        obj.pelagic.effects.property_unset("whitecap_law")
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "old.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(folder / "old.blend"))
     assert [obj.pelagic.version for obj in ocean.oceans()] == [properties.VERSION] * len(names_of_old)
     assert all(obj.pelagic.uv_map and obj.pelagic.velocity for obj in ocean.oceans())
+    for obj in ocean.oceans():  # the first edition's where nobody had chosen
+        got = (obj.pelagic.sea.growth, obj.pelagic.effects.whitecap_law, obj.pelagic.light.turbidity)
+        assert got == ("height", "monahan-1980", 4.5), got
 
 with checking("appended into another file, it plays there"):
     fresh_file()

@@ -7,10 +7,13 @@ where waves break now, and thin in what they left."""
 from .facets import along_wind
 
 DENSE = 0.4  # the dense part of foam, the mean over its lifetime: foam.glsl
-# Of foam_pattern(), measured over a square of 400 m: mean, deviation, and its distribution's logit as A z + B z³.
-MEAN, DEVIATION, A, B = 1.0319, 0.2058, 1.5438, 0.0912
-NET_MEAN = 0.327  # of the root of the distance to a Voronoi cell's edge, in cells
-NETS = 3  # sizes of cells, each twice the one before
+# Measured over squares of 400 m, in three versions of Blender: of what isn't lace in foam_pattern(), mean and variance; of the distance
+# to the nearest of a Voronoi texture's points, in cells, mean and deviation; and the whole's distribution's logit as A z + B z³.
+PATCHES, PATCHES_VARIANCE = 1.3500, 0.0222
+HOLES, HOLES_DEVIATION = 0.4295, 0.1897
+A, B = 1.57, 0.0755
+LACE = 0.26  # how much of the pattern lace is, where it is old
+SIZES = 5  # of holes, each twice the one before, from 1/8 m
 
 
 def add_foam(tree, coverage, active, age_s, dense_active, dense_left, structure, streaks, size, detail_distance_m, wind_angle):
@@ -25,7 +28,7 @@ def add_foam(tree, coverage, active, age_s, dense_active, dense_left, structure,
 def _foam(tree, asked):
     coverage = asked["Coverage"].at_least(1e-6).at_most(1 - 1e-6)
     place = along_wind(tree, asked["Wind Angle"]) * (1.0 / asked["Size"].at_least(1e-3))
-    z = (foam_pattern(tree, place, asked["Age"], asked["Streaks"]) - MEAN) / DEVIATION
+    z = foam_pattern(tree, place, asked["Age"], asked["Streaks"])
     logit = z * (A + B * z * z)
     rank = 1.0 / (1.0 + (-logit.at_least(-60.0)).exp())  # the share of the sea where the pattern is lower
     # Foam is where rank > 1 − coverage, with an edge as soft as there is room for: its mean stays.
@@ -48,8 +51,8 @@ def _foam(tree, asked):
 
 
 def foam_pattern(tree, place, age_s, streaks):
-    """place: [m], x along the wind. Streaks along the wind, in them a net as of bursting bubbles, whose cells grow with its age,
-    and fine grain."""
+    """Mean 0, deviation 1, largest in the middle of foam. place: [m], x along the wind. Rough patches where foam is fresh, streaks along
+    the wind, and lace: round holes of several sizes, bent by turbulence, which grow with age."""
     def noise(scale, detail, vector=place, output="Fac"):
         return tree.add("ShaderNodeTexNoise", {"Vector": vector, "Scale": scale, "Detail": detail, "Roughness": 0.6},
                         output=output)
@@ -57,13 +60,18 @@ def foam_pattern(tree, place, age_s, streaks):
     def drawn_out(most):
         return tree.vector(1.0 / (1.0 + most * streaks), 1.0, 1.0)
 
-    patches = noise(0.3, 3.0, place * drawn_out(3.7))
-    bent = place * drawn_out(1.33) + (noise(1.2, 4.0, output="Color") - 0.5) * 1.2
-    # Nets stand still; weight goes from one to the next, and their deviation stays.
-    octave = (0.75 * tree.math("LOGARITHM", 1.0 + age_s.at_least(0.0), 2.0)).at_most(NETS - 1.0)
-    net, squares = 0.0, 0.0
-    for k in range(NETS):
-        cells = tree.add("ShaderNodeTexVoronoi", {"Vector": bent, "Scale": 1.1 * 0.5**k}, feature="DISTANCE_TO_EDGE")
-        weight = (1.0 - tree.math("ABSOLUTE", octave - float(k))).at_least(0.0)
-        net, squares = (cells.sqrt() - NET_MEAN) * weight + net, weight * weight + squares
-    return 2.0 * patches - 1.0 * (NET_MEAN + net / squares.sqrt()) + 0.7 * noise(6.0, 4.0)
+    age_s = age_s.at_least(0.0)
+    bent = place * drawn_out(1.33) + (noise(0.6, 1.5, output="Color") - 0.5) * 1.3
+    octave = (1.0 + 0.8 * tree.math("LOGARITHM", 1.0 + age_s, 2.0)).at_most(SIZES - 1.0)
+    # Weight goes from one size to the next, with smaller holes between the larger; their deviation stays.
+    holes, squares = 0.0, 0.0
+    for k in range(SIZES):
+        cells = tree.add("ShaderNodeTexVoronoi", {"Vector": bent, "Scale": 8.0 * 0.5**k}, output="Distance", voronoi_dimensions="2D")
+        finer = octave - float(k)
+        weight = sum((part * (1.0 - tree.math("ABSOLUTE", finer - float(j))).at_least(0.0) for j, part in enumerate((0.6, 0.42), 1)),
+                     (1.0 - tree.math("ABSOLUTE", finer)).at_least(0.0))
+        holes, squares = (cells - HOLES) * weight + holes, weight * weight + squares
+    lace = LACE * (1.0 - 0.46 * (age_s / -1.2).exp())
+    patches = 2.0 * noise(0.3, 3.0, place * drawn_out(3.7)) + 0.7 * noise(6.0, 4.0)
+    shown = patches - PATCHES + lace / HOLES_DEVIATION * holes / squares.sqrt()
+    return shown / (PATCHES_VARIANCE + lace * lace).sqrt()

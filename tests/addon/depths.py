@@ -31,6 +31,7 @@ def level_sea(water="ocean"):
     obj = square("Sea", 3e3, 0.0)
     scene = pelagic.Scene()
     scene.light.sun_elevation_deg = 60.0
+    scene.light.turbidity = 3.0  # the clearer the air, the more of the light goes down straight: another 2 % of that
     scene.water.type = water
     light.ensure_light(bpy_scene, scene)
     obj.pelagic.see_through = True

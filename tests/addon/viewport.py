@@ -263,6 +263,7 @@ def steps():
 
     with checking("orthographic views and views through the camera are drawn"):
         region_3d = space.region_3d
+        obj.pelagic.light.turbidity = 3.0  # in clear air the horizon is fainter
         region_3d.view_perspective, region_3d.view_distance = "ORTHO", 60.0
         region_3d.view_rotation = (1, 0, 0, 0)
         region_3d.view_location = (0, 0, 0)

@@ -32,8 +32,8 @@ NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0472
 
 def add_facets(tree, ripples, ripple_length_m, detail_distance_m, wind_angle, time):
     """Adds the group. time: a vector, the ripples' places along z and w of their noise [s]. Normal and Roughness of a
-    sample's lobe; Fresnel: what it reflects; Reflection: that of it which no wave blocks. Light that
-    meets hidden waves twice (sky.glsl, sea.glsl) is left out. Facing a sun 30° high, for slopes of 0.14, it is to what meets
+    sample's lobe; Fresnel: what it reflects, of light from the water too; Reflection: that of it which no wave blocks; Again, with a lobe of
+    its own: what meets hidden waves twice. Facing a sun 30° high, for slopes of 0.14, that is to what meets
     them once as 0.02 at 45° off the zenith, 0.08 at 70°, 0.11 at 80°, 0.06 at 86°; the sky's as 0.08 at 80°."""
     return tree.call("Pelagic Facets", _facets, {"Ripples": ripples, "Ripple Length": ripple_length_m,
                                                  "Detail Distance": detail_distance_m, "Wind Angle": wind_angle,
@@ -122,11 +122,23 @@ def _facets(tree, asked):
     reached = 1.0 - (-2.0 * sigma * tilted * l_z / (l_deviation * l_deviation)).at_least(-80.0).exp()
     open_part = ((1.0 - NESTED) * seen / (seen + _smith_lambda(tree, l_z / l_deviation))).plus_product(nested, reached)
     fresnel_seen = fresnel * (1.0 - NESTED + nested)  # weighted by visible_part() over Smith's
+
+    # What a wave keeps from the mirrored light the eye sees of that wave, along its mean plane: sky and sun by a second reflection,
+    # and the water (grazing_view(), sky_seen_again() of sky.glsl). The eye's ray leaves it as from a lobe about the vector half way.
+    sine = (1.0 - cosine * cosine).sqrt().at_least(1e-4)
+    again = (fresnel_seen - fresnel * open_part).at_least(0.0)
+    towards_eye = (sigma / sine).at_most(0.5)  # the slopes' deviation
+    mirrored = add_fresnel(tree, towards_eye * 1.2533 / (1.0 + 1.15 * towards_eye))  # the effective term of a level view
+    lean = 1.2 * towards_eye
+    upright = 1.0 / (1.0 + lean * lean)
+    level = upright * (lean * lean - 1.0) / sine
+    again_facet = (normal * (2.0 * lean).plus_product(cosine, 1.0 + lean * lean) + x_axis * (v_x * (1.0 + level) / upright)
+                   + y_axis * (v_y * (1.0 + level) / upright)).normalized()
+
     open_part = open_part * (1.0 + _smith_lambda(tree, tilted / own.at_least(1e-3))).at_most(1.5)
     facet = (normal + x_axis * -s_x + y_axis * -s_y).normalized()
 
     # Foam's facets are rougher by 0.1 along any axis, and those that the eye sees lean its way: foam.glsl.
-    sine = (1.0 - cosine * cosine).sqrt().at_least(1e-4)
     foam_sigma = (sigma * sigma).plus_product(0.1 * sine, sine).sqrt()
     foam_k = cosine / foam_sigma
     foam_deviation = foam_sigma / sine
@@ -137,7 +149,9 @@ def _facets(tree, asked):
 
     return {"Normal": transformed(tree, facet, "NORMAL", "OBJECT", "WORLD").normalized(),
             "Roughness": (2.0 * lobe).sqrt().at_least(LEAST_ALPHA).sqrt(),
-            "Fresnel": fresnel_seen, "Reflection": fresnel * open_part,
+            "Fresnel": fresnel_seen - again * (1.0 - mirrored), "Reflection": fresnel * open_part, "Again": again * mirrored,
+            "Again Normal": transformed(tree, again_facet, "NORMAL", "OBJECT", "WORLD").normalized(),
+            "Again Roughness": (0.85 * towards_eye).at_least(LEAST_ALPHA).sqrt(),
             "Foam Normal": transformed(tree, foam_facet, "NORMAL", "OBJECT", "WORLD").normalized()}
 
 

@@ -21,6 +21,9 @@ from .nodes import Tree
 MARK = "pelagic_light"  # on the world and the lamp that are the add-on's
 EXPOSURE = "pelagic_exposure"  # on the world: the stops that were set last
 VIEW = "pelagic_view"  # on the world: the camera that they were metered by, Pinhole.numbers()
+# By how much a view transform has to be exposed more for a sea that is as bright as by the program's own: means of eight shots
+# (tests/addon/displays.py). Filmic shows a grey of 0.18 as 0.214.
+VIEW_STOPS = {"Filmic": -0.2, "AgX": 0.1}
 SKY_WIDTH = 1024
 STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp
 PICTURE, DISC = "Pelagic Sky", "Pelagic Sun Disc"  # the world's nodes
@@ -99,7 +102,8 @@ def meter(bpy_scene, scene):
     """Exposes the picture for a scene in its light and before its camera, where the add-on's world does that."""
     world = bpy_scene.world
     if world is not None and EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
-        bpy_scene.view_settings.exposure = world[EXPOSURE] = exposure_stops(sky_of(scene), scene)
+        stops = exposure_stops(sky_of(scene), scene) + VIEW_STOPS.get(bpy_scene.view_settings.view_transform, 0.0)
+        bpy_scene.view_settings.exposure = world[EXPOSURE] = stops
 
 
 def metered_view(obj, bpy_scene, depsgraph):
@@ -132,6 +136,22 @@ def _moves(obj, known=()):
     above = [obj.parent] + [getattr(each, "target", None) for each in obj.constraints]
     return bool(obj.animation_data or obj.data and obj.data.animation_data or obj.rigid_body or obj.pelagic_float.enabled
                 or any(_moves(each, (*known, obj)) for each in above if each and each not in known))
+
+
+def sky_picture(bpy_scene):
+    """The image of the scene's sky, None where that isn't the add-on's."""
+    world = bpy_scene.world
+    picture = world.node_tree.nodes.get(PICTURE) if world is not None and MARK in world else None
+    return picture and picture.image
+
+
+def extinction_per_m(scene):
+    """(r, g, b) of the air at sea level: of a picture's visibility (Koschmieder 1924); of daylight linear in its turbidity, a fit to the
+    core's table of air for 1.7 … 10 to 2 %."""
+    light = scene.light
+    if light.sky != pelagic.Scene().light.sky:
+        return (3.912e-3 / light.visibility_km if light.visibility_km else 0.0,) * 3
+    return tuple(1e-3 * (slope * light.turbidity - clear) for slope, clear in ((0.0695, 0.0631), (0.0815, 0.0692), (0.1009, 0.0711)))
 
 
 def own_sun(bpy_scene):
@@ -224,7 +244,7 @@ def _put_sun(lamp, sky):
 
 
 def exposure_stops(sky, scene):
-    """The stops at which the core shows the scene in its light: radiance · 2^stops = 0.18 is middle grey, here as there."""
+    """The stops at which the core shows the scene in its light: radiance · 2^stops = 0.18 is middle grey."""
     return math.log2(sky.exposure(scene))
 
 

@@ -20,7 +20,7 @@ STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
 DUE = "pelagic_look_due"  # on an ocean that has no look yet: with sun and sky or not
 
-_shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last, and the view it is exposed for
+_shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last, and how the picture is seen
 
 
 def is_untouched(world):
@@ -41,6 +41,7 @@ def give(obj, bpy_scene, sun_and_sky):
     material.ensure_material(obj, scene)
     if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
+    material.put_air(obj, scene, light.sky_picture(bpy_scene))
 
 
 def try_to(operator, give):
@@ -96,18 +97,21 @@ def _follow(bpy_scene, depsgraph):
         wanted = [of_sea, ocean.frame_rate(bpy_scene), obj.pelagic.see_through] + [settings[place] for place in PLACES]
         is_first = first_ocean(bpy_scene) == obj
         view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None
-        before, _shown[key] = _shown.get(key, (None, None)), (wanted, view)
-        if before == (wanted, view):
+        seen = view, bpy_scene.view_settings.view_transform
+        before, _shown[key] = _shown.get(key, (None, None)), (wanted, seen)
+        if before == (wanted, seen):
             continue
         try:
             scene = ocean.scene_of(obj, bpy_scene, depsgraph, settings)
             light.see_by(view, scene)
             if before[0] == wanted:
-                light.meter(bpy_scene, scene)
+                if is_first:
+                    light.meter(bpy_scene, scene)
                 continue
             material.update_material(obj, scene, *of_sea)
             if is_first:
                 light.update_light(bpy_scene, scene)
+            material.put_air(obj, scene, light.sky_picture(bpy_scene))
         except (ValueError, pelagic.ShotError) as error:
             print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
 
@@ -148,7 +152,9 @@ class PELAGIC_OT_add_light(bpy.types.Operator):
 
     def execute(self, context):
         try:
-            light.ensure_light(context.scene, ocean.scene_of(context.object, context.scene), self.exposure)
+            scene = ocean.scene_of(context.object, context.scene)
+            light.ensure_light(context.scene, scene, self.exposure)
+            material.put_air(context.object, scene, light.sky_picture(context.scene))
         except (ValueError, pelagic.ShotError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -166,7 +172,7 @@ class PELAGIC_OT_add_material(bpy.types.Operator):
 
     def execute(self, context):
         context.object.data.materials.clear()
-        material.ensure_material(context.object, ocean.scene_of(context.object, context.scene))
+        give(context.object, context.scene, False)
         return {"FINISHED"}
 
 

@@ -8,12 +8,14 @@ import bpy
 from . import compat, depths
 from .facets import WATER_INDEX, add_facets, transformed
 from .foam import DENSE, add_foam
-from .light import sky_of
+from .light import extinction_per_m, sky_of
 from .module import pelagic
 from .nodes import Tree
 
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
-VERSION = 3
+VERSION = 4
+AIR, AIR_SKY = "Air Extinction", "Air Sky"  # nodes
+JUST_ABOVE = 0.006  # the horizon: half a row of the sky's picture
 
 
 def ensure_material(obj, scene, dense_foam=None):
@@ -122,6 +124,9 @@ def new_material():
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
                                                     "Anisotropy": 0.0, "Normal": part["Normal"]},
                       distribution="BECKMANN")
+    again = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Again"], "Roughness": part["Again Roughness"], "Anisotropy": 0.0,
+                                                   "Normal": part["Again Normal"]}, distribution="BECKMANN")
+    mirror = tree.add("ShaderNodeAddShader", {0: mirror, 1: again})
     # Light from the water has come in through a level surface, whatever its facets do: the normal is up.
     upwards = transformed(tree, tree.vector(0.0, 0.0, 1.0), "NORMAL", "OBJECT", "WORLD")
     # High crests are thin: more light comes through, and less of its red and green is lost.
@@ -134,16 +139,44 @@ def new_material():
     white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, white_foam),
                                                 "Normal": part["Foam Normal"]})
 
+    before_air = _add_air(tree)
+
     def show(mirror, **settings):
-        tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
-            0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})}, **settings)
+        tree.node("ShaderNodeOutputMaterial", {"Surface": before_air(tree.add("ShaderNodeMixShader", {
+            0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white}))}, **settings)
 
     show(mirror)
     if not compat.eevee_mirrors_in_facets():
         show(tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"], "Anisotropy": 0.0},
                       distribution="BECKMANN"), target="EEVEE")
-    depths.add_depths(tree, part, coverage, mirror, foam["Foam"], white)
+    depths.add_depths(tree, part, coverage, mirror, foam["Foam"], white, before_air)
     return material
+
+
+def _add_air(tree):
+    """A function that puts the air between a shader and the camera: it takes light away, and adds what the sky's horizon in that azimuth
+    is of: for eyes near the sea the core's table of air has that to 1 %, whatever the azimuth and the distance."""
+    extinction = tree.node("ShaderNodeCombineXYZ")
+    extinction.name = extinction.label = AIR
+    away = tree.add("ShaderNodeCameraData", output="View Distance")
+    lost = [1.0 - (-(channel * away)).at_least(-80.0).exp() for channel in tree.value(extinction, 0).parts()]
+    x, y, _ = tree.add("ShaderNodeNewGeometry", output="Incoming").parts()
+    sky = tree.node("ShaderNodeTexEnvironment", {"Vector": tree.vector(-x, -y, JUST_ABOVE)})
+    sky.name = sky.label = AIR_SKY
+    grey = lost[1].at_least(1e-6)
+    glow = tree.add("ShaderNodeEmission", {"Color": tree.value(sky, "Color") * tree.vector(lost[0] / grey, 1.0, lost[2] / grey)})
+    share = lost[1] * tree.add("ShaderNodeLightPath", output="Is Camera Ray")
+    return lambda shader: tree.add("ShaderNodeMixShader", {0: share, 1: shader, 2: glow})
+
+
+def put_air(obj, scene, sky):
+    """Brings the air before the ocean to the scene. sky: the picture of the scene's sky, None: no air."""
+    material = next((m for m in obj.data.materials if m and MARK in m), None)
+    node = material and material.node_tree.nodes.get(AIR_SKY)
+    if node is not None:
+        if node.image != sky:
+            node.image = sky
+        _fill(material, AIR, dict(enumerate(extinction_per_m(scene) if sky else (0.0, 0.0, 0.0))))
 
 
 def upwelling_albedo(scene):

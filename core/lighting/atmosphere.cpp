@@ -19,28 +19,11 @@
 namespace pelagic {
 namespace {
 
-// Haze: Ångström exponent and single-scattering albedo of particles over a sea with some land around (purely
-// marine: 0.5 and 0.99; continental: 1.3 and 0.93).
-constexpr double kHazeReference_um = 0.55, kHazeExponent = 1.0, kHazeAlbedo = 0.97;
 // Two Henyey–Greenstein lobes with a mean cosine of 0.73. The forward lobe makes the aureole.
 constexpr double kHazeForward = 0.80, kHazeBackward = -0.45, kHazeForwardShare = 0.945;
 
 // The ground's albedo, that of the sea.
 const double kGroundAlbedo = static_cast<double>(diffuse_fresnel());
-
-// Optical thickness of the whole air column at 1013 hPa: Hansen & Travis 1974.
-double air_thickness(double um) {
-    const double per = 1.0 / (um * um);
-    return 0.008569 * per * per * (1.0 + 0.0113 * per + 0.00013 * per * per);
-}
-
-constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;  // 300 Dobson units
-
-// Optical thickness of the ozone: its Chappuis band as a Gaussian, with a peak of 5.0e-25 m² at 0.595 μm.
-double ozone_thickness(double um) {
-    const double x = (um - 0.595) / 0.054;
-    return kOzoneColumn_per_m2 * 5.0e-25 * std::exp(-0.5 * x * x);
-}
 
 // The fraction of a disc above a line that lies `above` radii below its centre.
 double part_above(double above) {
@@ -74,14 +57,8 @@ class Atmosphere::Tables {
           highest_km_(highest_km),
           outer_(highest_km > kNear_km ? kOuter : 0),
           elevations_(kInner + 2 * outer_),
+          vertical_(vertical_thickness(turbidity)),
           more_(kHeights * elevations_) {
-        const double haze = (turbidity - 1.0) * air_thickness(kHazeReference_um);
-        for (std::size_t b = 0; b < kBandCount; ++b) {
-            const double um = band_um(static_cast<int>(b));
-            air_[b] = air_thickness(um);
-            haze_[b] = haze * std::pow(um / kHazeReference_um, -kHazeExponent);
-            ozone_[b] = ozone_thickness(um);
-        }
         const std::vector<double> turns = haze_turns();
         tbb::parallel_for(std::size_t{0}, kHeights, [&](std::size_t i) { gather(i, turns); });
     }
@@ -167,7 +144,7 @@ class Atmosphere::Tables {
     };
 
     double thickness(const Matter& column, std::size_t b) const {
-        return air_[b] * column.air + haze_[b] * column.haze + ozone_[b] * column.ozone;
+        return vertical_.air[b] * column.air + vertical_.haze[b] * column.haze + vertical_.ozone[b] * column.ozone;
     }
 
     // The sunlight at a point: transmittance times the fraction of the disc above the local horizon. Returns
@@ -262,8 +239,8 @@ class Atmosphere::Tables {
                 const double passed = std::exp(-extinction * (to - from));
                 const double seen =
                     ray.passed[b] * (extinction > 0.0 ? (1.0 - passed) / extinction : to - from);
-                piece.by_air[b] = seen * air_[b] * here.air;
-                piece.by_haze[b] = seen * kHazeAlbedo * haze_[b] * here.haze;
+                piece.by_air[b] = seen * vertical_.air[b] * here.air;
+                piece.by_haze[b] = seen * kHazeAlbedo * vertical_.haze[b] * here.haze;
                 ray.passed[b] *= passed;
             }
         }
@@ -383,7 +360,7 @@ class Atmosphere::Tables {
 
     double turbidity_, sun_elevation_, highest_km_;
     std::size_t outer_, elevations_;
-    BandValues air_{}, haze_{}, ozone_{};  // vertical optical thickness
+    Thickness vertical_;
     Columns columns_;
     std::vector<BandValues> more_;  // by height and sun elevation
 };

@@ -55,6 +55,46 @@ vec4 air_lookup(int layer, float column, float row) {
                mix(air_texel(left, near_row + 1), air_texel(right, near_row + 1), across), row - float(near_row));
 }
 
+// Catmull and Rom's weights: smooth, and through the table's own values.
+vec4 smooth_weights(float x) {
+    return vec4(x * (x * (1.0f - 0.5f * x) - 0.5f), x * x * (1.5f * x - 2.5f) + 1.0f,
+                x * (x * (2.0f - 1.5f * x) + 0.5f), x * x * (0.5f * x - 0.5f));
+}
+
+vec4 air_smooth_row(int layer, int first, vec4 weights, int row) {
+    return weights.x * air_texel((first + kAirColumns - 1) % kAirColumns + layer * kAirColumns, row) +
+           weights.y * air_texel(first % kAirColumns + layer * kAirColumns, row) +
+           weights.z * air_texel((first + 1) % kAirColumns + layer * kAirColumns, row) +
+           weights.w * air_texel((first + 2) % kAirColumns + layer * kAirColumns, row);
+}
+
+// In `count` rows from `begin` on; `row` counts from there.
+vec4 air_smooth_lookup(int layer, float column, float row, int begin, int count) {
+    int first = int(floor(column));
+    vec4 across = smooth_weights(column - float(first));
+    int low = min(int(row), count - 2);
+    vec4 up = smooth_weights(row - float(low));
+    vec4 below = air_smooth_row(layer, first, across, begin + max(low - 1, 0));
+    vec4 at = air_smooth_row(layer, first, across, begin + low);
+    vec4 next = air_smooth_row(layer, first, across, begin + low + 1);
+    // Beyond the first and the last row the curve goes on straight.
+    if (low == 0) below = 2.0f * at - next;
+    vec4 above = low + 2 < count ? air_smooth_row(layer, first, across, begin + low + 2) : 2.0f * next - at;
+    return up.x * below + up.y * at + up.z * next + up.w * above;
+}
+
+vec3 air_sky_lookup(int layer, float column, float row) {
+    vec4 light = air_smooth_lookup(layer, column, row, kAirRows, kAirSkyRows);
+    return vec3(light.x, light.y, light.z);
+}
+
+// Light that is scattered more than once is complete, and brightest towards the sun: smooth. The horizon is an edge.
+vec4 air_more_lookup(float column, float row) {
+    float last = float(kAirHorizonRow);
+    if (row < last) return air_smooth_lookup(2, column, row, 0, kAirHorizonRow + 1);
+    return air_smooth_lookup(2, column, row - last, kAirHorizonRow, kAirRows - kAirHorizonRow);
+}
+
 // The column of a direction; to_eye is the opposite one.
 float air_column(vec3 to_eye, AirView air) {
     float along = -(to_eye.x * air.azimuth.x + to_eye.y * air.azimuth.y);
@@ -74,7 +114,7 @@ AirPath air_path(vec3 to_eye, float distance_m, AirView air) {
     float row = air_row(distance_m, air);
     vec4 by_air = air_lookup(0, column, row);
     vec4 by_haze = air_lookup(1, column, row);
-    vec4 more = air_lookup(2, column, row);
+    vec4 more = air_more_lookup(column, row);
     vec3 thickness = vec3(by_air.w, by_haze.w, more.w) * min(distance_m, air.farthest_m);
     vec3 left = exp(-thickness);
     // 1 − exp(−x) has no digits where x is small.
@@ -83,34 +123,6 @@ AirPath air_path(vec3 to_eye, float distance_m, AirView air) {
     vec3 light = vec3(by_air.x, by_air.y, by_air.z) * air_phase(cosine) +
                  vec3(by_haze.x, by_haze.y, by_haze.z) * haze_phase(cosine) + vec3(more.x, more.y, more.z);
     return AirPath(left, max(light, 0.0f) * lost);
-}
-
-// Catmull and Rom's weights: smooth, and through the table's own values.
-vec4 smooth_weights(float x) {
-    return vec4(x * (x * (1.0f - 0.5f * x) - 0.5f), x * x * (1.5f * x - 2.5f) + 1.0f,
-                x * (x * (2.0f - 1.5f * x) + 0.5f), x * x * (0.5f * x - 0.5f));
-}
-
-vec3 air_sky_row(int layer, int first, vec4 weights, int row) {
-    vec4 sum = weights.x * air_texel((first + kAirColumns - 1) % kAirColumns + layer * kAirColumns, row) +
-               weights.y * air_texel(first % kAirColumns + layer * kAirColumns, row) +
-               weights.z * air_texel((first + 1) % kAirColumns + layer * kAirColumns, row) +
-               weights.w * air_texel((first + 2) % kAirColumns + layer * kAirColumns, row);
-    return vec3(sum.x, sum.y, sum.z);
-}
-
-vec3 air_sky_lookup(int layer, float column, float row) {
-    int first = int(floor(column));
-    vec4 across = smooth_weights(column - float(first));
-    int low = min(int(row), kAirSkyRows - 2);
-    vec4 up = smooth_weights(row - float(low));
-    vec3 below = air_sky_row(layer, first, across, kAirRows + max(low - 1, 0));
-    vec3 at = air_sky_row(layer, first, across, kAirRows + low);
-    vec3 next = air_sky_row(layer, first, across, kAirRows + low + 1);
-    // Beyond the first and the last row the curve goes on straight.
-    if (low == 0) below = 2.0f * at - next;
-    vec3 above = low + 2 < kAirSkyRows ? air_sky_row(layer, first, across, kAirRows + low + 2) : 2.0f * next - at;
-    return up.x * below + up.y * at + up.z * next + up.w * above;
 }
 
 // The sky in a direction (unit) above the horizon; below it, that of the horizon.

@@ -2,11 +2,10 @@
 //
 // The model: a spherical earth with air, haze and ozone whose densities depend on height alone, and parallel
 // light from a distant sun, absorbed and scattered by wavelength. Single scattering is integrated along the
-// line of sight. Higher orders follow Hillaire 2020 ("A scalable and production ready sky and atmosphere
-// rendering technique"): the second order is gathered over all directions, for each height and elevation of
-// the sun. Later orders are taken as isotropic, and since neighbouring places are lit nearly alike, each is
-// the previous one times a factor f that depends on height. Their sum is a geometric series with the factor
-// 1/(1 − f).
+// line of sight. Higher orders are tabulated by height and the sun's elevation: what is scattered once reaches a place from
+// rays all round, and each of them is scattered into others by the true phase functions of air and haze, again and again
+// (discrete ordinates, Chandrasekhar 1950, with the azimuth's cosines and the earth's curvature along each ray). For these
+// orders the sun is equally high over all that a place's rays pass through.
 //
 // Values are per band (sunlight.h), relative to the sunlight outside the atmosphere: irradiance 1 gives
 // radiance in 1/sr. Heights and distances are in km, as in the published tables of air.
@@ -38,7 +37,7 @@ class Atmosphere {
   public:
     // turbidity T ≥ 1: at 0.55 μm, air and haze together have T times the optical thickness of air alone. The
     // sun's elevation is as seen by the observer at sea level. highest_km: from how high up the air will be looked at;
-    // above 1 km it takes twice as long. What is seen from further down is the same.
+    // above 1 km it takes up to twice as long. What is seen from further down is the same.
     Atmosphere(double turbidity, double sun_elevation_rad, double highest_km = 1.0);
     double turbidity() const;
     double sun_elevation_rad() const;
@@ -64,8 +63,8 @@ class Atmosphere {
     std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths_rad) const {
         return scattered(line, azimuths_rad, sun_elevation_rad());
     }
-    // The same under another sun. Light that is scattered more than once is that of a sun at most 33° away from the
-    // atmosphere's own, and of 11° where it isn't made for an eye above 1 km.
+    // The same under another sun. Where the atmosphere isn't made for an eye above 1 km, light that is scattered more than
+    // once is that of a sun at most 11° away from its own.
     std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths_rad,
                                      double sun_elevation_rad) const;
 

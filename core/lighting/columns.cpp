@@ -13,7 +13,36 @@ constexpr double kOzoneMiddle_km = 25.0, kOzoneHalfWidth_km = 15.0;
 constexpr std::size_t kHeights = 64, kDistances = 128;
 constexpr int kSteps = 48;
 
+// Ångström's exponent of the haze over a sea with some land around (purely marine: 0.5; continental: 1.3).
+constexpr double kHazeReference_um = 0.55, kHazeExponent = 1.0;
+
+// Optical thickness of the whole air column at 1013 hPa: Hansen & Travis 1974.
+double air_thickness(double um) {
+    const double per = 1.0 / (um * um);
+    return 0.008569 * per * per * (1.0 + 0.0113 * per + 0.00013 * per * per);
+}
+
+constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;  // 300 Dobson units
+
+// Optical thickness of the ozone: its Chappuis band as a Gaussian, with a peak of 5.0e-25 m² at 0.595 μm.
+double ozone_thickness(double um) {
+    const double x = (um - 0.595) / 0.054;
+    return kOzoneColumn_per_m2 * 5.0e-25 * std::exp(-0.5 * x * x);
+}
+
 }  // namespace
+
+Thickness vertical_thickness(double turbidity) {
+    const double haze = (turbidity - 1.0) * air_thickness(kHazeReference_um);
+    Thickness thickness;
+    for (std::size_t b = 0; b < kBands; ++b) {
+        const double um = band_um(static_cast<int>(b));
+        thickness.air[b] = air_thickness(um);
+        thickness.haze[b] = haze * std::pow(um / kHazeReference_um, -kHazeExponent);
+        thickness.ozone[b] = ozone_thickness(um);
+    }
+    return thickness;
+}
 
 Matter density(double height_km) {
     const double off = std::abs(height_km - kOzoneMiddle_km) / kOzoneHalfWidth_km;

@@ -19,6 +19,16 @@ struct Matter {
 // [1/km]
 Matter density(double height_km);
 
+// Optical thickness of the whole air, vertically.
+struct Thickness {
+    BandValues air{}, haze{}, ozone{};
+};
+Thickness vertical_thickness(double turbidity);
+
+// Of the haze's extinction this much is scattering: particles over a sea with some land around (purely marine: 0.99;
+// continental: 0.93).
+inline constexpr double kHazeAlbedo = 0.97;
+
 // Distance to the top of the atmosphere along a ray [km], from its start's radius and its cosine with the vertical.
 double to_top(double radius, double cosine);
 

@@ -53,11 +53,11 @@ TEST(LightByPlace, IsThatOfThePlacesOwnSun) {
             expect_near(here.sun, own.sun, 0.04f, 1e-5f, "sun");
             expect_near(here.sea, own.sea, 0.04f, 1e-5f, "sea");
             expect_near(here.foam, own.foam, 0.04f, 2e-4f, "foam");
-            // The sky's pattern is that below the eye; in the night that is none, and a uniform one has up to three times a low sun's
-            // zenith.
-            if (below_deg > 0.0) expect_near(here.sky, own.sky, 0.6f, 2e-4f, "sky");
+            // The sky's pattern is that below the eye; in the night that is none, and a uniform one has up to 3.5 times a low
+            // sun's zenith, whose horizon is so much brighter.
+            if (below_deg > 0.0) expect_near(here.sky, own.sky, 0.65f, 2e-4f, "sky");
             for (int i = 0; i < 3; ++i) {
-                EXPECT_LT(here.sky[i], 3.0f * own.sky[i] + 2e-4f) << i;
+                EXPECT_LT(here.sky[i], 3.6f * own.sky[i] + 2e-4f) << i;
                 EXPECT_GT(here.sky[i], 0.25f * own.sky[i] - 2e-4f) << i;
             }
         }

@@ -93,7 +93,8 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         const SeaPoint& p = points[i];
         typename Variant::SeenFoam seen = shading.plain_foam(0.0f);
         if (choice.whitecaps)
-            seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s, sky.sun_direction);
+            seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s,
+                                     sky.sun_direction);
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),

@@ -47,7 +47,8 @@ double exposure_for(double log_mean_luminance) {
     // the light looks half as bright.
     constexpr double kShown = 0.255, kLeftByDay = 0.13, kLeftAtNight = 0.3;
     const double day = log_mean_luminance * log_mean_luminance;
-    return kShown * std::pow(log_mean_luminance, kLeftAtNight - 1.0) * std::pow(1.0 + day, 0.5 * (kLeftByDay - kLeftAtNight));
+    return kShown * std::pow(log_mean_luminance, kLeftAtNight - 1.0) *
+           std::pow(1.0 + day, 0.5 * (kLeftByDay - kLeftAtNight));
 }
 
 }  // namespace pelagic

@@ -39,7 +39,8 @@ void add_shot(Built& out) {
         out.tables, out.keys, {"shot", "what is made", {}, {}},
         row<&Shot::edition>(
             {.name = "edition",
-             .help = "whose defaults count where the file doesn't say; one that should look the same for years names it",
+             .help =
+                 "whose defaults count where the file doesn't say; one that should look the same for years names it",
              .range = limits::kEdition,
              .key_parts = key_parts(KeyPart::Waves, KeyPart::Light)}),
         row<&Shot::name>({.name = "name",
@@ -399,16 +400,18 @@ void add_camera(Built& out) {
                                   .range = limits::kImageResolution,
                                   .form = "[width, height], two integers, each ",
                                   .key_parts = kView}),
-        row<&Camera::exposure_ev>({.name = "exposure_ev",
-                                   .help = "of pictures on a screen: so many stops brighter; EXRs hold the light itself",
-                                   .unit = "stops",
-                                   .range = limits::kExposure_ev,
-                                   .soft = SoftRange{-4.0, 4.0},
-                                   .key_parts = key_parts(KeyPart::Light)}),
+        row<&Camera::exposure_ev>(
+            {.name = "exposure_ev",
+             .help = "of pictures on a screen: so many stops brighter; EXRs hold the light itself",
+             .unit = "stops",
+             .range = limits::kExposure_ev,
+             .soft = SoftRange{-4.0, 4.0},
+             .key_parts = key_parts(KeyPart::Light)}),
         row<&Camera::ev100>(
             {.name = "ev100",
-             .help = "the exposure that a photographer's meter shows at ISO 100: 15 in full sun, 12 at sunset, 5 in deep dusk. "
-                     "Without it the shot's views are metered",
+             .help =
+                 "the exposure that a photographer's meter shows at ISO 100: 15 in full sun, 12 at sunset, 5 in deep dusk. "
+                 "Without it the shot's views are metered",
              .unit = "stops",
              .range = limits::kEv100,
              .soft = SoftRange{0.0, 17.0},
@@ -437,10 +440,11 @@ void add_light_and_water(Built& out) {
                               "growing to the left, top row the zenith; its sun is found in it",
                           .accepted = "\"daylight\", or the path of an .exr, from the shot file's folder",
                           .key_parts = kLight}),
-        row<&Light::turbidity>({.name = "turbidity",
-                                .help = "haze of the daylight's air; 2 is the open sea's, 3 land's, 6 is hazy",
-                                .range = limits::kTurbidity,
-                                .key_parts = kLight}),
+        row<&Light::turbidity>(
+            {.name = "turbidity",
+             .help = "haze of the daylight's air; 2 is the open sea's, 3 land's, 6 is hazy",
+             .range = limits::kTurbidity,
+             .key_parts = kLight}),
         row<&Light::visibility_km>(
             {.name = "visibility_km",
              .help = "with a picture of a sky: how far one sees through its air; without it "

@@ -35,23 +35,83 @@ struct Force {
 constexpr std::array<Force, 13> kForces{{
     {"Calm", 0.0, 100.0, 1.0, {5.0, 75.0, 2.4}, {2.2, 2.6, 45.0}, "like a mirror"},
     {"Light air", 0.9, 100.0, 1.0, {9.0, 112.0, 2.2}, {1.8, 1.2, 45.0}, "ripples without crests"},
-    {"Light breeze", 2.4, 200.0, 1.0, {32.0, 205.0, 2.0}, {2.0, 0.6, 45.0}, "small wavelets, glassy crests that don't break"},
-    {"Gentle breeze", 4.4, 300.0, 1.0, {16.0, 90.0, 2.0}, {3.0, 1.0, 50.0}, "large wavelets, the first scattered whitecaps"},
-    {"Moderate breeze", 6.7, 70.0, 1.0, {52.0, 150.0, 2.0}, {4.0, 0.0, 50.0},
+    {"Light breeze",
+     2.4,
+     200.0,
+     1.0,
+     {32.0, 205.0, 2.0},
+     {2.0, 0.6, 45.0},
+     "small wavelets, glassy crests that don't break"},
+    {"Gentle breeze",
+     4.4,
+     300.0,
+     1.0,
+     {16.0, 90.0, 2.0},
+     {3.0, 1.0, 50.0},
+     "large wavelets, the first scattered whitecaps"},
+    {"Moderate breeze",
+     6.7,
+     70.0,
+     1.0,
+     {52.0, 150.0, 2.0},
+     {4.0, 0.0, 50.0},
      "small waves that grow longer, fairly frequent whitecaps; 1 m"},
-    {"Fresh breeze", 9.3, 150.0, 1.0, {38.0, 20.0, 2.0}, {4.5, 1.0, 46.0}, "moderate, long waves, many whitecaps; 2 m"},
-    {"Strong breeze", 12.3, 180.0, 1.2, {24.0, 118.0, 2.2}, {5.0, 2.4, 42.0}, "large waves, white crests everywhere; 3 m"},
-    {"Near gale", 15.5, 190.0, 1.4, {46.0, 250.0, 2.2}, {7.0, 3.0, 40.0},
+    {"Fresh breeze",
+     9.3,
+     150.0,
+     1.0,
+     {38.0, 20.0, 2.0},
+     {4.5, 1.0, 46.0},
+     "moderate, long waves, many whitecaps; 2 m"},
+    {"Strong breeze",
+     12.3,
+     180.0,
+     1.2,
+     {24.0, 118.0, 2.2},
+     {5.0, 2.4, 42.0},
+     "large waves, white crests everywhere; 3 m"},
+    {"Near gale",
+     15.5,
+     190.0,
+     1.4,
+     {46.0, 250.0, 2.2},
+     {7.0, 3.0, 40.0},
      "the sea heaps up, foam begins to be blown in streaks; 4 m"},
-    {"Gale", 18.9, 240.0, 1.7, {14.0, 62.0, 2.6}, {6.0, 4.5, 38.0},
+    {"Gale",
+     18.9,
+     240.0,
+     1.7,
+     {14.0, 62.0, 2.6},
+     {6.0, 4.5, 38.0},
      "moderately high, longer waves, foam in marked streaks; 5.5 m"},
-    {"Strong gale", 22.6, 270.0, 2.0, {30.0, 140.0, 3.0}, {9.0, 5.5, 36.0},
+    {"Strong gale",
+     22.6,
+     270.0,
+     2.0,
+     {30.0, 140.0, 3.0},
+     {9.0, 5.5, 36.0},
      "high waves, dense streaks, crests begin to topple; 7 m"},
-    {"Storm", 26.4, 320.0, 3.2, {9.0, 100.0, 3.0}, {9.0, 7.5, 34.0},
+    {"Storm",
+     26.4,
+     320.0,
+     3.2,
+     {9.0, 100.0, 3.0},
+     {9.0, 7.5, 34.0},
      "very high waves with overhanging crests, the sea looks white; 9 m"},
-    {"Violent storm", 30.5, 385.0, 4.5, {26.0, 215.0, 3.0}, {11.0, 8.0, 34.0},
+    {"Violent storm",
+     30.5,
+     385.0,
+     4.5,
+     {26.0, 215.0, 3.0},
+     {11.0, 8.0, 34.0},
      "exceptionally high waves, long white patches everywhere; 11.5 m"},
-    {"Hurricane", 35.0, 425.0, 7.5, {40.0, 60.0, 3.5}, {13.0, 8.0, 36.0}, "the air is full of foam, the sea white; 14 m"},
+    {"Hurricane",
+     35.0,
+     425.0,
+     7.5,
+     {40.0, 60.0, 3.5},
+     {13.0, 8.0, 36.0},
+     "the air is full of foam, the sea white; 14 m"},
 }};
 
 void add(Preset& preset, const char* path, KeyValue value) {
@@ -83,7 +143,8 @@ Preset beaufort(int number) {
 }
 
 // All keys of the tables that a named sea sets, as they are in this scene.
-Preset named(const char* name, const char* label, const char* help, const Scene& scene, const Framing& framing) {
+Preset named(const char* name, const char* label, const char* help, const Scene& scene,
+             const Framing& framing) {
     Preset preset{.name = name, .label = label, .help = help, .group = PresetGroup::Sea, .values = {}};
     for (const KeyTable& table : key_tables()) {
         if (table.name != "sea" && table.name != "waves" && table.name != "light" && table.name != "water")
@@ -101,7 +162,8 @@ std::vector<Preset> named_seas() {
     glassy.sea.wind_speed_mps = 0.0;
     glassy.sea.swell = {{2.4, 10.5, 100.0}, {0.6, 6.0, 55.0}, {0.08, 2.6, 150.0}};
     glassy.light = {.sun_elevation_deg = 14.0, .sun_azimuth_deg = 48.0};
-    out.push_back(named("glassy-swell", "Glassy swell", "long swell without wind, the sun low", glassy, {4.0, 2.0, 45.0}));
+    out.push_back(named("glassy-swell", "Glassy swell", "long swell without wind, the sun low", glassy,
+                        {4.0, 2.0, 45.0}));
 
     Scene trade;
     trade.sea.wind_speed_mps = 8.0;
@@ -110,8 +172,8 @@ std::vector<Preset> named_seas() {
     trade.sea.spreading = SpreadingKind::Elfouhaily;
     trade.sea.swell = {{1.2, 9.5, 340.0}};
     trade.light = {.sun_elevation_deg = 48.0, .sun_azimuth_deg = 130.0};
-    out.push_back(
-        named("trade-wind", "Trade wind", "a steady breeze over deep blue water, the sun high", trade, {9.0, 2.0, 50.0}));
+    out.push_back(named("trade-wind", "Trade wind", "a steady breeze over deep blue water, the sun high",
+                        trade, {9.0, 2.0, 50.0}));
 
     Scene coast;
     coast.sea.wind_speed_mps = 7.0;
@@ -120,15 +182,16 @@ std::vector<Preset> named_seas() {
     coast.sea.spectrum = SpectrumKind::Tma;
     coast.light = {.sun_elevation_deg = 32.0, .sun_azimuth_deg = 60.0};
     coast.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 2.0};
-    out.push_back(named("coastal-bay", "Coastal bay", "short, steep waves over shallow green water", coast, {2.5, 0.5, 50.0}));
+    out.push_back(named("coastal-bay", "Coastal bay", "short, steep waves over shallow green water", coast,
+                        {2.5, 0.5, 50.0}));
 
     Scene evening;
     evening.sea.wind_speed_mps = 5.0;
     evening.sea.fetch_m = 100e3;
     evening.sea.swell = {{0.8, 8.0, 200.0}};
     evening.light = {.sun_elevation_deg = 4.0, .sun_azimuth_deg = 90.0};
-    out.push_back(
-        named("evening-breeze", "Evening breeze", "light wind, the sun's path on the water", evening, {3.0, 2.0, 40.0}));
+    out.push_back(named("evening-breeze", "Evening breeze", "light wind, the sun's path on the water",
+                        evening, {3.0, 2.0, 40.0}));
 
     Scene gale;
     gale.sea.wind_speed_mps = 24.0;
@@ -139,16 +202,16 @@ std::vector<Preset> named_seas() {
     gale.waves.choppiness = 1.15;
     gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 35.0};
     gale.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 1.0};
-    out.push_back(
-        named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam", gale, {10.0, 7.0, 36.0}));
+    out.push_back(named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam",
+                        gale, {10.0, 7.0, 36.0}));
 
     Scene southern;
     southern.sea.wind_speed_mps = 17.0;
     southern.sea.fetch_m = 900e3;
     southern.sea.swell = {{5.0, 15.0, 20.0}, {2.0, 12.0, 320.0}};
     southern.light = {.sun_elevation_deg = 16.0, .sun_azimuth_deg = 60.0};
-    out.push_back(
-        named("southern-ocean", "Southern Ocean", "a gale over a swell as high as a house", southern, {7.0, 6.0, 34.0}));
+    out.push_back(named("southern-ocean", "Southern Ocean", "a gale over a swell as high as a house",
+                        southern, {7.0, 6.0, 34.0}));
     return out;
 }
 
@@ -198,7 +261,8 @@ void apply(const Preset& preset, Scene& scene, PresetParts parts) {
         if (path == "sea.spectrum") scene.sea.measured.reset();
         // What a preset leaves at its default stays at the edition's.
         const Key& key = key_of(path);
-        if (const auto problem = set_value(scene, key, value == key.fallback ? fallback_in(scene.shot.edition, key) : value))
+        if (const auto problem =
+                set_value(scene, key, value == key.fallback ? fallback_in(scene.shot.edition, key) : value))
             throw std::logic_error("a preset that doesn't fit its key: " + text_of(*problem));
     }
 }

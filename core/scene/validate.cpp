@@ -293,7 +293,8 @@ void check_no_trains(SceneChecker& check, const Waves& waves, int edition) {
         check.refuse({key, std::move(value), "speaks of wave trains, and the model has none",
                       "model = \"trochoid\", or a file without this key"});
     };
-    if (waves.trains != Waves{}.trains && waves.trains != scene_of_edition(edition).waves.trains) refuse("waves.trains", std::to_string(waves.trains));
+    if (waves.trains != Waves{}.trains && waves.trains != scene_of_edition(edition).waves.trains)
+        refuse("waves.trains", std::to_string(waves.trains));
     if (waves.shortest_m) refuse("waves.shortest_m", number_text(*waves.shortest_m));
     if (waves.longest_m) refuse("waves.longest_m", number_text(*waves.longest_m));
 }

@@ -15,7 +15,8 @@ constexpr double kNotableShare = 0.02;
 DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains)
     : dispersion_{sea.depth_m}, systems_(WaveSystem::sea(sea, dispersion_)) {
     for (const Swell& swell : sea.swell) {
-        if (swell.height_m > 0.0) systems_.push_back(WaveSystem::swell(swell, dispersion_).directed(sea.directionality));
+        if (swell.height_m > 0.0)
+            systems_.push_back(WaveSystem::swell(swell, dispersion_).directed(sea.directionality));
     }
     if (!gains.empty())
         for (WaveSystem& system : systems_) system = system.gained(BandGains(gains), dispersion_);

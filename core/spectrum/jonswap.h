@@ -70,7 +70,8 @@ inline constexpr double kLargestAlpha = 0.03;
 // X̃ at which the height is Pierson & Moskowitz'.
 inline double developed_fetch(double wind_speed_mps) {
     const double square = wind_speed_mps * wind_speed_mps / kGravity;
-    return std::pow(PiersonMoskowitz(wind_speed_mps).m0() / (kEnergy * square * square), 1.0 / kEnergyExponent);
+    return std::pow(PiersonMoskowitz(wind_speed_mps).m0() / (kEnergy * square * square),
+                    1.0 / kEnergyExponent);
 }
 
 // m0 [m²] at X̃.
@@ -84,11 +85,14 @@ inline double m0(double wind_speed_mps, double fetch) {
 struct Jonswap : JonswapShape {
     Jonswap(double wind_speed_mps, double fetch_m) {
         const double fetch = kGravity * fetch_m / (wind_speed_mps * wind_speed_mps);  // X̃
-        const double peak = growth::kPeak * std::pow(fetch, -growth::kPeakExponent) * kGravity / wind_speed_mps;
+        const double peak =
+            growth::kPeak * std::pow(fetch, -growth::kPeakExponent) * kGravity / wind_speed_mps;
         const double developed_peak = PiersonMoskowitz(wind_speed_mps).peak_omega();
         omega_p = std::max(peak, developed_peak);
-        ln_gamma = std::min(std::log(1.0 + growth::kGammaPerDecade * std::log10(omega_p / developed_peak)), kLnSharpest);
-        const double m0 = growth::m0(wind_speed_mps, std::min(fetch, growth::developed_fetch(wind_speed_mps)));
+        ln_gamma = std::min(std::log(1.0 + growth::kGammaPerDecade * std::log10(omega_p / developed_peak)),
+                            kLnSharpest);
+        const double m0 =
+            growth::m0(wind_speed_mps, std::min(fetch, growth::developed_fetch(wind_speed_mps)));
         const double unit = kGravity * kGravity * jonswap_unit_m0(ln_gamma);
         const double square = omega_p * omega_p;
         alpha = std::min(m0 * square * square / unit, growth::kLargestAlpha);
@@ -101,9 +105,11 @@ struct JonswapByHeight : JonswapShape {
         constexpr double kFetchExponent = 0.22;
         const double developed = growth::developed_fetch(wind_speed_mps);
         const double fetch = std::min(kGravity * fetch_m / (wind_speed_mps * wind_speed_mps), developed);
-        const double gamma = 1.0 + growth::kGammaPerDecade * growth::kPeakExponent * std::log10(developed / fetch);
+        const double gamma =
+            1.0 + growth::kGammaPerDecade * growth::kPeakExponent * std::log10(developed / fetch);
         ln_gamma = std::min(std::log(gamma), kLnSharpest);
-        alpha = std::min(PiersonMoskowitz::kAlpha * std::pow(developed / fetch, kFetchExponent), growth::kLargestAlpha);
+        alpha = std::min(PiersonMoskowitz::kAlpha * std::pow(developed / fetch, kFetchExponent),
+                         growth::kLargestAlpha);
         const double m0 = growth::m0(wind_speed_mps, fetch);
         omega_p = std::sqrt(std::sqrt(alpha * kGravity * kGravity * jonswap_unit_m0(ln_gamma) / m0));
     }

@@ -154,17 +154,22 @@ WaveSystem WaveSystem::swell(const Swell& swell, const Dispersion& dispersion) {
     return {energy, SwellSpreading{energy.omega_p}, swell.direction_deg * kRadiansPerDegree, dispersion};
 }
 
-std::vector<WaveSystem> WaveSystem::with_short_waves(const SeaState& sea, const EnergyLaw& energy, const Dispersion& dispersion) {
-    const bool is_measured = sea.spectrum == SpectrumKind::File, is_by_height = sea.growth == GrowthLaw::Height;
+std::vector<WaveSystem> WaveSystem::with_short_waves(const SeaState& sea, const EnergyLaw& energy,
+                                                     const Dispersion& dispersion) {
+    const bool is_measured = sea.spectrum == SpectrumKind::File,
+               is_by_height = sea.growth == GrowthLaw::Height;
     const double peak = pelagic::peak_wavenumber(energy, dispersion);
     const SpreadingLaw spreading = spreading_law(sea, peak, dispersion);
     const double wind_direction = sea.wind_direction_deg * kRadiansPerDegree;
     const double direction = is_measured ? 0.0 : wind_direction;  // a buoy's directions are absolute
-    const auto waves = [&](const Edges& edges) { return WaveSystem(energy, spreading, direction, dispersion, edges); };
+    const auto waves = [&](const Edges& edges) {
+        return WaveSystem(energy, spreading, direction, dispersion, edges);
+    };
 
     // One system, unless its long waves alone are changed.
     const bool is_turned = sea.directionality != 1.0;
-    const bool is_elfouhaily = sea.spectrum == SpectrumKind::Elfouhaily && sea.spreading == SpreadingKind::Elfouhaily &&
+    const bool is_elfouhaily = sea.spectrum == SpectrumKind::Elfouhaily &&
+                               sea.spreading == SpreadingKind::Elfouhaily &&
                                (is_by_height || !(is_turned || sea.significant_height_m));
     if (sea.short_waves == ShortWaves::None || sea.wind_speed_mps < kCalmWind || is_elfouhaily)
         return {waves({}).directed(sea.directionality)};
@@ -184,8 +189,10 @@ std::vector<WaveSystem> WaveSystem::with_short_waves(const SeaState& sea, const 
 
     const double age = sea.wind_speed_mps * dispersion.omega(peak) / kGravity;  // U/cp, in deep water
     const auto* whole = std::get_if<Elfouhaily>(&energy);
-    const Elfouhaily tail = whole ? *whole : Elfouhaily(sea.wind_speed_mps, Elfouhaily::Age{std::clamp(age, kOldest, kYoungest)});
-    WaveSystem ripples(tail, ElfouhailySpreading(sea.wind_speed_mps, tail.c_p), wind_direction, dispersion, {.lower = join});
+    const Elfouhaily tail =
+        whole ? *whole : Elfouhaily(sea.wind_speed_mps, Elfouhaily::Age{std::clamp(age, kOldest, kYoungest)});
+    WaveSystem ripples(tail, ElfouhailySpreading(sea.wind_speed_mps, tail.c_p), wind_direction, dispersion,
+                       {.lower = join});
     ripples.peak_wavenumber_ = peak;
     systems.push_back(is_by_height ? ripples.directed(sea.directionality) : std::move(ripples));
     return systems;
@@ -227,7 +234,8 @@ std::vector<WaveSystem> WaveSystem::sea(const SeaState& sea, const Dispersion& d
             // A sea of another height is one of another age. Its ripples and its longer waves have two numbers to hold.
             systems = with_short_waves(sea, aged(energy, std::pow(wanted / own, -kPeakByEnergy)), dispersion);
             std::tie(m0, mss) = totals();
-            if (!is_theirs && mss[1] > 0.0) ripples = bounded((m0[0] * glitter - mss[0] * wanted) / (m0[0] * mss[1] - mss[0] * m0[1]));
+            if (!is_theirs && mss[1] > 0.0)
+                ripples = bounded((m0[0] * glitter - mss[0] * wanted) / (m0[0] * mss[1] - mss[0] * m0[1]));
         }
     }
     wanted = std::min(wanted, m0_of(kMostHeightOverDepth * sea.depth_m));

@@ -96,7 +96,8 @@ class WaveSystem {
     WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double direction, const Dispersion& dispersion,
                Edges edges = {});
     // The waves of this law and the wind's short ones joined to them.
-    static std::vector<WaveSystem> with_short_waves(const SeaState& sea, const EnergyLaw& energy, const Dispersion& dispersion);
+    static std::vector<WaveSystem> with_short_waves(const SeaState& sea, const EnergyLaw& energy,
+                                                    const Dispersion& dispersion);
     double law_energy(const WavePoint& point) const;
     void find_panels(const Dispersion& dispersion);
     void find_energy(const Dispersion& dispersion);  // panels, m0 and mss

@@ -144,9 +144,11 @@ float shot_exposure(const Scene& scene, const Sky& sky, double stops) {
     if (scene.camera.ev100) return static_cast<float>(exposure_of_ev100(*scene.camera.ev100 - stops));
     Meter meter(scene, sky);
     for (const View& view : metered_views(scene)) meter.add(view);
-    const double metered = exposure_for(meter.log_mean()), most = kBrightestFoam / std::max(foam_luminance(scene, sky), 1e-30);
+    const double metered = exposure_for(meter.log_mean()),
+                 most = kBrightestFoam / std::max(foam_luminance(scene, sky), 1e-30);
     const double share = metered / most;
-    return static_cast<float>(metered / std::sqrt(std::sqrt(1.0 + (share * share) * (share * share))) * std::exp2(stops));
+    return static_cast<float>(metered / std::sqrt(std::sqrt(1.0 + (share * share) * (share * share))) *
+                              std::exp2(stops));
 }
 
 }  // namespace pelagic

@@ -42,6 +42,6 @@ allow plugin/accuracy "core/[a-z]+ plugin/bake plugin/budget plugin/format/exr p
 allow plugin/host/gpu "core/[a-z]+"
 allow plugin/host/preview "core/[a-z]+ plugin/machine plugin/files plugin/format/exr plugin/light plugin/format/png plugin/render plugin/host/gpu"
 allow plugin/host/procedural "core/[a-z]+ plugin/machine plugin/format/shot plugin/light"
-allow plugin/host/cli "core/[a-z]+ plugin/machine plugin/files plugin/format/shot plugin/light plugin/run plugin/bake plugin/render plugin/budget plugin/accuracy plugin/host/preview plugin/host/gpu"
+allow plugin/host/cli "core/[a-z]+ plugin/machine plugin/files plugin/format/png plugin/format/shot plugin/light plugin/run plugin/bake plugin/render plugin/budget plugin/accuracy plugin/host/preview plugin/host/gpu"
 allow plugin/host/python "core/[a-z]+ plugin/machine plugin/files plugin/format/obj plugin/format/shot plugin/light plugin/format/usd plugin/run plugin/bake plugin/render plugin/budget plugin/host/gpu"
 exit $bad

@@ -45,8 +45,8 @@ inline constexpr int kNewestEdition = 2;
 // [shot]
 struct Shot {
     int edition = kNewestEdition;  // 1 … kNewestEdition
-    std::string name = "sea";  // letters, digits, _ and -
-    int first_frame = 1;       // both included; time_s() says what a frame shows
+    std::string name = "sea";      // letters, digits, _ and -
+    int first_frame = 1;           // both included; time_s() says what a frame shows
     int last_frame = 48;
     double fps = 24.0;           // > 0
     std::uint64_t seed = 1;      // 0 … 2^63 − 1
@@ -161,8 +161,9 @@ struct Camera {
     CameraInterpolation interpolation = CameraInterpolation::Linear;  // between keys
     double fov_deg = 50.0;                                            // horizontal, 1 … 179
     glm::ivec2 resolution{1280, 720};                                 // 1 … 65536 each
-    double exposure_ev = 0.0;       // stops brighter than metered, or than ev100
-    std::optional<double> ev100{};  // the exposure, as a photographer's meter gives it at ISO 100; without: metered
+    double exposure_ev = 0.0;  // stops brighter than metered, or than ev100
+    std::optional<double>
+        ev100{};  // the exposure, as a photographer's meter gives it at ISO 100; without: metered
 };
 
 // [light]
@@ -171,7 +172,7 @@ struct Light {
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
     // "daylight", or the path of a lat-long picture, as the host that loaded the scene finds it.
     std::string sky = "daylight";
-    double turbidity = 2.0;                 // of the daylight: 1.7 … 10, haze; 2 is the open sea's, 3 land's
+    double turbidity = 2.0;  // of the daylight: 1.7 … 10, haze; 2 is the open sea's, 3 land's
     std::optional<double> visibility_km{};  // of the air under a picture's sky; without: clear
 };
 

@@ -15,7 +15,8 @@ void describe(std::string& out, const Key& key) {
     out += "      " + key.accepted + '\n';
     for (const EditionChange& change : edition_changes())
         if (change.path == key.path)
-            out += "      before edition " + std::to_string(change.edition) + ": " + value_text(key, change.before) + '\n';
+            out += "      before edition " + std::to_string(change.edition) + ": " +
+                   value_text(key, change.before) + '\n';
     if (key.key_parts.any()) out += "      feeds " + text_of(key.key_parts) + '\n';
     for (const Key& inner : key.entry_keys) describe(out, inner);
 }

@@ -345,7 +345,8 @@ void read_table(Reader& reader, const toml::table& table, const KeyTable& about,
 // The edition, which all else lies on; where it can't be read, read_key() says so.
 int edition_of(const toml::table& root) {
     const auto edition = root["shot"]["edition"].value_exact<std::int64_t>();
-    return edition && limits::kEdition.holds(static_cast<double>(*edition)) ? static_cast<int>(*edition) : kNewestEdition;
+    return edition && limits::kEdition.holds(static_cast<double>(*edition)) ? static_cast<int>(*edition)
+                                                                            : kNewestEdition;
 }
 
 // Which parts of the preset count; all without preset_parts.
@@ -358,10 +359,12 @@ PresetParts read_preset_parts(Reader& reader, const toml::table& root) {
         reader.refuse(at.source().begin, {"preset_parts", text_of(at), std::move(problem), kAccepted});
     };
     const toml::array* list = node->as_array();
-    if (!list || !root.get("preset")) return refuse(*node, list ? "is there without a preset" : "is " + type_of(*node)), parts;
+    if (!list || !root.get("preset"))
+        return refuse(*node, list ? "is there without a preset" : "is " + type_of(*node)), parts;
     for (const toml::node& part : *list) {
         const auto* word = part.as_string();
-        const auto at = std::find(kPresetParts.begin(), kPresetParts.end(), word ? word->get() : std::string());
+        const auto at =
+            std::find(kPresetParts.begin(), kPresetParts.end(), word ? word->get() : std::string());
         if (at == kPresetParts.end()) return refuse(part, "is no part of a preset"), parts;
         parts.set(static_cast<std::size_t>(at - kPresetParts.begin()));
     }
@@ -387,7 +390,8 @@ Scene read_scene(Reader& reader, const toml::table& root) {
     if (const toml::node* preset = root.get("preset")) read_preset(reader, *preset, parts, scene);
     KnownKeys tables;
     for (const KeyTable& table : key_tables()) {
-        tables.accepted += (tables.names.empty() ? "preset, preset_parts and the tables " : ", ") + table.name;
+        tables.accepted +=
+            (tables.names.empty() ? "preset, preset_parts and the tables " : ", ") + table.name;
         tables.names.push_back(table.name);
     }
     for (const auto& at : in_order(root)) {

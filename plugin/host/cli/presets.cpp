@@ -85,8 +85,9 @@ int draw_sheet(const std::filesystem::path& file) {
             for (int x = 0; x < kSize.x; ++x) {
                 const auto shown = display_bytes(
                     radiance_of(picture.layers[static_cast<std::size_t>(y) * kSize.x + x]), exposure, {x, y});
-                std::copy(shown.begin(), shown.end(),
-                          bytes.begin() + 3 * (static_cast<std::ptrdiff_t>(corner.y + y) * size.x + corner.x + x));
+                std::copy(
+                    shown.begin(), shown.end(),
+                    bytes.begin() + 3 * (static_cast<std::ptrdiff_t>(corner.y + y) * size.x + corner.x + x));
             }
     }
     progress.clear();
@@ -106,8 +107,10 @@ Verb add_presets(CLI::App& program) {
     return {command, [name, sheet] {
                 if (!sheet->empty()) {
                     if (std::filesystem::path(*sheet).extension() != ".png")
-                        throw WrongUsage("--sheet " + quoted_text(*sheet) + "; accepted: a file that ends in .png");
-                    if (!name->empty()) throw WrongUsage("--sheet shows all presets; leave " + quoted_text(*name) + " out");
+                        throw WrongUsage("--sheet " + quoted_text(*sheet) +
+                                         "; accepted: a file that ends in .png");
+                    if (!name->empty())
+                        throw WrongUsage("--sheet shows all presets; leave " + quoted_text(*name) + " out");
                     return draw_sheet(*sheet);
                 }
                 if (!name->empty()) return print_one(*name);

@@ -39,7 +39,8 @@ void apply_preset(Scene& scene, const std::string& name, const std::vector<std::
     for (const std::string& part : parts) {
         const auto at = std::find(kPresetParts.begin(), kPresetParts.end(), part);
         if (at == kPresetParts.end())
-            throw py::value_error(quoted_text(part) + " is no part of a preset; accepted: sea, light, camera and water");
+            throw py::value_error(quoted_text(part) +
+                                  " is no part of a preset; accepted: sea, light, camera and water");
         chosen.set(static_cast<std::size_t>(at - kPresetParts.begin()));
     }
     if (const Preset* preset = find_preset(name)) return apply(*preset, scene, chosen);
@@ -55,9 +56,10 @@ void add_presets(py::module_& module, py::class_<Scene, std::shared_ptr<Scene>>&
                "Named weathers and seas, each a dictionary: name, label and help for a menu, group "
                "(\"beaufort\" or \"sea\"), and values, a dictionary by the keys' paths.");
     const std::vector<std::string> all(kPresetParts.begin(), kPresetParts.end());
-    scene.def("apply_preset", &apply_preset, py::arg("name"), py::arg("parts") = all,
-              "Sets the keys of a preset, or those of some of its parts: sea (with its waves and effects), light, camera, water. "
-              "ValueError, with the nearest name, where there is none.");
+    scene.def(
+        "apply_preset", &apply_preset, py::arg("name"), py::arg("parts") = all,
+        "Sets the keys of a preset, or those of some of its parts: sea (with its waves and effects), light, camera, water. "
+        "ValueError, with the nearest name, where there is none.");
 }
 
 }  // namespace pelagic::python

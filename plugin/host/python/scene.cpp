@@ -158,7 +158,8 @@ py::dict described_key(const Key& key) {
     out["default"] = key.is_required ? py::none() : to_python(key, key.fallback);
     py::list before;
     for (const EditionChange& change : edition_changes())
-        if (change.path == key.path) before.append(py::make_tuple(change.edition, to_python(key, change.before)));
+        if (change.path == key.path)
+            before.append(py::make_tuple(change.edition, to_python(key, change.before)));
     out["defaults_before"] = before;
     out["required"] = key.is_required;
     out["range"] = range_of(key);

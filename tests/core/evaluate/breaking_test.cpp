@@ -151,7 +151,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
 TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
     const auto points = random_points<float>(3000.0, 20000);
     Scene scene = scene_of_edition(1);  // more of it breaks: one tile is a better mean
-    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
+    scene.effects.foam_decay_s = 0.0;   // all foam breaks now
     scene.sea.wind_speed_mps = 14.0;
     for (const Tiling tiling : {Tiling::Periodic, Tiling::Random}) {
         scene.waves.tiling = tiling;

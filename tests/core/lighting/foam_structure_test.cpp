@@ -70,8 +70,8 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
 TEST(FoamStructure, FadesToTheCoverage) {
     const auto pattern = pattern_of(1.0, 0.5);
     for (const float coverage : {0.0f, 1e-5f, 0.01f, 0.4f, 0.97f, 1.0f}) {
-        const auto seen =
-            shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage, 1.0f, 0.0f, kSun);
+        const auto seen = shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage,
+                                            1.0f, 0.0f, kSun);
         EXPECT_EQ(seen.share, coverage);
         EXPECT_EQ(seen.dense, 0.4f);
     }

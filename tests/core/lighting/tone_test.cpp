@@ -58,9 +58,10 @@ TEST(Tone, RisesWithTheLightAndStaysInRange) {
 
 // Hue as it is seen, the angle of Oklab's two opponent colours [degrees], and saturation as a colour picker has it.
 double hue_deg(glm::dvec3 linear) {
-    const glm::dvec3 felt(std::cbrt(0.4122214708 * linear.x + 0.5363325363 * linear.y + 0.0514459929 * linear.z),
-                          std::cbrt(0.2119034982 * linear.x + 0.6806995451 * linear.y + 0.1073969566 * linear.z),
-                          std::cbrt(0.0883024619 * linear.x + 0.2817188376 * linear.y + 0.6299787005 * linear.z));
+    const glm::dvec3 felt(
+        std::cbrt(0.4122214708 * linear.x + 0.5363325363 * linear.y + 0.0514459929 * linear.z),
+        std::cbrt(0.2119034982 * linear.x + 0.6806995451 * linear.y + 0.1073969566 * linear.z),
+        std::cbrt(0.0883024619 * linear.x + 0.2817188376 * linear.y + 0.6299787005 * linear.z));
     return std::atan2(0.0259040371 * felt.x + 0.7827717662 * felt.y - 0.8086757660 * felt.z,
                       1.9779984951 * felt.x - 2.4285922050 * felt.y + 0.4505937099 * felt.z) *
            180.0 / kPi;
@@ -73,15 +74,17 @@ double saturation(glm::dvec3 colour) {
 // From dark to nearly white the colours of low suns, sky and water keep their hue, and half of their saturation up to two stops above
 // middle grey's white. A curve per component would make the orange yellow; white mixed into linear light makes it pink.
 TEST(Tone, KeepsHueAndSaturation) {
-    for (const glm::dvec3 colour : {glm::dvec3(66.6, 34.1, 8.2), glm::dvec3(1.0, 0.45, 0.1), glm::dvec3(1.0, 0.7, 0.4),
-                                    glm::dvec3(0.3, 0.6, 1.0), glm::dvec3(0.2, 0.8, 1.0)}) {
+    for (const glm::dvec3 colour :
+         {glm::dvec3(66.6, 34.1, 8.2), glm::dvec3(1.0, 0.45, 0.1), glm::dvec3(1.0, 0.7, 0.4),
+          glm::dvec3(0.3, 0.6, 1.0), glm::dvec3(0.2, 0.8, 1.0)}) {
         const glm::dvec3 unit = colour / std::max({colour.x, colour.y, colour.z});
         for (double strength = 1e-2; strength < 40.0; strength *= 1.3) {
             const glm::vec3 shown = display_colour(glm::vec3(unit * strength), 1.0f);
             const glm::dvec3 light(light_of(shown.x), light_of(shown.y), light_of(shown.z));
             EXPECT_NEAR(hue_deg(light), hue_deg(unit), 5.0) << strength << ' ' << colour.x;
             if (strength < 4.0) {
-                EXPECT_GT(saturation(glm::dvec3(shown)) / saturation(unit), 0.45) << strength << ' ' << colour.x;
+                EXPECT_GT(saturation(glm::dvec3(shown)) / saturation(unit), 0.45)
+                    << strength << ' ' << colour.x;
             }
         }
     }

@@ -24,7 +24,8 @@ TEST(Editions, ChangeDefaultsOfKeysAndNothingElse) {
         const Key& key = key_of(change.path);
         EXPECT_NE(fallback_in(change.edition - 1, key), fallback_in(change.edition, key)) << change.path;
         EXPECT_EQ(fallback_in(kNewestEdition, key), key.fallback) << change.path;
-        EXPECT_TRUE(seen.insert(std::to_string(change.edition) + std::string(change.path)).second) << change.path;
+        EXPECT_TRUE(seen.insert(std::to_string(change.edition) + std::string(change.path)).second)
+            << change.path;
     }
     EXPECT_EQ(shot_text(scene_of_edition(kNewestEdition), Scene{}), "");
     for (int edition = 1; edition <= kNewestEdition; ++edition) {

@@ -93,7 +93,8 @@ TEST(Directionality, MoreIsNarrowerOfLongAndShortWaves) {
             const double of_long = mean(sea.peak_wavenumber()), of_short = mean(200.0);
             EXPECT_GT(of_long, before_long) << directionality;
             // The wind's short waves are what they are, unless all waves were asked for.
-            const bool is_joined = state.growth == GrowthLaw::HeightAndPeak && state.short_waves != ShortWaves::None;
+            const bool is_joined =
+                state.growth == GrowthLaw::HeightAndPeak && state.short_waves != ShortWaves::None;
             if (!is_joined) {
                 EXPECT_GT(of_short, before_short) << directionality;
             } else if (before_short >= 0.0) {

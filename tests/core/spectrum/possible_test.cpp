@@ -37,7 +37,8 @@ TEST(ImpossibleWaves, AreHeightsBeyondTheWindsWaves) {
     SeaState sea;
     sea.wind_speed_mps = 3.0;
     sea.significant_height_m = 5.0;
-    EXPECT_TRUE(impossible_waves(sea).empty());  // its peak goes with the height: a long sea under little wind
+    EXPECT_TRUE(
+        impossible_waves(sea).empty());  // its peak goes with the height: a long sea under little wind
     sea.growth = GrowthLaw::Height;
     expect_refused(sea, "sea.significant_height_m", "or more wind or fetch");
     sea.wind_speed_mps = 20.0;

@@ -58,8 +58,10 @@ TEST(ShortWaves, SlopesAreTheWindsWhateverTheLongOnesAre) {
                     const SpectralMoments sea = moments(DirectionalSpectrum(state), 0.0, oracle::kInfinity);
                     EXPECT_NEAR(sea.mss() / CoxMunk::at_wind(wind).total, 1.0, 0.15)
                         << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
-                    EXPECT_GT(sea.xx / sea.yy, 1.1) << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
-                    EXPECT_LT(sea.xx / sea.yy, 1.85) << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
+                    EXPECT_GT(sea.xx / sea.yy, 1.1)
+                        << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
+                    EXPECT_LT(sea.xx / sea.yy, 1.85)
+                        << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
                 }
         }
 }
@@ -75,7 +77,9 @@ TEST(Height, MovesThePeak) {
         const DirectionalSpectrum sea(state);
         EXPECT_NEAR(4.0 * std::sqrt(sea.m0()), *state.significant_height_m, 1e-6);
         EXPECT_LT(sea.peak_wavenumber(), before) << share;
-        EXPECT_NEAR(sea.peak_wavenumber() / own.peak_wavenumber(), std::pow(share, -1.2), 0.01 * std::pow(share, -1.2)) << share;
+        EXPECT_NEAR(sea.peak_wavenumber() / own.peak_wavenumber(), std::pow(share, -1.2),
+                    0.01 * std::pow(share, -1.2))
+            << share;
         before = sea.peak_wavenumber();
     }
 }

@@ -184,7 +184,8 @@ TEST(Accuracy, FinerSettingsErrLess) {
              Case{"rays", "4 footprints", "0.05 footprints", 20.0},
              Case{"mesh-variance", "16 cells without", "16 cells with variance", 2.0},
              Case{"files", "half", "float", 1e9},
-             Case{"sky", "one", "nine", 1.05},  // 1.1 under a clear sky, 1.7 in haze: one lookup is over an ellipse
+             Case{"sky", "one", "nine",
+                  1.05},  // 1.1 under a clear sky, 1.7 in haze: one lookup is over an ellipse
              Case{"sky", "nine", "integral", 1e9},
              Case{"samples", "1 × 1", "6 × 6", 2.0},
              Case{"grid-cells", "32 px", "1 px", 1.5},

@@ -53,7 +53,8 @@ void expect_edited(const std::string& text, const Scene& wanted, const std::stri
 // What was read without an edition means the newest, and says so from then on.
 TEST(EditShot, TheEditionIsWritten) {
     const Scene base = read("[sea]\nfetch_m = 1e5\n");
-    EXPECT_EQ(edited_shot("[sea]\nfetch_m = 1e5\n", base, base), "[sea]\nfetch_m = 1e5\n\n[shot]\nedition = 2\n");
+    EXPECT_EQ(edited_shot("[sea]\nfetch_m = 1e5\n", base, base),
+              "[sea]\nfetch_m = 1e5\n\n[shot]\nedition = 2\n");
     const std::string old = "[shot]\nedition = 1\n";
     Scene scene = read(old);
     EXPECT_EQ(edited_shot(old, scene, read(old)), old);

@@ -14,7 +14,8 @@ from .query import first_ocean
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or "clock" in field.key["feeds"]
-          or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "surface.earth_curvature", "shot.loop_s", "effects.foam_structure", "effects.foam_streaks")]
+          or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "surface.earth_curvature", "shot.loop_s",
+                            "effects.foam_structure", "effects.foam_streaks")]
 
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 

@@ -51,6 +51,7 @@ class Simulation:
         self._built = None
         self._key = None
         self._asked = None  # what scene was made from
+        self._surface = None  # what identifies the surface that was made last, and it
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
         self._last = None  # the frame that was last asked for, the step to it, the view
@@ -147,7 +148,9 @@ class Simulation:
                 if self.is_behind and not _is_shared(self):
                     self._built.drop()  # nobody wants its foam any more
                     self.due = None
-                self._job = BuiltSea.job(key, self.scene, make_surface(), view, velocity)
+                if self._surface is None or self._surface[0] != key[2]:  # of a million points it takes longer than the sea
+                    self._surface = key[2], make_surface()
+                self._job = BuiltSea.job(key, self.scene, self._surface[1], view, velocity)
             if wait:
                 self._take()
             else:

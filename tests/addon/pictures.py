@@ -21,7 +21,7 @@ def core_layers(program, shot, folder, size):
     first = pelagic.Scene.from_file(str(shot)).shot.frames[0]
     subprocess.run([program, "render", str(shot), "--out", str(folder), "--frames", str(first), "--size",
                     f"{size[0]}x{size[1]}", "--samples", "2"], check=True, stdout=subprocess.DEVNULL)
-    return _split(Path(folder) / f"{Path(shot).stem}.{first:04d}.exr", ("sun", "sky", "sea", "foam"))
+    return _split(Path(folder) / f"{Path(shot).stem}.{first:04d}.exr", ("sun", "sky", "sea", "foam", "air"))
 
 
 def _split(file, layers):

@@ -165,6 +165,8 @@ struct Light {
     std::string sky = "daylight";
     double turbidity = 3.0;                 // of the daylight: 1.7 … 10, haze
     std::optional<double> visibility_km{};  // of the air under a picture's sky; without: clear
+    double sky_rotation_deg = 0.0;          // of a picture's sky with its sun, counter-clockwise from above
+    double sky_gain = 1.0;                  // ≥ 0, times a picture's radiance
 };
 
 // [water]

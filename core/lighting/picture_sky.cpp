@@ -92,11 +92,13 @@ class Upper {
             if (each) std::rethrow_exception(each);
     }
 
+    double rotation_rad() const { return picture_.rotation_rad; }
     double pixel_height() const { return kPi / picture_.height; }  // [rad]
     double pixel_width() const { return kTwoPi / static_cast<double>(width_); }
 
     glm::dvec3 direction(std::size_t i) const {
-        const double azimuth = kPi - pixel_width() * (static_cast<double>(i % width_) + 0.5);
+        const double azimuth =
+            kPi - pixel_width() * (static_cast<double>(i % width_) + 0.5) + picture_.rotation_rad;
         const auto [low, high] = edges(i / width_);
         const double elevation = 0.5 * (low + high);
         return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
@@ -291,7 +293,7 @@ class HeldRows {
     glm::dvec3 interpolated(glm::dvec3 to) const {
         const double azimuth = to.x == 0.0 && to.y == 0.0 ? 0.0 : std::atan2(to.y, to.x);
         const double y = (0.5 * kPi - std::asin(std::clamp(to.z, 0.0, 1.0))) / picture_.pixel_height() - 0.5;
-        const double x = (kPi - azimuth) / picture_.pixel_width() - 0.5;
+        const double x = (kPi - azimuth + picture_.rotation_rad()) / picture_.pixel_width() - 0.5;
         const double row = std::floor(y);
         const double half_turn = 0.5 * static_cast<double>(picture_.width());
         // Beyond the zenith the top row continues on the opposite side.

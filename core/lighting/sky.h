@@ -61,6 +61,7 @@ struct LatLongRows {
     int width = 0, height = 0;
     int rows_in_piece =
         1;  // rows are stored in pieces of this many, from the top: a piece is read as a whole
+    double rotation_rad = 0.0;  // the middle column's azimuth
     // Rows from the first one on, as many as there are pixels for. Called from several threads.
     std::function<void(int first_row, std::span<glm::vec3> radiance)> read;
 };

@@ -452,7 +452,19 @@ void add_light_and_water(Built& out) {
              .unit = "km",
              .range = limits::kVisibility_km,
              .soft = SoftRange{1.0, 200.0, true},
-             .key_parts = kLight}));
+             .key_parts = kLight}),
+        row<&Light::sky_rotation_deg>(
+            {.name = "sky_rotation_deg",
+             .help = "turns a picture of a sky and its sun, counter-clockwise from above",
+             .unit = "degrees",
+             .range = limits::kAngle_deg,
+             .soft = kTurn,
+             .key_parts = kLight}),
+        row<&Light::sky_gain>({.name = "sky_gain",
+                               .help = "multiplies the radiance of a picture of a sky and its sun",
+                               .range = limits::kSkyGain,
+                               .soft = SoftRange{0.01, 100.0, true},
+                               .key_parts = kLight}));
     add_table<&Scene::water>(
         out.tables, out.keys, {"water", "the water body", {}, {}},
         row<&Water::type>({.name = "type",

@@ -460,6 +460,14 @@ void check_light(SceneChecker& check, const Light& light) {
         check.refuse({"light.sky", quoted_text(light.sky), "is neither a sky's name nor a picture",
                       "\"daylight\", or the path of a lat-long picture, an .exr"});
     }
+    if (light.sky != Light{}.sky) return;
+    const auto refuse = [&](const char* key, double value, double unused, const char* problem) {
+        if (value == unused || !check.is_good(key)) return;
+        check.refuse({key, number_text(value), std::string(problem) + ", and light.sky is \"daylight\"",
+                      number_text(unused) + ", or light.sky = \"PATH.exr\""});
+    };
+    refuse("light.sky_rotation_deg", light.sky_rotation_deg, 0.0, "turns a picture of a sky");
+    refuse("light.sky_gain", light.sky_gain, 1.0, "multiplies a picture of a sky");
 }
 
 // The fit needs a regular grid, whose limit surface is a spline.

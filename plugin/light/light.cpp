@@ -1,12 +1,14 @@
 #include "plugin/light/light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <span>
 #include <stdexcept>
 #include <string_view>
 
+#include "core/base/constants.h"
 #include "core/lighting/air.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
@@ -57,8 +59,10 @@ Sky make_sky(const Scene& scene) {
         LatLongRows rows{.width = file.width(),
                          .height = file.height(),
                          .rows_in_piece = file.rows_in_piece(),
+                         .rotation_rad = std::remainder(light.sky_rotation_deg, 360.0) * kPi / 180.0,
                          .read = [&](int first_row, std::span<glm::vec3> radiance) {
                              file.read(first_row, {&radiance.data()->x, 3 * radiance.size()});
+                             for (glm::vec3& value : radiance) value *= static_cast<float>(light.sky_gain);
                          }};
         Sky sky = picture_sky(rows);
         if (light.visibility_km) sky.air = picture_air(sky.map, 1e3 * *light.visibility_km);

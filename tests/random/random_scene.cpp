@@ -381,6 +381,8 @@ class Drawing {
         fit_trains();
         fit_camera();
         fit_output();
+        if (!is("light.sky", std::string(kSkyName)))
+            for (const char* key : {"light.sky_rotation_deg", "light.sky_gain"}) leave_out(key);
         mend();
     }
 

@@ -174,6 +174,8 @@ struct Light {
     std::string sky = "daylight";
     double turbidity = 2.0;  // of the daylight: 1.7 … 10, haze; 2 is the open sea's, 3 land's
     std::optional<double> visibility_km{};  // of the air under a picture's sky; without: clear
+    double sky_rotation_deg = 0.0;          // of a picture's sky with its sun, counter-clockwise from above
+    double sky_gain = 1.0;                  // ≥ 0, times a picture's radiance
 };
 
 // [water]

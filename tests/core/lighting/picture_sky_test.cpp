@@ -173,6 +173,38 @@ TEST(PictureSky, TheSunIsFoundAndCountedOnce) {
         }
 }
 
+// As if it had been painted so; also by a part of a pixel.
+TEST(PictureSky, ATurnedPictureTurnsWithItsSun) {
+    const auto of = [](double azimuth_deg, double rotation_deg) {
+        const glm::dvec3 sun = towards_deg(30.0, azimuth_deg);
+        const LatLong picture = painted(
+            512, 256, [&](glm::dvec3 d) { return sunny_sky(d, sun); },
+            [&](glm::dvec3 d) { return glm::dot(d, sun) > 0.998 ? 24 : 1; });
+        const auto read = [&](int first_row, std::span<glm::vec3> radiance) {
+            std::copy_n(picture.radiance.begin() + first_row * 512, radiance.size(), radiance.begin());
+        };
+        return picture_sky(
+            {.width = 512, .height = 256, .rotation_rad = rotation_deg * kDegreeOfPicture, .read = read},
+            128);
+    };
+    const Sky plain = of(170.0, 0.0);
+    for (const double turn_deg : {45.0, -100.2, 179.9}) {
+        const Sky turned = of(170.0, turn_deg);
+        const glm::dvec3 sun = towards_deg(30.0, 170.0 + turn_deg);
+        EXPECT_LT(glm::length(glm::dvec3(turned.sun_direction) - sun), 5e-3) << turn_deg;
+        EXPECT_NEAR(turned.sun_irradiance.x / plain.sun_irradiance.x, 1.0f, 1e-4f) << turn_deg;
+        EXPECT_NEAR(turned.sky_irradiance.x / plain.sky_irradiance.x, 1.0f, 1e-3f) << turn_deg;
+        for (const double beside_deg : {8.0, -60.0, 120.0}) {
+            const auto at = [&](const Sky& sky, double azimuth_deg) {
+                return sky.map.radiance(sky_map_place(glm::vec3(towards_deg(35.0, azimuth_deg))), 1.0f).x;
+            };
+            EXPECT_NEAR(at(turned, 170.0 + turn_deg + beside_deg) / at(plain, 170.0 + beside_deg), 1.0f,
+                        0.02f)
+                << turn_deg << ' ' << beside_deg;
+        }
+    }
+}
+
 TEST(PictureSky, ABrightCloudIsNoSun) {
     const glm::dvec3 middle = towards_deg(40.0, 10.0);
     const auto clouds = [&](glm::dvec3 d) {

@@ -173,6 +173,15 @@ TEST(Validate, FramesSeedAndLoop) {
         s.shot.fps = 24000.0 / 1001.0;
         s.shot.loop_s = 4.170833;
     });
+    expect_refused([](Scene& s) { s.light.sky_rotation_deg = 20.0; },
+                   {"light.sky_rotation_deg", "20", "0, or light.sky = \"PATH.exr\""});
+    expect_refused([](Scene& s) { s.light.sky_gain = 2.0; },
+                   {"light.sky_gain", "2", "1, or light.sky = \"PATH.exr\""});
+    expect_good([](Scene& s) {
+        s.light.sky = "noon.exr";
+        s.light.sky_rotation_deg = -200.0;
+        s.light.sky_gain = 0.5;
+    });
     expect_refused([](Scene& s) { s.shot.loop_s = 1.01; }, {"shot.loop_s", "1.01", "nearest: 1"});
     // Less than a frame isn't no frames: the nearest loop is one frame long.
     expect_refused([](Scene& s) { s.shot.loop_s = 1e-6; }, {"shot.loop_s", "1e-6", "nearest: 0.0416"});

@@ -167,8 +167,8 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
         EXPECT_EQ(shot_text(read), text);
     }
     for (const Key& key : keys()) {
-        const bool has_one_text = key.path == "light.sky";
-        const bool can_change = key.set && !has_one_text;
+        // A sky's picture is no file here, and what turns and scales one is refused without it.
+        const bool can_change = key.set && !key.path.starts_with("light.sky");
         EXPECT_EQ(changed.contains(key.path), can_change) << key.path;
     }
 }

@@ -22,7 +22,7 @@ GERMAN = {
     # Keys
     "Seed": "Startwert", "Loop": "Schleife", "Time scale": "Zeitmaßstab", "Time offset": "Zeitversatz",
     "Wind speed": "Windgeschwindigkeit", "Wind direction": "Windrichtung", "Fetch": "Streichlänge", "Depth": "Wassertiefe",
-    "Spectrum": "Spektrum", "Growth": "Wachstum", "Height and peak": "Höhe und Spektralgipfel", "Short waves": "Kurze Wellen", "Significant height": "Signifikante Wellenhöhe",
+    "Spectrum": "Spektrum", "Growth": "Wachstum", "Sky rotation": "Himmelsdrehung", "Sky gain": "Himmelsverstärkung", "Height and peak": "Höhe und Spektralgipfel", "Short waves": "Kurze Wellen", "Significant height": "Signifikante Wellenhöhe",
     "Spreading": "Richtungsverteilung", "Directionality": "Richtungsbündelung", "Gust strength": "Böenstärke",
     "Gust size": "Böengröße", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
     "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",

@@ -29,9 +29,8 @@ def _with_tables_of(other, scene):
 
 def _says(preset):
     """What it looks like, and which settings or tables of settings it changes."""
-    tables = dict.fromkeys(path.split(".")[0] for path in preset["values"])
-    changed = tables if len(tables) > 1 else [BY_PATH[path].key["label"].lower() for path in preset["values"]]
-    return f"{preset['help'][:1].upper()}{preset['help'][1:]}. Sets {', '.join(changed)}"
+    tables = dict.fromkeys(path.split(".")[0] for path in preset["values"] if path in BY_PATH)  # the camera is Blender's
+    return f"{preset['help'][:1].upper()}{preset['help'][1:]}. Sets {', '.join(tables)}"
 
 
 class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):

@@ -33,6 +33,8 @@ constexpr double kLeastRipples = 0.5;
 constexpr double kGlittered = 3.0;
 // ω̃p ∝ ε̃^−0.3 on the way of growth (Kahma & Calkoen 1992: X̃^−0.27 and X̃^0.9).
 constexpr double kPeakByEnergy = growth::kPeakExponent / growth::kEnergyExponent;
+// A sea of next to no height has its peak no further up than this [rad/m], 10 cm: waves begin as ripples.
+constexpr double kShortestPeak = 60.0;
 // Elfouhaily's sea is given from full development to this inverse wave age (Eq. 3).
 constexpr double kOldest = 0.84, kYoungest = 5.0;
 
@@ -232,7 +234,10 @@ std::vector<WaveSystem> WaveSystem::sea(const SeaState& sea, const Dispersion& d
         wanted = m0_of(*sea.significant_height_m);
         if (!is_by_height && wanted > 0.0 && own > 0.0) {
             // A sea of another height is one of another age. Its ripples and its longer waves have two numbers to hold.
-            systems = with_short_waves(sea, aged(energy, std::pow(wanted / own, -kPeakByEnergy)), dispersion);
+            const double youngest =
+                std::sqrt(std::max(1.0, kShortestPeak / pelagic::peak_wavenumber(energy, dispersion)));
+            const double ratio = std::min(std::pow(wanted / own, -kPeakByEnergy), youngest);
+            systems = with_short_waves(sea, aged(energy, ratio), dispersion);
             std::tie(m0, mss) = totals();
             if (!is_theirs && mss[1] > 0.0)
                 ripples = bounded((m0[0] * glitter - mss[0] * wanted) / (m0[0] * mss[1] - mss[0] * m0[1]));

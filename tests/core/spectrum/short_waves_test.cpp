@@ -148,11 +148,12 @@ TEST(ShortWaves, AreElfouhailysOwnWhereTheSeaIs) {
 TEST(Height, IsTheOneAskedForWhateverTheSpectrum) {
     for (const SpectrumKind kind : every_spectrum())
         for (const ShortWaves short_waves : {ShortWaves::Elfouhaily, ShortWaves::None})
-            for (double height : {0.0, 1e-3, 0.2, 3.0}) {
+            for (double height : {0.0, 1e-12, 1e-6, 1e-3, 0.2, 3.0}) {
                 SeaState state = short_sea(kind);
                 state.short_waves = short_waves;
                 state.significant_height_m = height;
-                EXPECT_NEAR(height_m(state), height, 1e-6 * height) << static_cast<int>(kind);
+                EXPECT_NEAR(height_m(state), height, 1e-6 * height)
+                    << static_cast<int>(kind) << ", " << height;
                 // Swell comes on top.
                 state.swell = {{1.0, 12.0, 0.0}};
                 EXPECT_NEAR(height_m(state), std::hypot(height, 1.0), 1e-6);

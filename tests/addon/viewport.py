@@ -263,7 +263,6 @@ def steps():
 
     with checking("orthographic views and views through the camera are drawn"):
         region_3d = space.region_3d
-        obj.pelagic.light.turbidity = 3.0  # in clear air the horizon is fainter
         region_3d.view_perspective, region_3d.view_distance = "ORTHO", 60.0
         region_3d.view_rotation = (1, 0, 0, 0)
         region_3d.view_location = (0, 0, 0)
@@ -278,7 +277,8 @@ def steps():
         horizon_in_frame = world_to_camera_view(scene, camera, Vector((0, 1e6, 0))).y
         assert 0.3 < horizon_in_frame < 0.95
         row = place_of((0, 1e6, 0))[0]
-        assert change_of(through[row - 12:row - 6], through[row + 6:row + 12]).mean() > 0.05, "the horizon isn't where it should be"
+        sky = through[row + 6:row + 12]
+        assert change_of(through[row - 12:row - 6], sky).mean() > 0.15 * sky.mean(), "the horizon isn't where it should be"
         look(-4.0, 12.0)
 
     with checking("two views at once: they come to rest, also where foam lives"):

@@ -25,6 +25,7 @@ vec3 oklab_of(vec3 colour) {
                       dot(vec3(0.2119034982f, 0.6806995451f, 0.1073969566f), colour),
                       dot(vec3(0.0883024619f, 0.2817188376f, 0.6299787005f), colour));
     vec3 felt = pow(cones, vec3(1.0f / 3.0f));
+    felt -= (felt * felt * felt - cones) / (3.0f * felt * felt);  // drivers' powers have few digits
     return vec3(dot(vec3(0.2104542553f, 0.7936177850f, -0.0040720468f), felt),
                 dot(vec3(1.9779984951f, -2.4285922050f, 0.4505937099f), felt),
                 dot(vec3(0.0259040371f, 0.7827717662f, -0.8086757660f), felt));

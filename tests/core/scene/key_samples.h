@@ -47,7 +47,10 @@ inline KeyValue another_value(const Key& key, const KeyValue& now) {
         }
         KeyValue operator()(std::monostate) const { return key.range->low; }
         KeyValue operator()(bool truth) const { return !truth; }
-        KeyValue operator()(std::int64_t integer) const { return integer + (integer < 8 ? 1 : -2); }
+        KeyValue operator()(std::int64_t integer) const {
+            const std::int64_t up = integer + (integer < 8 ? 1 : -2);
+            return key.range && !key.range->holds(static_cast<double>(up)) ? integer - 1 : up;
+        }
         KeyValue operator()(double value) const {
             // Depth may be infinite.
             return value > 1e300 ? KeyValue(key.range->high) : KeyValue(moved(value));

@@ -20,13 +20,15 @@ namespace {
 const std::filesystem::path kKeysData =
     std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/format/shot/data";
 
-// Keys of wave trains mean nothing without them.
+// Keys of wave trains mean nothing without them, nor do those of a sky's picture.
 std::string shot_with(const Key& key, const std::string& value) {
     const bool of_trains =
         key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
     // Waves of any height need a wind that makes them long.
     const bool is_height = key.path == "sea.significant_height_m";
-    return std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
+    const bool of_picture = key.path == "light.sky_rotation_deg" || key.path == "light.sky_gain";
+    return std::string(of_picture ? "light.sky = \"sky.exr\"\n" : "") +
+           std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
            (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
            '\n';
 }

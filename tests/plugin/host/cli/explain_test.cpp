@@ -187,8 +187,8 @@ TEST_F(Explain, RefusesWhereThisProcessGetsNoMemory) {
 // 60 trains from 100 m to 1 m: one every 7.4 %, in the middle of its bin. A mesh with cells of 0.78 m shows
 // waves from 1.5625 m: ln(100/1.5625)/ln(100) of 60 are 54.2 bins, so 54 trains are longer.
 TEST_F(Explain, SaysThatTrainsAreNotTransformed) {
-    const Ended ended =
-        explain("[waves]\nmodel = \"trochoid\"\nlongest_m = 100\nshortest_m = 1\n[surface]\nsize_m = 200\n");
+    const Ended ended = explain(
+        "[waves]\nmodel = \"trochoid\"\ntrains = 60\nlongest_m = 100\nshortest_m = 1\n[surface]\nsize_m = 200\n");
     EXPECT_EQ(ended.status, 0) << ended.err;
     for (const char* part : {"60, of waves from 100 m down to 1 m", "nothing is transformed",
                              "mesh: the 54 longest are summed; 6 are below the pixel: kept as variance",

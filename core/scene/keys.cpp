@@ -42,7 +42,7 @@ void add_shot(Built& out) {
              .help =
                  "whose defaults count where the file doesn't say; one that should look the same for years names it",
              .range = limits::kEdition,
-             .key_parts = key_parts(KeyPart::Waves, KeyPart::Light)}),
+             .key_parts = key_parts(KeyPart::Choice)}),  // what follows from it are other keys' values
         row<&Shot::name>({.name = "name",
                           .help = "names the files and the stage's root prim",
                           .accepted = "a string, of letters, digits, _ and -, at most 200",

@@ -304,10 +304,11 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     EXPECT_LE(PELAGIC_COMPARE(on, water, 1e-3f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, level, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, foam, 1e-2f).worst, kBound);
-    // At a net's edge the pattern rises as the root of the distance, which makes more of the last digits.
+    // A hole's middle is a kink, which makes more of the last digits.
     EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));
-    EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-3f).worst, kBound);
+    // Bright colours go through Oklab and back: a last digit of the brightest component is more of one that is next to nothing.
+    EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-1f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, disc, 1e-3f).worst, kBound);
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renders the gallery's pictures from their shots in examples/pictures, on the CPU: the README's five, a sheet of foam near
-# and far, and a strip of eight frames a second apart. Takes some minutes.
+# and far, a strip of eight frames a second apart, and a sheet of all presets. Takes some minutes.
 #   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
@@ -31,4 +31,6 @@ for shot in foam-breeze foam-gale foam-storm; do render $shot 1-2; done
 sheet 2 foam.jpg "$scratch"/foam-{breeze,gale,storm}.000{1,2}.png
 render foam-strip 25-193x24
 sheet 4 foam-strip.jpg "$scratch"/foam-strip.*.png
-ls -l "$out"/{noon,low-sun,overcast,storm,spray,from-8-km,foam,foam-strip}.jpg
+"$PELAGIC_ROOT/build/release/pelagic" presets --sheet "$scratch/presets.png"
+sheet 1 presets.jpg "$scratch/presets.png"
+ls -l "$out"/{presets,noon,low-sun,overcast,storm,spray,from-8-km,foam,foam-strip}.jpg

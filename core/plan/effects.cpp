@@ -16,6 +16,18 @@ bool asks_for(const Plan& plan, const ProductSet& any) {
                        [&](const PlannedQuery& planned) { return (planned.query.products & any).any(); });
 }
 
+std::string about_second_order(const Plan& plan) {
+    const SecondOrder& pairs = plan.from->second_order;
+    const std::string skewness = "skewness of heights " + rough_text(pairs.skewness() * pairs.limit() *
+                                                                     plan.second_order_gain * plan.choppiness.largest());
+    for (const CascadePlan& cascade : plan.cascades)
+        if (const std::optional<SecondOrderPlan>& own = cascade.second_order)
+            return skewness + "; " + std::to_string(own->transforms()) + " complex transforms of " +
+                   std::to_string(own->resolution) + " × " + std::to_string(own->resolution) + ", from waves above " +
+                   rough_text(cascade.size_m / own->radius) + " m";
+    return skewness + ", but no output shows heights, or no cascade holds enough of the waves";
+}
+
 std::string about_whitecaps(const Plan& plan) {
     if (!asks_for(plan, foam_products())) return "no output asks for them";
     return "coverage from " + std::string(plan.knobs.third_moment ? "3" : "2") +
@@ -46,6 +58,19 @@ const std::array kEffectTable = std::to_array<EffectRow>({
          },
      .fields = horizontal_fields(),
      .plan = [](Plan& plan) { plan.choppiness = Choppiness::asked(plan.from->scene).built(); }},
+    {.effect = Effect::SecondOrder,
+     .name = "second order",
+     .is_asked_for =
+         [](const Scene& scene) {
+             return scene.waves.second_order > 0.0 && scene.waves.model == WaveModel::Fft;
+         },
+     .why_not = "waves.second_order is 0, or waves.model has none",
+     .depends_on = {Effect::HorizontalDisplacement},
+     .turn_off = [](Scene& scene) { scene.waves.second_order = 0.0; },
+     .plan = [](Plan& plan) { plan.second_order_gain = plan.from->scene.waves.second_order; },
+     .state = {"what pairs of waves add", [](const Plan& plan) { return plan.second_order_bytes(); },
+               "set waves.second_order to 0"},
+     .about = about_second_order},
     {.effect = Effect::Whitecaps,
      .name = "whitecaps",
      .is_asked_for = [](const Scene& scene) { return scene.effects.whitecaps; },

@@ -16,7 +16,7 @@ namespace pelagic {
 
 struct Plan;
 
-enum class Effect { HorizontalDisplacement, Whitecaps, LivingFoam, FoamStructure, Spray, Gusts };
+enum class Effect { HorizontalDisplacement, SecondOrder, Whitecaps, LivingFoam, FoamStructure, Spray, Gusts };
 
 // Members that aren't given: the effect has nothing of the kind.
 struct EffectRow {

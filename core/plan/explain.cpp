@@ -92,7 +92,8 @@ std::string trains_text(const Plan& plan) {
 std::string cost_text(const Plan& plan, const EffectRow& row) {
     const auto from = std::make_shared<PreparedScene>(*plan.from);
     row.turn_off(from->scene);
-    from->extent = expected_extent(from->spectrum, Choppiness::asked(from->scene));
+    if (!is_on(Effect::SecondOrder, from->scene)) from->second_order = {};
+    from->extent = extent_of(from->scene, from->spectrum, from->second_order);
     std::vector<Query> queries;
     for (const PlannedQuery& planned : plan.queries)
         queries.push_back(with_effects(from->scene, planned.query));
@@ -187,7 +188,7 @@ std::string explain(const Plan& plan) {
             page += "     nothing runs: " + cascade.why_empty + "\n";
             continue;
         }
-        const std::size_t modes = lattice_modes(cascade.grid_radius());
+        const std::size_t modes = lattice_modes(cascade.amplitude_radius());
         page +=
             format("     %zu modes, %s\n", modes,
                    bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.has_gradients()))

@@ -30,6 +30,11 @@ constexpr FieldSet velocity_fields() {
     return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 }
 
+// The surface's height, its gradient and its velocity.
+constexpr FieldSet vertical_fields() {
+    return fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ);
+}
+
 // The gradient of the horizontal displacement. The waves that break have one of their own (Plan::breaking).
 constexpr FieldSet displacement_gradient_fields() {
     return fields(Field::Dxx, Field::Dyy, Field::Dxy);

@@ -208,6 +208,31 @@ void add_grids(Plan& plan, int cascade_index) {
         cascade.why_empty = "all its waves are too short for the footprints asked for: kept as variance";
 }
 
+// The cascade that holds most of the waves has the second order of what it holds: of wavenumbers from the sizes alone, whatever
+// footprints let through.
+void add_second_order(Plan& plan) {
+    const SecondOrder& pairs = plan.from->second_order;
+    int most = 0;
+    std::optional<SecondOrderBand> band;
+    CascadePlan* holder = nullptr;
+    for (CascadePlan& cascade : plan.cascades) {
+        const SecondOrderBand own(pairs, cascade.k_lower, cascade.k_upper, cascade.size_m,
+                                  cascade.resolution / 2);
+        if (own.bins() <= most) continue;
+        most = own.bins();
+        band = own;
+        holder = &cascade;
+    }
+    if (!holder || !(holder->choppiness > 0.0)) return;
+    FieldSet shown;
+    for (const Grid& grid : holder->grids) shown |= grid.fields;
+    if ((shown & vertical_fields()).none()) return;
+    holder->second_order =
+        band->plan(pairs, plan.second_order_gain * holder->choppiness, transform_size(3 * band->radius()),
+                   shown[index(Field::VelocityZ)], plan.from->spectrum.dispersion().depth_m);
+    holder->mode_radius = std::max(holder->mode_radius, band->radius());
+}
+
 }  // namespace
 
 std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double finest_footprint_m,
@@ -376,6 +401,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
                                              ? "its waves are those of the trains"
                                              : "the spectrum has no energy in its band";
     }
+    if (plan.second_order_gain > 0.0) add_second_order(plan);
     return plan;
 }
 
@@ -455,8 +481,8 @@ bool CascadePlan::moves() const {
                        [](const Grid& grid) { return (grid.fields & velocity_fields()).any(); });
 }
 
-int CascadePlan::grid_radius() const {
-    int radius = 0;
+int CascadePlan::amplitude_radius() const {
+    int radius = second_order ? second_order->radius : 0;
     for (const Grid& grid : grids) radius = std::max(radius, grid.radius);
     return radius;
 }
@@ -476,16 +502,18 @@ int Plan::transforms_per_frame() const {
 
 long Plan::lines_per_frame() const {
     long count = 0;
-    for (const CascadePlan& cascade : cascades)
+    for (const CascadePlan& cascade : cascades) {
         for (const Grid& grid : cascade.grids)
             count += static_cast<long>(grid.fields.count()) * grid.lines_per_field();
+        if (cascade.second_order) count += cascade.second_order->lines();
+    }
     return count;
 }
 
 std::size_t Plan::sea_bytes() const {
     std::size_t bytes = trains ? trains->sea_bytes(knobs.double_precision) : 0;
     for (const CascadePlan& cascade : cascades)
-        bytes += lattice_modes(cascade.grid_radius()) *
+        bytes += lattice_modes(cascade.amplitude_radius()) *
                  sea_bytes_per_mode(knobs.double_precision, has_gradients());
     for (const PlannedQuery& planned : queries)
         if (has_ellipse_table(*this, planned.query))
@@ -498,6 +526,13 @@ std::size_t Plan::frame_bytes() const {
     for (const CascadePlan& cascade : cascades)
         for (const Grid& grid : cascade.grids)
             bytes += grid.fields.count() * grid_bytes(grid.resolution, knobs.double_precision);
+    return bytes;
+}
+
+std::size_t Plan::second_order_bytes() const {
+    std::size_t bytes = 0;
+    for (const CascadePlan& cascade : cascades)
+        if (cascade.second_order) bytes += cascade.second_order->bytes(knobs.double_precision);
     return bytes;
 }
 

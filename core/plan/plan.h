@@ -21,6 +21,7 @@
 #include "core/plan/prepared_scene.h"
 #include "core/plan/products.h"
 #include "core/plan/query.h"
+#include "core/plan/second_order.h"
 #include "core/plan/trains.h"
 #include "core/surface/projected_grid.h"
 #include "pelagic/scene.h"
@@ -67,8 +68,11 @@ struct CascadePlan {
     // Whether it has random tiling (core/plan/random_tiling.h), except for queries of a cascade's own tile.
     bool has_random_tiling = false;
 
+    std::optional<SecondOrderPlan> second_order{};  // of the one cascade that has it
+
     bool moves() const;       // whether somebody asks for velocities
-    int grid_radius() const;  // the largest of its grids': modes within it have amplitudes; 0 without grids
+    // Modes within it have amplitudes: the largest of its grids' and of its second order; 0 without grids.
+    int amplitude_radius() const;
 };
 
 // A footprint that some query uses; queries with the same footprint and sampling share it.
@@ -110,6 +114,7 @@ struct Plan {
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
     std::optional<TrainsPlan> trains;    // the second wave model; cascades then begin where its waves end
+    double second_order_gain = 0.0;
     std::optional<FoamPlan> foam;        // with persistent foam, where a query asks for any of it
     std::optional<GustsPlan> gusts;      // where the wind varies over the surface
     FieldSet dropped;                    // fields that are zero in this scene, whoever asks: never computed
@@ -127,6 +132,7 @@ struct Plan {
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;
+    std::size_t second_order_bytes() const;  // of each Frame
     // The bytes of the history of persistent foam (core/effects/foam_history.h), in expectation where a picture's
     // frame or a mesh for a camera decides which tiles are read.
     std::size_t foam_history_bytes() const;

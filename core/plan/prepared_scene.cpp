@@ -1,9 +1,11 @@
 #include "core/plan/prepared_scene.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "core/plan/effects.h"
 #include "core/scene/budget.h"
 
 namespace pelagic {
@@ -15,9 +17,22 @@ std::shared_ptr<const PreparedScene> prepare(Scene scene) {
             " isn't resolved yet: a plan takes settings, which a host chooses for a budget before it (pelagic explain "
             "says which)");
     DirectionalSpectrum spectrum(scene.sea, scene.waves.band_gains);
-    const Extent extent = expected_extent(spectrum, Choppiness::asked(scene));
+    const SecondOrder second =
+        is_on(Effect::SecondOrder, scene) ? pelagic::second_order(spectrum) : SecondOrder();
+    const Extent extent = extent_of(scene, spectrum, second);
     return std::make_shared<const PreparedScene>(
-        PreparedScene{std::move(scene), std::move(spectrum), extent});
+        PreparedScene{std::move(scene), std::move(spectrum), second, extent});
+}
+
+Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const SecondOrder& second) {
+    const Choppiness choppiness = Choppiness::asked(scene);
+    Extent extent = expected_extent(spectrum, choppiness);
+    // Of a value x deviations high, a skewness s makes one of x + s (x² − 1)/6 (Cornish and Fisher 1938).
+    const double skewness = std::abs(second.skewness()) * second.limit() * scene.waves.second_order *
+                            choppiness.largest();
+    extent.height_m *=
+        1.0 + skewness * (kExtentDeviations - 1.0 / kExtentDeviations) / 6.0;
+    return extent;
 }
 
 }  // namespace pelagic

@@ -6,6 +6,7 @@
 
 #include "core/plan/extent.h"
 #include "core/spectrum/directional_spectrum.h"
+#include "core/spectrum/second_order.h"
 #include "pelagic/scene.h"
 
 namespace pelagic {
@@ -13,8 +14,12 @@ namespace pelagic {
 struct PreparedScene {
     Scene scene;
     DirectionalSpectrum spectrum;  // of scene.sea, with the gains of scene.waves
-    Extent extent;                 // of the spectrum's waves at the scene's choppiness
+    SecondOrder second_order;      // of the spectrum; all 0 without the effect
+    Extent extent;                 // extent_of()
 };
+
+// Of a scene and what was worked out for it: of the spectrum's waves at the scene's choppiness, with crests to second order.
+Extent extent_of(const Scene&, const DirectionalSpectrum&, const SecondOrder&);
 
 // The scene must be valid (core/scene/validate.h). Some milliseconds: the spectrum's own integrals. Throws
 // std::invalid_argument for a scene with a budget (core/scene/budget.h).

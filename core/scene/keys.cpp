@@ -214,6 +214,12 @@ void add_waves(Built& out) {
              .range = limits::kChoppiness,
              .soft = SoftRange{0.0, 2.0},
              .key_parts = kWaves}),
+        row<&Waves::second_order>(
+            {.name = "second_order",
+             .help = "of what pairs of waves add to the surface, with fft: 1 is nature's, which raises the groups of high waves so "
+                     "that crests are some 10 % higher than troughs are deep; 0, as high. As the displacement, it goes with choppiness",
+             .range = limits::kSecondOrder,
+             .key_parts = kWaves}),
         entries<&Waves::cascades>(
             {.name = "cascades",
              .help = "the tiles; auto: four, from the spectrum's peak down, and none with trochoid. "

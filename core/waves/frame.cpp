@@ -56,6 +56,8 @@ long sum_of_each(const std::vector<Item>& items, Work&& work) {
 template <class T>
 struct Frame<T>::Scratch {
     Buffer<T> height_re, height_im, rate_re, rate_im, through, chop_through;  // by mode of a block
+    // With what pairs add, in a cascade that has a second order.
+    Buffer<T> full_height_re, full_height_im, full_rate_re, full_rate_im;
     Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
 };
 
@@ -100,6 +102,8 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
             grids.push_back(std::move(made));
         }
         grids_.push_back(std::move(grids));
+        if (planned.second_order)
+            second_order_.emplace(sea_, c, transform_of(transforms, planned.second_order->resolution));
         for (int mx = 0; mx < cascade.radius; mx += kBlockColumns) {
             const Block block{c, mx, std::min(kBlockColumns, cascade.radius - mx)};
             block_modes_ = std::max(block_modes_, cascade.columns[mx + block.columns] - cascade.columns[mx]);
@@ -128,6 +132,10 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     ++times_set_;
     time_s_ = t_s;
     time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
+    if (second_order_) {
+        stop_if(cancel);
+        executed_lines_ += second_order_->set(time_within_loop_s_);
+    }
     executed_lines_ +=
         sum_of_each(blocks_, [&](const Block& block) { return go_on(), transform_columns(block); });
     executed_lines_ += sum_of_each(rows_, [&](const Rows& rows) { return go_on(), transform_rows(rows); });
@@ -155,6 +163,10 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
         if (std::any_of(plan.cascades.begin(), plan.cascades.end(),
                         [](const CascadePlan& cascade) { return cascade.moves(); }))
             want({&scratch.rate_re, &scratch.rate_im}, block_modes_);
+        if (second_order_) {
+            want({&scratch.full_height_re, &scratch.full_height_im}, block_modes_);
+            if (!scratch.rate_re.empty()) want({&scratch.full_rate_re, &scratch.full_rate_im}, block_modes_);
+        }
         want({&scratch.lines}, kBlockColumns * line_values_);
         want({&scratch.line}, line_values_);  // allocated last: the check above relies on it
     }
@@ -180,6 +192,31 @@ void Frame<T>::advance(const Block& block, Scratch& at) const {
                       .rate_im = moves ? at.rate_im.data() : nullptr});
 }
 
+template <class T>
+void Frame<T>::add_second_order(const Block& block, Scratch& at) const {
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const std::size_t first = cascade.columns[block.first_mx];
+    const std::size_t count = cascade.columns[block.first_mx + block.columns] - first;
+    std::copy_n(at.height_re.data(), count, at.full_height_re.data());
+    std::copy_n(at.height_im.data(), count, at.full_height_im.data());
+    if (!at.rate_re.empty()) {
+        std::copy_n(at.rate_re.data(), count, at.full_rate_re.data());
+        std::copy_n(at.rate_im.data(), count, at.full_rate_im.data());
+    }
+    const int end = std::min(block.first_mx + block.columns, second_order_->radius());
+    for (int mx = block.first_mx; mx < end; ++mx) {
+        const PairModes<T> pairs = second_order_->column(mx);
+        const std::size_t to = cascade.middle(mx) - first - static_cast<std::size_t>(pairs.half_height);
+        for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(pairs.half_height) + 1; ++i) {
+            at.full_height_re[to + i] += pairs.height_re[i];
+            at.full_height_im[to + i] += pairs.height_im[i];
+            if (!pairs.rate_re) continue;
+            at.full_rate_re[to + i] += pairs.rate_re[i];
+            at.full_rate_im[to + i] += pairs.rate_im[i];
+        }
+    }
+}
+
 // Computes the spectrum of a block's columns at this time once. Then, for each field of each grid, writes the
 // columns' spectra, transforms them along y and scatters the results into the rows.
 template <class T>
@@ -189,6 +226,8 @@ long Frame<T>::transform_columns(const Block& block) {
     const CascadePlan& planned = plan.cascades[block.cascade];
     Scratch& at = scratch();
     advance(block, at);
+    const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
+    if (has_pairs) add_second_order(block, at);
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
     long lines = 0;
     for (std::size_t g = 0; g < planned.grids.size(); ++g) {
@@ -218,6 +257,12 @@ long Frame<T>::transform_columns(const Block& block) {
         const std::size_t stride = line_stride<T>(grid.resolution);
         for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
             if (!grid.fields[f]) continue;
+            // The horizontal displacement has no second order: where points stand at rest is chosen so.
+            const bool is_full = has_pairs && vertical_fields()[f];
+            const Buffer<T>&height_re = is_full ? at.full_height_re : at.height_re,
+                  &height_im = is_full ? at.full_height_im : at.height_im;
+            Buffer<T>&rate_re = is_full ? at.full_rate_re : at.rate_re,
+                     &rate_im = is_full ? at.full_rate_im : at.rate_im;
             for (int column = 0; column < columns; ++column) {
                 const int mx = block.first_mx + column;
                 const std::size_t m = middle(column);
@@ -226,10 +271,10 @@ long Frame<T>::transform_columns(const Block& block) {
                                .n = grid.resolution,
                                .kx = static_cast<T>(mx) * step,
                                .step = step,
-                               .height_re = at.height_re.data() + m,
-                               .height_im = at.height_im.data() + m,
-                               .rate_re = from(at.rate_re, m),
-                               .rate_im = from(at.rate_im, m),
+                               .height_re = height_re.data() + m,
+                               .height_im = height_im.data() + m,
+                               .rate_re = from(rate_re, m),
+                               .rate_im = from(rate_im, m),
                                .through = at.through.data() + m,
                                .chop_through = from(at.chop_through, m),
                                .line_re = at.line.data(),

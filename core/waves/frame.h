@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/buffer.h"
@@ -11,6 +12,7 @@
 #include "core/scene/limits.h"
 #include "core/waves/kernels.h"
 #include "core/waves/realisation.h"
+#include "core/waves/second_order.h"
 #include "core/waves/sea.h"
 #include "core/waves/transform.h"
 
@@ -82,6 +84,8 @@ class Frame {
 
     Scratch& scratch() const;  // of the calling thread
     void advance(const Block&, Scratch&) const;
+    // Adds what pairs of waves add to the heights and their rates, beside those of the waves themselves.
+    void add_second_order(const Block&, Scratch&) const;
     // Both return the number of 1-D transforms.
     long transform_columns(const Block&);
     long transform_rows(const Rows&);
@@ -89,6 +93,7 @@ class Frame {
     std::shared_ptr<const Sea<T>> sea_;
     Kernels<T> kernels_;
     std::vector<std::vector<GridState>> grids_;  // by cascade
+    std::optional<SecondOrderWaves<T>> second_order_;
     std::vector<Block> blocks_;                  // largest first, so that the threads end together
     std::vector<Rows> rows_;
     std::size_t block_modes_ = 0, line_values_ = 0;  // sizes of a scratch's buffers

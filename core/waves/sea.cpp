@@ -66,7 +66,7 @@ template <class T>
 Cascade<T> empty_cascade(const CascadePlan& planned, bool has_gradients) {
     Cascade<T> cascade;
     cascade.size_m = planned.size_m;
-    cascade.radius = planned.grid_radius();
+    cascade.radius = planned.amplitude_radius();
     for (int mx = 0; mx < cascade.radius; ++mx) {
         if (mx == 0) cascade.columns.push_back(0);
         cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));

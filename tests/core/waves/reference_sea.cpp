@@ -30,7 +30,7 @@ ReferenceSea reference_sea(const Plan& plan) {
     }
     for (std::size_t c = 0; c < plan.cascades.size(); ++c) {
         const CascadePlan& planned = plan.cascades[c];
-        const int radius = planned.grid_radius(), columns = planned.mode_radius;
+        const int radius = planned.amplitude_radius(), columns = planned.mode_radius;
         std::vector<std::size_t> middle(radius);
         std::size_t count = 0;
         for (int mx = 0; mx < radius; ++mx) {

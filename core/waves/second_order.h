@@ -1,0 +1,57 @@
+// What pairs of waves add to a cascade's modes at one time (core/plan/second_order.h).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/base/buffer.h"
+#include "core/plan/second_order.h"
+#include "core/waves/sea.h"
+#include "core/waves/transform.h"
+
+namespace pelagic {
+
+// Of a column of modes, from my = −H up. Null rates: nobody asks for velocities.
+template <class T>
+struct PairModes {
+    int half_height = 0;
+    const T *height_re = nullptr, *height_im = nullptr;  // [m]
+    const T *rate_re = nullptr, *rate_im = nullptr;      // [m/s]
+};
+
+template <class T>
+class SecondOrderWaves {
+  public:
+    // Of a cascade whose plan has a second order; `transform` is of its resolution.
+    SecondOrderWaves(std::shared_ptr<const Sea<T>> sea, int cascade, LineTransform<T> transform);
+
+    // The same bits on any number of threads. Returns how many lines it transformed: SecondOrderPlan::lines().
+    long set(double time_within_loop_s);
+
+    int cascade() const { return cascade_; }
+    int radius() const { return plan().radius; }
+    PairModes<T> column(int mx) const;  // 0 ≤ mx < radius()
+
+  private:
+    // The sums F, F_x, F_y and G, and their rates behind them: N rows of columns −R < mx < R, real and imaginary parts apart.
+    struct Plane {
+        Buffer<T> re, im;
+    };
+
+    const SecondOrderPlan& plan() const { return *sea_->plan().cascades[cascade_].second_order; }
+    std::size_t columns() const { return 2 * static_cast<std::size_t>(radius()) - 1; }
+    void sum_columns(int first_mx, int end_mx, double time_s);
+    void pair_rows(int first_y, int end_y);
+    void take_columns(int first_mx, int end_mx);
+
+    std::shared_ptr<const Sea<T>> sea_;
+    int cascade_;
+    LineTransform<T> transform_;
+    std::vector<Plane> planes_;  // by sum
+    Plane pairs_;                // z₂, and as its imaginary part ∂z₂/∂t, by column as above
+    std::vector<std::size_t> first_;  // of each column's modes
+    std::vector<T> height_re_, height_im_, rate_re_, rate_im_;
+};
+
+}  // namespace pelagic

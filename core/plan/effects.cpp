@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "core/scene/text.h"
@@ -57,7 +58,12 @@ const std::array kEffectTable = std::to_array<EffectRow>({
              for (CascadeSize& cascade : scene.waves.cascades) cascade.choppiness.reset();
          },
      .fields = horizontal_fields(),
-     .plan = [](Plan& plan) { plan.choppiness = Choppiness::asked(plan.from->scene).built(); }},
+     .plan =
+         [](Plan& plan) {
+             const Waves& waves = plan.from->scene.waves;
+             plan.choppiness = Choppiness::asked(plan.from->scene).built();
+             if (waves.model == WaveModel::Fft) plan.lean_rad = waves.lean_deg * kPi / 180.0;
+         }},
     {.effect = Effect::SecondOrder,
      .name = "second order",
      .is_asked_for =

@@ -10,6 +10,7 @@ namespace pelagic {
 std::span<const EditionChange> edition_changes() {
     static const std::vector<EditionChange> all{
         {2, "sea.growth", std::string(word_of(GrowthLaw::Height))},
+        {2, "waves.lean_deg", 0.0},
         {2, "waves.second_order", 0.0},
         {2, "waves.trains", std::int64_t{60}},
         {2, "light.turbidity", 3.0},

@@ -214,6 +214,14 @@ void add_waves(Built& out) {
              .range = limits::kChoppiness,
              .soft = SoftRange{0.0, 2.0},
              .key_parts = kWaves}),
+        row<&Waves::lean_deg>(
+            {.name = "lean_deg",
+             .help = "how far the sideways displacement runs ahead of the waves in phase, with fft: fronts are steeper than backs, and "
+                     "foam breaks on them; 0 is the trochoid's symmetry",
+             .unit = "degrees",
+             .range = limits::kLean_deg,
+             .soft = SoftRange{0.0, 40.0},
+             .key_parts = kWaves}),
         row<&Waves::second_order>(
             {.name = "second_order",
              .help = "of what pairs of waves add to the surface, with fft: 1 is nature's, which raises the groups of high waves so "

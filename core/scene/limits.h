@@ -54,6 +54,7 @@ inline constexpr Range kSwellPeriod_s{0.1, 100.0};  // 1.6 cm … 16 km long in 
 inline constexpr Range kMeasuredFrequency_hz{1e-4, 100.0};
 
 inline constexpr Range kChoppiness{0.0, 10.0};  // waves fold over near 1 … 2
+inline constexpr Range kLean_deg{0.0, 60.0};
 inline constexpr Range kSecondOrder{0.0, 2.0};
 inline constexpr int kCascades = 16;
 inline constexpr Range kCascadeSize_m{0.01, 1e6};

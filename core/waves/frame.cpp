@@ -35,6 +35,10 @@ template <class T>
 T* from(Buffer<T>& buffer, std::size_t at) {
     return buffer.empty() ? nullptr : buffer.data() + at;
 }
+template <class T>
+const T* from(const Buffer<T>& buffer, std::size_t at) {
+    return buffer.empty() ? nullptr : buffer.data() + at;
+}
 
 // Calls work(item) for each item, one item per task, and returns the sum of the results.
 template <class Item, class Work>
@@ -55,9 +59,9 @@ long sum_of_each(const std::vector<Item>& items, Work&& work) {
 
 template <class T>
 struct Frame<T>::Scratch {
-    Buffer<T> height_re, height_im, rate_re, rate_im, through, chop_through;  // by mode of a block
-    // With what pairs add, in a cascade that has a second order.
-    Buffer<T> full_height_re, full_height_im, full_rate_re, full_rate_im;
+    // By mode of a block: of the waves, with what pairs of them add, and as their horizontal displacement has them.
+    Heights waves, vertical, leaning;
+    Buffer<T> through, chop_through;
     Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
 };
 
@@ -158,15 +162,17 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
         const auto want = [&](std::initializer_list<Buffer<T>*> buffers, std::size_t count) {
             for (Buffer<T>* buffer : buffers) *buffer = Buffer<T>(count);
         };
-        want({&scratch.height_re, &scratch.height_im, &scratch.through}, block_modes_);
+        want({&scratch.through}, block_modes_);
         if (plan.has_gradients()) want({&scratch.chop_through}, block_modes_);
-        if (std::any_of(plan.cascades.begin(), plan.cascades.end(),
-                        [](const CascadePlan& cascade) { return cascade.moves(); }))
-            want({&scratch.rate_re, &scratch.rate_im}, block_modes_);
-        if (second_order_) {
-            want({&scratch.full_height_re, &scratch.full_height_im}, block_modes_);
-            if (!scratch.rate_re.empty()) want({&scratch.full_rate_re, &scratch.full_rate_im}, block_modes_);
-        }
+        const bool moves = std::any_of(plan.cascades.begin(), plan.cascades.end(),
+                                       [](const CascadePlan& cascade) { return cascade.moves(); });
+        const auto want_heights = [&](Heights& heights, bool with_rates) {
+            want({&heights.re, &heights.im}, block_modes_);
+            if (with_rates) want({&heights.rate_re, &heights.rate_im}, block_modes_);
+        };
+        want_heights(scratch.waves, moves || plan.lean_rad > 0.0);
+        if (second_order_) want_heights(scratch.vertical, moves);
+        if (plan.lean_rad > 0.0) want_heights(scratch.leaning, moves);
         want({&scratch.lines}, kBlockColumns * line_values_);
         want({&scratch.line}, line_values_);  // allocated last: the check above relies on it
     }
@@ -178,7 +184,8 @@ template <class T>
 void Frame<T>::advance(const Block& block, Scratch& at) const {
     const Cascade<T>& cascade = sea_->cascades()[block.cascade];
     const std::size_t first = cascade.columns[block.first_mx];
-    const bool moves = sea_->plan().cascades[block.cascade].moves();
+    const Plan& plan = sea_->plan();
+    const bool has_rates = plan.cascades[block.cascade].moves() || plan.lean_rad > 0.0;
     kernels_.advance({.forward_re = cascade.forward_re.data() + first,
                       .forward_im = cascade.forward_im.data() + first,
                       .backward_re = cascade.backward_re.data() + first,
@@ -186,10 +193,10 @@ void Frame<T>::advance(const Block& block, Scratch& at) const {
                       .cycles_per_s = cascade.cycles_per_s.data() + first,
                       .time_s = time_within_loop_s_,
                       .count = cascade.columns[block.first_mx + block.columns] - first,
-                      .height_re = at.height_re.data(),
-                      .height_im = at.height_im.data(),
-                      .rate_re = moves ? at.rate_re.data() : nullptr,
-                      .rate_im = moves ? at.rate_im.data() : nullptr});
+                      .height_re = at.waves.re.data(),
+                      .height_im = at.waves.im.data(),
+                      .rate_re = has_rates ? at.waves.rate_re.data() : nullptr,
+                      .rate_im = has_rates ? at.waves.rate_im.data() : nullptr});
 }
 
 template <class T>
@@ -197,23 +204,45 @@ void Frame<T>::add_second_order(const Block& block, Scratch& at) const {
     const Cascade<T>& cascade = sea_->cascades()[block.cascade];
     const std::size_t first = cascade.columns[block.first_mx];
     const std::size_t count = cascade.columns[block.first_mx + block.columns] - first;
-    std::copy_n(at.height_re.data(), count, at.full_height_re.data());
-    std::copy_n(at.height_im.data(), count, at.full_height_im.data());
-    if (!at.rate_re.empty()) {
-        std::copy_n(at.rate_re.data(), count, at.full_rate_re.data());
-        std::copy_n(at.rate_im.data(), count, at.full_rate_im.data());
+    const bool has_rates = !at.vertical.rate_re.empty();
+    std::copy_n(at.waves.re.data(), count, at.vertical.re.data());
+    std::copy_n(at.waves.im.data(), count, at.vertical.im.data());
+    if (has_rates) {
+        std::copy_n(at.waves.rate_re.data(), count, at.vertical.rate_re.data());
+        std::copy_n(at.waves.rate_im.data(), count, at.vertical.rate_im.data());
     }
     const int end = std::min(block.first_mx + block.columns, second_order_->radius());
     for (int mx = block.first_mx; mx < end; ++mx) {
         const PairModes<T> pairs = second_order_->column(mx);
         const std::size_t to = cascade.middle(mx) - first - static_cast<std::size_t>(pairs.half_height);
         for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(pairs.half_height) + 1; ++i) {
-            at.full_height_re[to + i] += pairs.height_re[i];
-            at.full_height_im[to + i] += pairs.height_im[i];
+            at.vertical.re[to + i] += pairs.height_re[i];
+            at.vertical.im[to + i] += pairs.height_im[i];
             if (!pairs.rate_re) continue;
-            at.full_rate_re[to + i] += pairs.rate_re[i];
-            at.full_rate_im[to + i] += pairs.rate_im[i];
+            at.vertical.rate_re[to + i] += pairs.rate_re[i];
+            at.vertical.rate_im[to + i] += pairs.rate_im[i];
         }
+    }
+}
+
+// A wave's rate over its frequency is the wave a quarter of a period later, whichever way it goes.
+template <class T>
+void Frame<T>::lean(const Block& block, Scratch& at) const {
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const std::size_t first = cascade.columns[block.first_mx];
+    const std::size_t count = cascade.columns[block.first_mx + block.columns] - first;
+    const T cosine = static_cast<T>(std::cos(sea_->plan().lean_rad)),
+            sine = static_cast<T>(std::sin(sea_->plan().lean_rad));
+    const Heights& from = at.waves;
+    Heights& to = at.leaning;
+    for (std::size_t i = 0; i < count; ++i) {
+        const T omega = static_cast<T>(kTwoPi * cascade.cycles_per_s[first + i]);
+        const T later = omega > T(0) ? sine / omega : T(0);  // (0, 0) is no wave
+        to.re[i] = cosine * from.re[i] + later * from.rate_re[i];
+        to.im[i] = cosine * from.im[i] + later * from.rate_im[i];
+        if (to.rate_re.empty()) continue;
+        to.rate_re[i] = cosine * from.rate_re[i] - sine * omega * from.re[i];
+        to.rate_im[i] = cosine * from.rate_im[i] - sine * omega * from.im[i];
     }
 }
 
@@ -228,6 +257,8 @@ long Frame<T>::transform_columns(const Block& block) {
     advance(block, at);
     const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
     if (has_pairs) add_second_order(block, at);
+    const bool leans = plan.lean_rad > 0.0;
+    if (leans) lean(block, at);
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
     long lines = 0;
     for (std::size_t g = 0; g < planned.grids.size(); ++g) {
@@ -258,11 +289,9 @@ long Frame<T>::transform_columns(const Block& block) {
         for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
             if (!grid.fields[f]) continue;
             // The horizontal displacement has no second order: where points stand at rest is chosen so.
-            const bool is_full = has_pairs && vertical_fields()[f];
-            const Buffer<T>&height_re = is_full ? at.full_height_re : at.height_re,
-                  &height_im = is_full ? at.full_height_im : at.height_im;
-            Buffer<T>&rate_re = is_full ? at.full_rate_re : at.rate_re,
-                     &rate_im = is_full ? at.full_rate_im : at.rate_im;
+            const Heights& heights = has_pairs && vertical_fields()[f] ? at.vertical
+                                     : leans && horizontal_fields()[f] ? at.leaning
+                                                                       : at.waves;
             for (int column = 0; column < columns; ++column) {
                 const int mx = block.first_mx + column;
                 const std::size_t m = middle(column);
@@ -271,10 +300,10 @@ long Frame<T>::transform_columns(const Block& block) {
                                .n = grid.resolution,
                                .kx = static_cast<T>(mx) * step,
                                .step = step,
-                               .height_re = height_re.data() + m,
-                               .height_im = height_im.data() + m,
-                               .rate_re = from(rate_re, m),
-                               .rate_im = from(rate_im, m),
+                               .height_re = heights.re.data() + m,
+                               .height_im = heights.im.data() + m,
+                               .rate_re = from(heights.rate_re, m),
+                               .rate_im = from(heights.rate_im, m),
                                .through = at.through.data() + m,
                                .chop_through = from(at.chop_through, m),
                                .line_re = at.line.data(),
@@ -351,8 +380,8 @@ Realisation Frame<T>::realisation(int query, const Footprints& footprints) const
             // Column mx = 0 stores my and −my, which are conjugates: count one half.
             const std::size_t first = mx == 0 ? cascade.middle(0) : cascade.columns[mx];
             const std::size_t local = first - cascade.columns[block.first_mx];
-            kernels_.realise({.height_re = at.height_re.data() + local,
-                              .height_im = at.height_im.data() + local,
+            kernels_.realise({.height_re = at.waves.re.data() + local,
+                              .height_im = at.waves.im.data() + local,
                               .forward_re = cascade.forward_re.data() + first,
                               .forward_im = cascade.forward_im.data() + first,
                               .backward_re = cascade.backward_re.data() + first,

@@ -79,6 +79,9 @@ class Frame {
         Field field;
         int first, count;
     };
+    struct Heights {
+        Buffer<T> re, im, rate_re, rate_im;  // [m], [m/s]; no rates where nobody needs them
+    };
     struct Scratch;    // of one thread
     struct Scratches;  // of all
 
@@ -86,6 +89,8 @@ class Frame {
     void advance(const Block&, Scratch&) const;
     // Adds what pairs of waves add to the heights and their rates, beside those of the waves themselves.
     void add_second_order(const Block&, Scratch&) const;
+    // Turns their phases by Plan::lean_rad for the horizontal displacement.
+    void lean(const Block&, Scratch&) const;
     // Both return the number of 1-D transforms.
     long transform_columns(const Block&);
     long transform_rows(const Rows&);

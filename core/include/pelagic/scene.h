@@ -122,6 +122,8 @@ struct CascadeSize {
 struct Waves {
     WaveModel model = WaveModel::Fft;
     double choppiness = 1.0;  // λ ≥ 0
+    // With WaveModel::Fft: how far in phase the displacement runs ahead of the waves.
+    double lean_deg = 15.0;  // 0 … 60
     // With WaveModel::Fft: what pairs of waves add (core/spectrum/second_order.h), times this.
     double second_order = 1.0;  // 0 … 2
     // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the

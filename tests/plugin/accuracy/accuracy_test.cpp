@@ -127,8 +127,8 @@ std::vector<std::string> settings_of(const std::string& row) {
 
 // What is on in the shot, and nothing else, is taken away or added; the tables say what that is.
 TEST(Accuracy, EffectsAreThoseThatAreOn) {
-    const std::vector<std::string> effects{"horizontal displacement", "whitecaps", "living foam",
-                                           "foam structure"},
+    const std::vector<std::string> effects{"horizontal displacement", "second order", "whitecaps",
+                                           "living foam", "foam structure"},
         light{"air", "multiple reflections", "sky by nine lookups"};
     std::vector<std::string> taken{kWholeShot, kShotAgain}, added{"waves alone"},
         of_bake{kWholeShot, kShotAgain};
@@ -143,7 +143,7 @@ TEST(Accuracy, EffectsAreThoseThatAreOn) {
     EXPECT_EQ(settings_of("picture-steps"), added);
     // The structure of foam is no matter of a bake.
     for (const char* name : {"mesh normal", "mesh velocity", "mesh slope-variance", "mesh whitecaps",
-                             "horizontal displacement", "whitecaps", "living foam"})
+                             "horizontal displacement", "second order", "whitecaps", "living foam"})
         of_bake.push_back(kWithout + std::string(name));
     of_bake.emplace_back(kBareShot);
     EXPECT_EQ(settings_of("bake-effects"), of_bake);

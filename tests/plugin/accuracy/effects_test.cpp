@@ -28,6 +28,7 @@ Scene without_effects() {
     scene.camera.resolution = {24, 14};
     scene.output.maps = {MapKind::Displacement, MapKind::Normal};
     scene.output.map_resolution = 16;
+    scene.waves.second_order = 0.0;
     scene.effects.whitecaps = false;
     scene.effects.foam_decay_s = 0.0;
     scene.effects.foam_structure = 0.0;
@@ -41,6 +42,7 @@ struct Switch {
 // A new effect needs its line here.
 constexpr auto kSwitches = std::to_array<Switch>({
     {"horizontal displacement", [](Scene& scene) { scene.waves.choppiness = 1.1; }},
+    {"second order", [](Scene& scene) { scene.waves.second_order = 1.0; }},
     {"whitecaps",
      [](Scene& scene) {
          scene.effects.whitecaps = true;

@@ -92,19 +92,21 @@ TEST(Measure, MeasuresEachItemOnce) {
         .seconds_an_item = 0.0, .least_pairs = 2, .most_pairs = 4, .progress = {}, .measured = {}};
     options.progress = [&](const MeasureProgress& now) {
         EXPECT_GE(now.item, last);
-        EXPECT_EQ(now.items, 5);
+        EXPECT_EQ(now.items, 6);
         EXPECT_GE(now.seconds_left, 0.0);
         last = now.item;
     };
     options.measured = [&](const Measured& row) { rows.push_back(row); };
     const Measured whole = measure(scene, options);
-    ASSERT_EQ(rows.size(), 5u);
+    ASSERT_EQ(rows.size(), 6u);
     EXPECT_EQ(rows[0].name, "mesh");
     EXPECT_EQ(rows[1].name, "mesh normal");
     EXPECT_EQ(rows[2].name, "horizontal displacement");
-    EXPECT_EQ(rows[3].name, "whitecaps");
+    EXPECT_EQ(rows[3].name, "second order");
+    EXPECT_EQ(rows[4].name, "whitecaps");
     for (int i = 0; i < 3; ++i) EXPECT_EQ(rows[i].pairs, 2) << rows[i].name;
-    EXPECT_EQ(rows[3].pairs, 0) << "on, but nothing asks for them";
+    EXPECT_EQ(rows[3].pairs, 0) << "on, but the tile is too small for it";
+    EXPECT_EQ(rows[4].pairs, 0) << "on, but nothing asks for them";
     EXPECT_EQ(whole.pairs, 6);
     EXPECT_GT(whole.compute.median, 0.0);
 }

@@ -81,6 +81,7 @@ TEST_F(Explain, GivesEachOutputAndEffectAPrice) {
                                             "map whitecaps",
                                             "tiles",
                                             "horizontal displacement",
+                                            "second order",
                                             "whitecaps",
                                             "foam structure",
                                             "the whole"};

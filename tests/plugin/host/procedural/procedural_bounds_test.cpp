@@ -111,7 +111,7 @@ void expect_never_left(int side, const std::vector<double>& sides_in_waves, doub
 }
 
 TEST(ProceduralBounds, AreNeverLeft) {
-    expect_never_left(64, {2.0, 0.0}, 0.2);
+    expect_never_left(24, {2.0, 0.0}, 0.2);
 }
 // As fine as each shot's camera sees it, which takes a minute.
 TEST(ProceduralBounds, OfTheFinestSeasAreNeverLeft) {

@@ -174,7 +174,7 @@ class Scene(unittest.TestCase):
     def test_effects_are_those_that_are_on(self):
         scene = small_scene()
         scene.effects.whitecaps, scene.effects.spray = False, True
-        self.assertEqual(pelagic.effects(scene), ["horizontal displacement"])
+        self.assertEqual(pelagic.effects(scene), ["horizontal displacement", "second order"])
         scene.effects.whitecaps = True
         self.assertIn("spray", pelagic.effects(scene))
 

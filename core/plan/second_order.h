@@ -23,10 +23,13 @@ struct SecondOrderPlan {
     bool moves = false;                                 // whether somebody asks for vertical velocities
 
     int sums() const { return (shallow > 0.0 ? 4 : 3) * (moves ? 2 : 1); }
-    int transforms() const { return sums() + 1; }
-    // One-dimensional transforms: along y of the columns that hold modes, along x of all rows, and back.
+    // What comes of them, and its rate: one by itself, so that nobody's heights depend on who asks for velocities.
+    int results() const { return moves ? 2 : 1; }
+    int transforms() const { return sums() + results(); }
+    // One-dimensional transforms: along y of the columns that hold modes, along x of all rows, and for real results back.
     long lines() const {
-        return static_cast<long>(transforms()) * (2L * radius - 1 + resolution);
+        return static_cast<long>(sums()) * (2L * radius - 1 + resolution) +
+               static_cast<long>(results()) * (radius + resolution);
     }
     std::size_t bytes(bool double_precision) const;  // of a frame, beside what a thread works on
 };

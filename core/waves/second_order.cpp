@@ -46,29 +46,31 @@ template <class T>
 SecondOrderWaves<T>::SecondOrderWaves(std::shared_ptr<const Sea<T>> sea, int cascade,
                                       LineTransform<T> transform)
     : sea_(std::move(sea)), cascade_(cascade), transform_(std::move(transform)) {
-    const std::size_t samples = columns() * static_cast<std::size_t>(plan().resolution);
-    const auto plane = [&] {
+    const auto plane = [&](std::size_t columns) {
+        const std::size_t samples = columns * static_cast<std::size_t>(plan().resolution);
         return Plane{Buffer<T>::uncleared(samples), Buffer<T>::uncleared(samples)};
     };
-    for (int sum = 0; sum < plan().sums(); ++sum) planes_.push_back(plane());
-    pairs_ = plane();
+    for (int sum = 0; sum < plan().sums(); ++sum) sums_.push_back(plane(columns()));
     std::size_t modes = 0;
     for (int mx = 0; mx < radius(); ++mx) {
         first_.push_back(modes);
         modes += column_length(radius(), mx);
     }
-    for (std::vector<T>* of : {&height_re_, &height_im_}) of->assign(modes, T(0));
-    if (plan().moves)
-        for (std::vector<T>* of : {&rate_re_, &rate_im_}) of->assign(modes, T(0));
+    for (int result = 0; result < plan().results(); ++result) {
+        results_.push_back(plane(static_cast<std::size_t>(radius())));
+        modes_.push_back({std::vector<T>(modes), std::vector<T>(modes)});
+    }
 }
 
 template <class T>
 PairModes<T> SecondOrderWaves<T>::column(int mx) const {
     const std::size_t at = first_[static_cast<std::size_t>(mx)];
-    const auto from = [at](const std::vector<T>& values) {
-        return values.empty() ? nullptr : values.data() + at;
-    };
-    return {half_height(radius(), mx), from(height_re_), from(height_im_), from(rate_re_), from(rate_im_)};
+    PairModes<T> modes{half_height(radius(), mx), modes_[0].re.data() + at, modes_[0].im.data() + at};
+    if (plan().moves) {
+        modes.rate_re = modes_[1].re.data() + at;
+        modes.rate_im = modes_[1].im.data() + at;
+    }
+    return modes;
 }
 
 template <class T>
@@ -148,8 +150,8 @@ void SecondOrderWaves<T>::sum_columns(int first_mx, int end_mx, double time_s) {
             }
         };
         for (int sum = 0; sum < sums; ++sum) {
-            transform(lines[sum], planes_[sum], mx);
-            if (mx > 0) transform(mirrored[sum], planes_[sum], -mx);
+            transform(lines[sum], sums_[sum], mx);
+            if (mx > 0) transform(mirrored[sum], sums_[sum], -mx);
         }
     }
 }
@@ -161,7 +163,7 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
     const int of_heights = plan().moves ? sums / 2 : sums;
     std::vector<Line<T>> lines;
     for (int sum = 0; sum < sums; ++sum) lines.emplace_back(n);
-    Line<T> pairs(n);
+    Line<T> result(n);
     const T difference = static_cast<T>(plan().difference), sum_of_two = static_cast<T>(plan().sum),
             shallow = static_cast<T>(plan().shallow);
     // By sum: of |F|², and of Re F².
@@ -174,65 +176,59 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
             line.clear();
             for (int m = 1 - r; m < r; ++m) {
                 const std::size_t at = row + static_cast<std::size_t>(m + r - 1);
-                line.re()[wrapped(m, n)] = planes_[sum].re[at];
-                line.im()[wrapped(m, n)] = planes_[sum].im[at];
+                line.re()[wrapped(m, n)] = sums_[sum].re[at];
+                line.im()[wrapped(m, n)] = sums_[sum].im[at];
             }
             transform_.execute(line.from.data(), line.to.data());
         }
-        pairs.clear();
-        // The transform back has the other sign: of the conjugate, its conjugate.
+        // The transform back has the other sign: of what is real, the conjugate.
+        const auto take = [&](Plane& plane) {
+            transform_.execute(result.from.data(), result.to.data());
+            std::copy_n(result.to_re(), r, &plane.re[static_cast<std::size_t>(y) * r]);
+            for (int m = 0; m < r; ++m) plane.im[static_cast<std::size_t>(y) * r + m] = -result.to_im()[m];
+            result.clear();
+        };
         for (int sum = 0; sum < of_heights; ++sum) {
             const T of_re = square[sum] + doubled[sum], of_im = square[sum] - doubled[sum];
             const T *re = lines[sum].to_re(), *im = lines[sum].to_im();
-            for (int x = 0; x < n; ++x) pairs.re()[x] += of_re * re[x] * re[x] + of_im * im[x] * im[x];
-            if (!plan().moves) continue;
+            for (int x = 0; x < n; ++x) result.re()[x] += of_re * re[x] * re[x] + of_im * im[x] * im[x];
+        }
+        take(results_[0]);
+        if (!plan().moves) continue;
+        for (int sum = 0; sum < of_heights; ++sum) {
+            const T of_re = square[sum] + doubled[sum], of_im = square[sum] - doubled[sum];
+            const T *re = lines[sum].to_re(), *im = lines[sum].to_im();
             const T *rate_re = lines[of_heights + sum].to_re(), *rate_im = lines[of_heights + sum].to_im();
             for (int x = 0; x < n; ++x)
-                pairs.im()[x] -= T(2) * (of_re * re[x] * rate_re[x] + of_im * im[x] * rate_im[x]);
+                result.re()[x] += T(2) * (of_re * re[x] * rate_re[x] + of_im * im[x] * rate_im[x]);
         }
-        transform_.execute(pairs.from.data(), pairs.to.data());
-        for (int m = 1 - r; m < r; ++m) {
-            const std::size_t at = row + static_cast<std::size_t>(m + r - 1);
-            pairs_.re[at] = pairs.to_re()[wrapped(m, n)];
-            pairs_.im[at] = -pairs.to_im()[wrapped(m, n)];
-        }
+        take(results_[1]);
     }
 }
 
-// From columns of places to modes. Heights are the real part of what was transformed and rates its imaginary part: what is the
-// conjugate of itself at −k, and what is that times i.
+// From columns of places to modes.
 template <class T>
 void SecondOrderWaves<T>::take_columns(int first_mx, int end_mx) {
-    const int n = plan().resolution, r = radius();
-    const T half = T(0.5) / (static_cast<T>(n) * static_cast<T>(n));
-    Line<T> line(n), mirrored(n);
-    const auto transform = [&](Line<T>& of, int column) {
-        for (int y = 0; y < n; ++y) {
-            const std::size_t at =
-                static_cast<std::size_t>(y) * columns() + static_cast<std::size_t>(column + r - 1);
-            of.re()[y] = pairs_.re[at];
-            of.im()[y] = -pairs_.im[at];
+    const int n = plan().resolution;
+    const std::size_t r = static_cast<std::size_t>(radius());
+    const T scale = T(1) / (static_cast<T>(n) * static_cast<T>(n));
+    Line<T> line(n);
+    for (int mx = first_mx; mx < end_mx; ++mx)
+        for (std::size_t result = 0; result < results_.size(); ++result) {
+            for (int y = 0; y < n; ++y) {
+                const std::size_t at = static_cast<std::size_t>(y) * r + static_cast<std::size_t>(mx);
+                line.re()[y] = results_[result].re[at];
+                line.im()[y] = -results_[result].im[at];
+            }
+            transform_.execute(line.from.data(), line.to.data());
+            const int height = half_height(radius(), mx);
+            for (int my = -height; my <= height; ++my) {
+                if (mx == 0 && my == 0) continue;  // the mean stays that of the waves themselves
+                const std::size_t to = first_[static_cast<std::size_t>(mx)] + static_cast<std::size_t>(my + height);
+                modes_[result].re[to] = scale * line.to_re()[wrapped(my, n)];
+                modes_[result].im[to] = -scale * line.to_im()[wrapped(my, n)];
+            }
         }
-        transform_.execute(of.from.data(), of.to.data());
-    };
-    for (int mx = first_mx; mx < end_mx; ++mx) {
-        transform(line, mx);
-        if (mx > 0) transform(mirrored, -mx);
-        const Line<T>& other = mx > 0 ? mirrored : line;
-        const int height = half_height(r, mx);
-        for (int my = -height; my <= height; ++my) {
-            if (mx == 0 && my == 0) continue;  // the mean stays that of the waves themselves
-            const std::size_t i = first_[static_cast<std::size_t>(mx)] + static_cast<std::size_t>(my + height);
-            const int j = wrapped(my, n), back = wrapped(-my, n);
-            const T re = line.to_re()[j], im = -line.to_im()[j];
-            const T other_re = other.to_re()[back], other_im = -other.to_im()[back];
-            height_re_[i] = half * (re + other_re);
-            height_im_[i] = half * (im - other_im);
-            if (rate_re_.empty()) continue;
-            rate_re_[i] = half * (im + other_im);
-            rate_im_[i] = half * (other_re - re);
-        }
-    }
 }
 
 template class SecondOrderWaves<float>;

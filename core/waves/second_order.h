@@ -34,9 +34,11 @@ class SecondOrderWaves {
     PairModes<T> column(int mx) const;  // 0 ≤ mx < radius()
 
   private:
-    // The sums F, F_x, F_y and G, and their rates behind them: N rows of columns −R < mx < R, real and imaginary parts apart.
     struct Plane {
         Buffer<T> re, im;
+    };
+    struct Modes {
+        std::vector<T> re, im;  // by mode of the lattice
     };
 
     const SecondOrderPlan& plan() const { return *sea_->plan().cascades[cascade_].second_order; }
@@ -48,10 +50,12 @@ class SecondOrderWaves {
     std::shared_ptr<const Sea<T>> sea_;
     int cascade_;
     LineTransform<T> transform_;
-    std::vector<Plane> planes_;  // by sum
-    Plane pairs_;                // z₂, and as its imaginary part ∂z₂/∂t, by column as above
+    // F, F_x, F_y and G, and their rates behind them: N rows of columns −R < mx < R.
+    std::vector<Plane> sums_;
+    // z₂ and ∂z₂/∂t: N rows of columns 0 ≤ mx < R, and what comes of them.
+    std::vector<Plane> results_;
+    std::vector<Modes> modes_;
     std::vector<std::size_t> first_;  // of each column's modes
-    std::vector<T> height_re_, height_im_, rate_re_, rate_im_;
 };
 
 }  // namespace pelagic

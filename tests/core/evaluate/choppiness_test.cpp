@@ -29,7 +29,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Two tiles, of waves of 9 m and more and of shorter ones, that both matter to heights and gradients.
 Scene choppy_scene(std::optional<double> large, std::optional<double> small, double shots = 1.0) {
-    Scene scene;
+    Scene scene = first_order();
     scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.sea.wind_speed_mps = 9.0;
     scene.sea.fetch_m = 20e3;

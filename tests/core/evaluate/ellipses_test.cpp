@@ -109,7 +109,7 @@ TEST(Ellipses, RoundOnesAreRoundToTheBit) {
 
 // Every mode counts with its weight in the levels times R, at any length and direction.
 TEST(Ellipses, ShowTheClosedFormOfTheirTaps) {
-    Scene scene;
+    Scene scene = first_order();
     scene.waves.cascades = {{100.0, 96}};
     scene.waves.tiling = Tiling::Periodic;  // one sum of modes
     const auto frame = frame_of<double>(scene, {levels(products(Product::Displacement))}, 2.0);

@@ -221,7 +221,12 @@ TEST(Extent, HoldsTheSeaAndNotMuchMore) {
     EXPECT_LT(reach_m, extent.reach_m);
     EXPECT_GT(reach_m, extent.reach_m / 3.0);
     EXPECT_GT(extent.reach_m, extent.height_m);
-    EXPECT_DOUBLE_EQ(extent.significant_height_m, extent.height_m * 4.0 / kExtentDeviations);
+    // Crests are higher than those of the waves alone.
+    EXPECT_GT(extent.height_m, extent.significant_height_m * kExtentDeviations / 4.0);
+    scene.waves.second_order = 0.0;
+    const Extent first = prepare(scene)->extent;
+    EXPECT_DOUBLE_EQ(first.significant_height_m, first.height_m * 4.0 / kExtentDeviations);
+    EXPECT_EQ(first.significant_height_m, extent.significant_height_m);
     EXPECT_EQ(frame.sea().extent().reach_m, extent.reach_m);
     scene.sea.wind_speed_mps = 0.0;
     EXPECT_EQ(prepare(scene)->extent.height_m, 0.0);

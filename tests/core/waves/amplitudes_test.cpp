@@ -139,7 +139,7 @@ TEST(AutomaticCascades, LoseNoEnergyBetweenBands) {
 // A height map over one tile has the variance of its realisation, Σ|h|² (Parseval), to 1e-5. Single precision
 // rounds each term by 1e-7.
 TEST(HeightMap, HasTheVarianceOfItsRealisation) {
-    Scene scene;
+    Scene scene = first_order();
     scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 130.0}};
     scene.waves.cascades = {{300.0, 128}, {60.0, 96}};
     for (double t : {0.0, 3.7}) {

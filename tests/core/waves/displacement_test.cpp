@@ -48,7 +48,7 @@ struct OneWave {
 };
 OneWave one_wave(double length_m, double depth_m, double choppiness) {
     const double k = 2.0 * kPi / length_m;
-    Scene scene;
+    Scene scene = first_order();
     scene.sea.wind_speed_mps = 0.0;
     scene.sea.depth_m = depth_m;
     scene.sea.swell = {

@@ -20,7 +20,7 @@ double omega_of(double k, double depth_m) {
 }
 
 Scene swell_alone(double length_m, double depth_m, double direction_deg) {
-    Scene scene;
+    Scene scene = first_order();
     scene.sea.wind_speed_mps = 0.0;
     scene.sea.depth_m = depth_m;
     scene.sea.swell = {{.height_m = 2.0,

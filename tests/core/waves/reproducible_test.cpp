@@ -123,7 +123,7 @@ class TransformCount : public testing::TestWithParam<Count> {};
 
 TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     const Count& c = GetParam();
-    Scene scene;
+    Scene scene = first_order();
     scene.waves.choppiness = c.choppiness;
     scene.waves.cascades = {{200.0, 64}};
     scene.waves.tiling = Tiling::Periodic;  // copies' gradient needs more (RandomTiling)

@@ -41,6 +41,13 @@ Frame<T> frame_of(const Scene& scene, const std::vector<Query>& queries, double 
     return frame_of<T>(scene, make_plan(scene, queries), t_s);
 }
 
+// A sea of what its formulas are of: each wave by itself, the displacement a quarter of a period from the height.
+inline Scene first_order(Scene scene = {}) {
+    scene.waves.second_order = 0.0;
+    scene.waves.lean_deg = 0.0;
+    return scene;
+}
+
 inline Query unfiltered(ProductSet wanted) {
     Query query;
     query.name = "points";

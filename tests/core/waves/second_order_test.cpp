@@ -163,6 +163,21 @@ TEST(Pairs, AreTheSameAtEveryResolution) {
             ASSERT_EQ(height(a, mx, my), height(b, mx, my));
 }
 
+// Lines of transforms beside those of the grids, as many as the plan says.
+TEST(Pairs, CostWhatThePlanSays) {
+    Scene scene;
+    const std::vector<Query> asked{unfiltered(products(Displacement, Velocity))};
+    const Plan plan = make_plan(scene, asked), alone = make_plan(first_order(scene), asked);
+    const SecondOrderPlan& pairs = *plan.cascades.front().second_order;
+    EXPECT_EQ(pairs.transforms(), 8);  // three sums, what comes of them, and all their rates
+    EXPECT_EQ(plan.lines_per_frame() - alone.lines_per_frame(),
+              6 * (2 * pairs.radius - 1 + pairs.resolution) + 2 * (pairs.radius + pairs.resolution));
+    auto frame = frame_of<float>(scene, plan);
+    frame.set(1.0);
+    EXPECT_EQ(frame.executed_lines(), 2 * plan.lines_per_frame());
+    EXPECT_GE(pairs.resolution, 3 * pairs.radius - 2);
+}
+
 TEST(Pairs, AreAskedForByHeightsAlone) {
     Scene scene;
     const auto has = [](const Plan& plan) {

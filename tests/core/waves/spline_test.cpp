@@ -57,7 +57,7 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
                  {QualityLevel::Final, 5e-5},
                  {QualityLevel::Reference, 5e-7}};
     for (const auto& c : cases) {
-        Scene scene;
+        Scene scene = first_order();
         scene.quality.level = c.level;
         scene.waves.cascades = {{150.0, 48}};
         scene.waves.tiling = Tiling::Periodic;
@@ -95,7 +95,7 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
 // A height map between the nodes has the variance of the realisation, too, up to the images' energy. A
 // shifted lattice that resolves every mode gives the variance of a trigonometric polynomial exactly.
 TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
-    Scene scene;
+    Scene scene = first_order();
     scene.waves.cascades = {{150.0, 48}};
     scene.waves.tiling = Tiling::Periodic;
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});

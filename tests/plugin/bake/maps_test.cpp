@@ -34,6 +34,7 @@ class BakedMaps : public ::testing::Test {
         scene_.sea.wind_speed_mps = 12.0;
         scene_.waves.cascades = {{.size_m = 600.0, .resolution = 128}};
         scene_.waves.tiling = Tiling::Periodic;  // the patch is a period
+        scene_.waves.second_order = 0.0;         // heights are those of the waves alone
         scene_.surface.size_m = 600.0;
         scene_.surface.resolution = 4;
         scene_.output.mesh = MeshFormat::None;

@@ -163,7 +163,7 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
     const int of_heights = plan().moves ? sums / 2 : sums;
     std::vector<Line<T>> lines;
     for (int sum = 0; sum < sums; ++sum) lines.emplace_back(n);
-    Line<T> result(n);
+    Line<T> added(n);
     const T difference = static_cast<T>(plan().difference), sum_of_two = static_cast<T>(plan().sum),
             shallow = static_cast<T>(plan().shallow);
     // By sum: of |F|², and of Re F².
@@ -182,7 +182,7 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
             transform_.execute(line.from.data(), line.to.data());
         }
         // The transform back has the other sign: of what is real, the conjugate.
-        const auto take = [&](Plane& plane) {
+        const auto take = [&](Line<T>& result, Plane& plane) {
             transform_.execute(result.from.data(), result.to.data());
             std::copy_n(result.to_re(), r, &plane.re[static_cast<std::size_t>(y) * r]);
             for (int m = 0; m < r; ++m) plane.im[static_cast<std::size_t>(y) * r + m] = -result.to_im()[m];
@@ -191,18 +191,18 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
         for (int sum = 0; sum < of_heights; ++sum) {
             const T of_re = square[sum] + doubled[sum], of_im = square[sum] - doubled[sum];
             const T *re = lines[sum].to_re(), *im = lines[sum].to_im();
-            for (int x = 0; x < n; ++x) result.re()[x] += of_re * re[x] * re[x] + of_im * im[x] * im[x];
+            for (int x = 0; x < n; ++x) added.re()[x] += of_re * re[x] * re[x] + of_im * im[x] * im[x];
         }
-        take(results_[0]);
+        take(added, results_[0]);
         if (!plan().moves) continue;
         for (int sum = 0; sum < of_heights; ++sum) {
             const T of_re = square[sum] + doubled[sum], of_im = square[sum] - doubled[sum];
             const T *re = lines[sum].to_re(), *im = lines[sum].to_im();
             const T *rate_re = lines[of_heights + sum].to_re(), *rate_im = lines[of_heights + sum].to_im();
             for (int x = 0; x < n; ++x)
-                result.re()[x] += T(2) * (of_re * re[x] * rate_re[x] + of_im * im[x] * rate_im[x]);
+                added.re()[x] += T(2) * (of_re * re[x] * rate_re[x] + of_im * im[x] * rate_im[x]);
         }
-        take(results_[1]);
+        take(added, results_[1]);
     }
 }
 

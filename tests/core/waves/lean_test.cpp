@@ -1,6 +1,7 @@
 // Waves that lean: their fronts are steeper than their backs, and break.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/core/waves/samples.h"
@@ -37,7 +38,7 @@ Fronts fronts_of(double lean_deg) {
             frame_of<float>(scene, {unfiltered(products(Normal, Product::JacobianMoments))}, 5.0);
         const auto at = sample(frame, 0, points);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const glm::dvec3 normal = at.vectors(Normal)[i];
+            const glm::dvec3 normal(at.vectors(Normal)[i]);
             places.push_back({at.vectors(Product::JacobianMoments)[i].x, -normal.x / normal.z});
         }
     }

@@ -90,7 +90,7 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
 TEST(Breaking, LongPixelsHideAlongTheirAxisAlone) {
     for (const SeaKind& sea : {kSeas[0], kSeas[5]}) {
         SCOPED_TRACE(sea.name);
-        const auto points = random_points<double>(400.0, 4000);
+        const auto points = random_points<double>(1200.0, 12000);
         Query query = filtered(kFoam, 0.0);
         query.pixel_m = {0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
         const auto frame = frame_of<double>(scene_of(sea), {query}, 4.0);

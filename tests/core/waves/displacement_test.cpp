@@ -16,7 +16,7 @@ TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
     for (double choppiness : {1.0, 0.02}) {
         std::vector<double> relative;
         for (int seed = 1; seed <= 8; ++seed) {
-            Scene scene;
+            Scene scene = first_order();
             scene.shot.seed = seed;
             scene.waves.choppiness = choppiness;
             scene.waves.cascades = {{600.0, 96}};

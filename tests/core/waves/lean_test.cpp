@@ -77,7 +77,7 @@ TEST(Lean, MakesFrontsSteeperAndBreaksOnThem) {
 // Of waves that travel either way, and of their pairs.
 TEST(Lean, VelocitiesAreThePositionsRates) {
     Scene scene;
-    scene.sea.directionality = 0.0;
+    scene.sea.directionality = 0.1;
     scene.waves.lean_deg = 40.0;
     scene.sea.swell = {{.height_m = 2.0, .period_s = 9.0, .direction_deg = 180.0}};
     const auto points = random_points<double>(300.0, 50);

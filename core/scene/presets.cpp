@@ -44,7 +44,7 @@ constexpr std::array<Force, 13> kForces{{
     {"Near gale", 15.5, 190.0, 1.4, {46.0, 250.0, 2.2}, {7.0, 3.0, 40.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
     {"Gale", 18.9, 240.0, 1.7, {14.0, 62.0, 2.6}, {6.0, 4.5, 38.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
     {"Strong gale", 22.6, 270.0, 2.0, {30.0, 140.0, 3.0}, {9.0, 5.5, 36.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
-    {"Storm", 26.4, 320.0, 3.2, {9.0, 100.0, 3.0}, {9.0, 7.5, 34.0}, "very high waves with overhanging crests, the sea looks white; 9 m"},
+    {"Storm", 26.4, 320.0, 3.2, {9.0, 195.0, 3.0}, {9.0, 7.5, 34.0}, "very high waves with overhanging crests, the sea looks white; 9 m"},
     {"Violent storm", 30.5, 385.0, 4.5, {26.0, 215.0, 3.0}, {11.0, 8.0, 34.0}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
     {"Hurricane", 35.0, 425.0, 7.5, {40.0, 60.0, 3.5}, {13.0, 8.0, 36.0}, "the air is full of foam, the sea white; 14 m"},
 }};

@@ -86,7 +86,7 @@ inline constexpr Range kCageLevel{0, 6};
 inline constexpr Range kCameraCoordinate_m{-1e9, 1e9};  // beyond any orbit we draw
 inline constexpr double kOnTarget_m = 1e-6;  // nearer than this, rounding decides where a camera looks
 inline constexpr Range kFov_deg{1.0, 179.0};
-inline constexpr Range kFocalLength_mm{0.1, 1e5};
+inline constexpr Range kFocalLength_mm{0.2, 2e3};  // kFov_deg before a film of 36 mm
 inline constexpr Range kSensorWidth_mm{0.1, 1e4};
 inline constexpr Range kLensShift{-2.0, 2.0};
 inline constexpr Range kFStop{0.0, 1e3};

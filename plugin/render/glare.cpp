@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <limits>
 
 #include "core/base/buffer.h"
@@ -110,10 +111,9 @@ ScatteredLight scattered_light(std::span<const glm::vec3> picture, glm::ivec2 si
     const glm::ivec2 all(fast_length(2 * size.x), fast_length(2 * size.y));
     ScatteredLight out{.size = all, .light = {}};
     out.light.assign(static_cast<std::size_t>(all.x) * all.y, glm::vec3(0.0f));
-    float strongest = 0.0f;
-    for (const glm::vec3& pixel : picture)
-        strongest = std::max({strongest, std::abs(pixel.x), std::abs(pixel.y), std::abs(pixel.z)});
-    if (!(strongest > 0.0f)) return out;
+    // Each colour's sums of millions of pixels stay in range, and its rounding is its own.
+    glm::vec3 strongest(std::numeric_limits<float>::min());
+    for (const glm::vec3& pixel : picture) strongest = glm::max(strongest, glm::abs(pixel));
 
     Transforms transforms(all);
     Plane rows(all.y, all.x), columns(all.x, all.y);
@@ -152,8 +152,8 @@ ScatteredLight scattered_light(std::span<const glm::vec3> picture, glm::ivec2 si
             if (y >= size.y) continue;
             for (int x = 0; x < size.x; ++x) {
                 const glm::vec3& pixel = picture[static_cast<std::size_t>(y) * size.x + x];
-                rows.re(y)[x] = pixel[colour] / strongest;
-                if (has_second) rows.im(y)[x] = pixel[colour + 1] / strongest;
+                rows.re(y)[x] = pixel[colour] / strongest[colour];
+                if (has_second) rows.im(y)[x] = pixel[colour + 1] / strongest[colour + 1];
             }
         }
         transforms.rows_to_columns(rows, size.y, columns);
@@ -170,8 +170,8 @@ ScatteredLight scattered_light(std::span<const glm::vec3> picture, glm::ivec2 si
             for (int x = 0; x < all.x; ++x) {
                 const int turned_x = (all.x - x) % all.x;
                 glm::vec3& to = out.light[static_cast<std::size_t>(y) * all.x + x];
-                to[colour] = rows.re(turned_y)[turned_x] * strongest;
-                if (has_second) to[colour + 1] = rows.im(turned_y)[turned_x] * strongest;
+                to[colour] = rows.re(turned_y)[turned_x] * strongest[colour];
+                if (has_second) to[colour + 1] = rows.im(turned_y)[turned_x] * strongest[colour + 1];
             }
         });
     }

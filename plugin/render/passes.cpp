@@ -31,9 +31,9 @@ glm::dvec2 on_disc(glm::dvec2 square) {
     return radius * glm::dvec2(std::cos(angle), std::sin(angle));
 }
 
-// Parts of a cell, spread by the plane's analogue of the golden section (Roberts 2018, R2).
-glm::dvec2 in_cell(int part) {
-    const glm::dvec2 p = 0.5 + static_cast<double>(part) * glm::dvec2(0.7548776662466927, 0.5698402909980532);
+// Places in a cell, spread by the plane's analogue of the golden section (Roberts 2018, R2).
+glm::dvec2 in_cell(int index) {
+    const glm::dvec2 p = 0.5 + static_cast<double>(index) * glm::dvec2(0.7548776662466927, 0.5698402909980532);
     return {p.x - std::floor(p.x), p.y - std::floor(p.y)};
 }
 
@@ -50,7 +50,7 @@ PicturePasses passes_of(const Camera& camera, int frame, const RenderOptions& op
         for (int part = 0; part < passes.parts; ++part) {
             const double moment = (stratum * passes.parts + part + 0.5) / (all * passes.parts) - 0.5;
             const int cell = stratum * jump % all;
-            const glm::dvec2 square = (glm::dvec2(cell % n, cell / n) + in_cell(part)) / static_cast<double>(n);
+            const glm::dvec2 square = (glm::dvec2(cell % n, cell / n) + in_cell(stratum * passes.parts + part)) / static_cast<double>(n);
             passes.all.push_back({.frame = frame + options.shutter_frames * moment,
                                   .lens = has_lens ? on_disc(square) : glm::dvec2(0.0),
                                   .stratum = stratum,
@@ -81,15 +81,11 @@ PixelPlace place_of(const PicturePass& pass, int parts, int samples, int frame, 
     const std::uint32_t turn = below(philox({x, y, f, ~0u}, kKey)[0], all);
     const std::uint32_t cell =
         (stratum * static_cast<std::uint32_t>(jump_of(static_cast<int>(all), 0.618)) + turn) % all;
-    const auto along = [&](std::uint32_t column, std::uint32_t bits) {
-        constexpr std::uint32_t kSubpixels = 256;
-        // Somewhere in the cell, of whose edges the left one is its own.
-        const std::uint32_t in_all = (column << 16) + (bits >> 16);
-        return static_cast<std::int16_t>(
-            static_cast<int>(std::uint64_t{in_all} * kSubpixels / (std::uint64_t{65536} * static_cast<std::uint32_t>(samples))) - 128);
+    const auto middle = [&](std::uint32_t column) {
+        return static_cast<std::int16_t>(std::lround(256.0 * (column + 0.5) / samples) - 128);
     };
-    return {.x = along(cell % static_cast<std::uint32_t>(samples), drawn[1]),
-            .y = along(cell / static_cast<std::uint32_t>(samples), drawn[2])};
+    return {.x = middle(cell % static_cast<std::uint32_t>(samples)),
+            .y = middle(cell / static_cast<std::uint32_t>(samples))};
 }
 
 }  // namespace pelagic

@@ -4,7 +4,8 @@
 // Were every pixel to take all passes, a picture would show so many ghosts of whatever moves or is out of focus.
 // There are more passes than a pixel has samples, and each pixel takes its own: one of each stratum, by a random
 // number of the pixel and the frame (a scrambled stratified sequence: Cranley and Patterson 1976, Kollig and Keller
-// 2002). So the error is noise as fine as pixels. Where in the pixel a sample lies is its own too.
+// 2002). So the error is noise as fine as pixels. Which of its places in the pixel a sample has is its own too; the places are those of
+// sharp pictures, so that what stands still and is in focus looks as there.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +38,7 @@ PicturePasses passes_of(const Camera& camera, int frame, const RenderOptions& op
 View view_of(const Camera& camera, const PicturePass& pass);
 
 // Whether the pixel takes the pass, one of the frame's, and where in itself; samples: as many a side. Each pixel takes one
-// pass of every stratum, and its places are one in each cell of samples × samples.
+// pass of every stratum, and its places are the middles of samples × samples cells.
 PixelPlace place_of(const PicturePass& pass, int parts, int samples, int frame, glm::ivec2 pixel);
 
 }  // namespace pelagic

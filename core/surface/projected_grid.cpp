@@ -114,8 +114,7 @@ Station station_of(const View& view, const ProjectedGridOptions& options) {
     // The azimuth of `forward`; where that is vertical, the azimuth of the picture's upper or lower edge.
     // This expression goes from one to the other without a jump.
     // A shift to the right takes it along, so that rows reach no farther to one side than to the other.
-    const glm::dvec3 middle =
-        view.forward - view.forward.z * view.up + view.middle_tangents().x * view.right;
+    const glm::dvec3 middle = view.forward - view.forward.z * view.up + view.middle_tangents().x * view.right;
     const double length = std::hypot(middle.x, middle.y);
     at.ahead = length > 0.0 ? glm::dvec2(middle) / length : glm::dvec2(0.0, 1.0);
     return at;

@@ -15,7 +15,8 @@ struct View {
     glm::dvec3 right{1.0, 0.0, 0.0}, up{0.0, 0.0, 1.0}, forward{0.0, 1.0, 0.0};
     double tan_half_width = 0.4663;  // of half the horizontal field of view
     glm::ivec2 resolution{1280, 720};
-    glm::dvec2 shift{0.0};  // of the picture's middle off the axis, to the right and up, in widths of the picture
+    glm::dvec2 shift{
+        0.0};  // of the picture's middle off the axis, to the right and up, in widths of the picture
 
     bool operator==(const View&) const = default;
 

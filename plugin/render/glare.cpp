@@ -30,7 +30,9 @@ int fast_length(int least) {
 class Plane {
   public:
     Plane(int lines, int length)
-        : lines_(lines), stride_(line_stride<float>(length)), values_(2 * stride_ * static_cast<std::size_t>(lines)) {}
+        : lines_(lines),
+          stride_(line_stride<float>(length)),
+          values_(2 * stride_ * static_cast<std::size_t>(lines)) {}
     float* re(int line) { return values_.data() + 2 * stride_ * static_cast<std::size_t>(line); }
     float* im(int line) { return re(line) + stride_; }
     const float* re(int line) const { return values_.data() + 2 * stride_ * static_cast<std::size_t>(line); }
@@ -193,8 +195,10 @@ void add_glare(std::span<glm::vec3> picture, glm::ivec2 size, const Glare& glare
 }
 
 std::size_t glare_bytes(glm::ivec2 size) {
-    const auto pixels = static_cast<std::size_t>(fast_length(2 * size.x)) * static_cast<std::size_t>(fast_length(2 * size.y));
-    return pixels * (4 * 2 * sizeof(float) + sizeof(float) + sizeof(double) / 4 + sizeof(glm::vec3)) * 11 / 10;
+    const auto pixels =
+        static_cast<std::size_t>(fast_length(2 * size.x)) * static_cast<std::size_t>(fast_length(2 * size.y));
+    return pixels * (4 * 2 * sizeof(float) + sizeof(float) + sizeof(double) / 4 + sizeof(glm::vec3)) * 11 /
+           10;
 }
 
 }  // namespace pelagic

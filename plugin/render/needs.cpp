@@ -102,9 +102,9 @@ constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(floa
 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
-constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     5 * sizeof(T) + 2 * sizeof(glm::vec3) + 2 * sizeof(float) +
-                                     sizeof(SeaPoint) + 12 * sizeof(float) +
+constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) +
+                                     sizeof(std::size_t) + 5 * sizeof(T) + 2 * sizeof(glm::vec3) +
+                                     2 * sizeof(float) + sizeof(SeaPoint) + 12 * sizeof(float) +
                                      (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
 }  // namespace
@@ -130,7 +130,8 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");
     if (in_flight && scene.camera.glare > 0.0)
-        need.add("the lens' glare", static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),
+        need.add("the lens' glare",
+                 static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),
                  "set camera.glare to 0");
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);

@@ -33,7 +33,8 @@ glm::dvec2 on_disc(glm::dvec2 square) {
 
 // Places in a cell, spread by the plane's analogue of the golden section (Roberts 2018, R2).
 glm::dvec2 in_cell(int index) {
-    const glm::dvec2 p = 0.5 + static_cast<double>(index) * glm::dvec2(0.7548776662466927, 0.5698402909980532);
+    const glm::dvec2 p =
+        0.5 + static_cast<double>(index) * glm::dvec2(0.7548776662466927, 0.5698402909980532);
     return {p.x - std::floor(p.x), p.y - std::floor(p.y)};
 }
 
@@ -50,7 +51,9 @@ PicturePasses passes_of(const Camera& camera, int frame, const RenderOptions& op
         for (int part = 0; part < passes.parts; ++part) {
             const double moment = (stratum * passes.parts + part + 0.5) / (all * passes.parts) - 0.5;
             const int cell = stratum * jump % all;
-            const glm::dvec2 square = (glm::dvec2(cell % n, cell / n) + in_cell(stratum * passes.parts + part)) / static_cast<double>(n);
+            const glm::dvec2 square =
+                (glm::dvec2(cell % n, cell / n) + in_cell(stratum * passes.parts + part)) /
+                static_cast<double>(n);
             passes.all.push_back({.frame = frame + options.shutter_frames * moment,
                                   .lens = has_lens ? on_disc(square) : glm::dvec2(0.0),
                                   .stratum = stratum,

@@ -232,7 +232,8 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
             const glm::vec3 light = glaring.empty() ? radiance_of(picture.layers[i]) : glaring[i];
             const glm::vec3 radiance = light / (alpha > 0.0f ? alpha : 1.0f);
-            const auto shown = display_bytes(balance * radiance, context.exposure, {static_cast<int>(x), row});
+            const auto shown =
+                display_bytes(balance * radiance, context.exposure, {static_cast<int>(x), row});
             std::copy(shown.begin(), shown.end(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
             if (has_alpha) bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * alpha));

@@ -192,8 +192,8 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles,
                     const std::int64_t right_by = std::int64_t{x - left} * kSubpixels + place.x;
                     bool is_inside = true;
                     for (int i = 0; i < 3; ++i)
-                        is_inside = is_inside &&
-                                    edge[i] + turns[i][0] * right_by + turns[i][1] * place.y >= least[i];
+                        is_inside =
+                            is_inside && edge[i] + turns[i][0] * right_by + turns[i][1] * place.y >= least[i];
                     if (!is_inside) continue;
                     const double here =
                         std::clamp(plane.x * (x + 0.5 + place.x / double{kSubpixels}) + row_nearness +

@@ -223,8 +223,8 @@ class RendererOf final : public Impl {
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         // Moves the samples that are taken to the middles of the rasteriser's pixels.
-        const glm::dvec2 shift =
-            (static_cast<double>(sampling_.stride - 1) - 2.0 * sampling_.first) / glm::dvec2(view_.resolution);
+        const glm::dvec2 shift = (static_cast<double>(sampling_.stride - 1) - 2.0 * sampling_.first) /
+                                 glm::dvec2(view_.resolution);
         for (std::size_t i = 0; i < count; ++i) {
             clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
             clip_[i].x += shift.x * clip_[i].w;
@@ -266,8 +266,8 @@ class RendererOf final : public Impl {
         tbb::parallel_for(0, bands, [&](int band) {
             const std::size_t begin = width * band * Rasteriser::kBandRows;
             const std::size_t size = std::min(width * Rasteriser::kBandRows, batch_.triangles.size() - begin);
-            const std::span places =
-                batch_.places.empty() ? std::span<PixelPlace>{} : std::span(batch_.places).subspan(begin, size);
+            const std::span places = batch_.places.empty() ? std::span<PixelPlace>{}
+                                                           : std::span(batch_.places).subspan(begin, size);
             for (std::size_t i = 0; i < places.size(); ++i) {
                 const std::size_t at = begin + i;
                 places[i] =

@@ -68,8 +68,8 @@ glm::dvec3 turned(glm::dvec3 v, glm::dvec3 degrees) {
 double roll_deg(glm::dvec3 forward, glm::dvec3 up) {
     constexpr double kVertical = 1e-9;  // as view_at()
     const bool vertical = std::hypot(forward.x, forward.y) < kVertical;
-    const glm::dvec3 right = glm::normalize(
-        glm::cross(forward, vertical ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0)));
+    const glm::dvec3 right =
+        glm::normalize(glm::cross(forward, vertical ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0)));
     return std::atan2(glm::dot(up, right), glm::dot(up, glm::cross(right, forward))) * (180.0 / kPi);
 }
 
@@ -82,9 +82,10 @@ CameraKey key_of(const Line& line, const CameraKey* before, glm::ivec2 resolutio
                "a whole number, " + text_of(limits::kFrame));
     key.frame = static_cast<int>(v[0]);
     if (before && key.frame <= before->frame)
-        refuse(line, "the frame " + std::to_string(key.frame) + " doesn't come after " +
-                         std::to_string(before->frame),
-               "rising frames, each once");
+        refuse(
+            line,
+            "the frame " + std::to_string(key.frame) + " doesn't come after " + std::to_string(before->frame),
+            "rising frames, each once");
     key.position_m = with_z_up({v[1], v[2], v[3]});
     const glm::dvec3 degrees(v[4], v[5], v[6]);
     for (int axis = 0; axis < 3; ++axis) {

@@ -102,7 +102,8 @@ void load_camera(Reader& reader, const std::filesystem::path& folder, Camera& ca
     if (reader.knows("camera.keys")) return refuse("is given beside camera.keys", "one of the two");
     if (reader.has_failed("camera.resolution")) return;
     try {
-        camera.keys = parse_chan(read_text_file(folder / *reader.camera_file, kMostChanBytes), camera.resolution);
+        camera.keys =
+            parse_chan(read_text_file(folder / *reader.camera_file, kMostChanBytes), camera.resolution);
     } catch (const TextFileError& error) {
         refuse("the camera's path " + std::string(error.what()), "a .chan of at most 16 MiB");
     } catch (const ChanError& error) {

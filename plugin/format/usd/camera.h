@@ -33,10 +33,10 @@ struct Camera {
     std::vector<int> key_frames{};
     // The pose at a frame of the shot. It is called more than once for a frame, and must give the same.
     std::function<CameraPose(int frame)> pose_at{};
-    glm::ivec2 resolution{1280, 720};    // pixels; their ratio is the film's
-    double film_width_mm = 36.0;         // > 0
-    glm::dvec2 shift{0.0};               // of the film, to the right and up in the picture, in widths of it
-    double f_stop = 0.0;                 // 0: a pinhole
+    glm::ivec2 resolution{1280, 720};  // pixels; their ratio is the film's
+    double film_width_mm = 36.0;       // > 0
+    glm::dvec2 shift{0.0};             // of the film, to the right and up in the picture, in widths of it
+    double f_stop = 0.0;               // 0: a pinhole
     double focus_distance_m = 10.0;
     glm::dvec2 clipping_m{0.1, 1000e3};  // near and far; far is beyond the horizon of any aircraft
 };

@@ -93,7 +93,8 @@ void check(const Camera& camera) {
 Crate camera_layer(const Camera& camera) {
     check(camera);
     const auto course = std::make_shared<const Course>(course_of(camera));
-    const FilmBack film = film_back(camera.pose_at(camera.first_frame).fov_deg, camera.resolution, camera.film_width_mm);
+    const FilmBack film =
+        film_back(camera.pose_at(camera.first_frame).fov_deg, camera.resolution, camera.film_width_mm);
 
     Crate crate;
     Crate::Fields layer;

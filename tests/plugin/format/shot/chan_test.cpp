@@ -33,7 +33,7 @@ TEST(Chan, AnglesTurnTheCamera) {
     expect_near(still.forward, {0.0, 1.0, 0.0});
     expect_near(still.up, {0.0, 0.0, 1.0});
     const double s = std::sqrt(0.5);
-    expect_near(view_of("1 0 9 0 -45 0 0").forward, {0.0, s, -s});  // looks down
+    expect_near(view_of("1 0 9 0 -45 0 0").forward, {0.0, s, -s});     // looks down
     expect_near(view_of("1 0 9 0 0 90 0").forward, {-1.0, 0.0, 0.0});  // to the left
     const View rolled = view_of("1 0 9 0 0 0 30");  // counter-clockwise: its right side goes up
     expect_near(rolled.forward, {0.0, 1.0, 0.0});
@@ -46,10 +46,12 @@ TEST(Chan, AnglesTurnTheCamera) {
 }
 
 TEST(Chan, LensesAndRollsGoOn) {
-    const auto keys = parse_chan("# from elsewhere\r\n\r\n  1\t0 9 0 0 0 179 20\r\n+3 0 9 0 0 0 181 20", kSize);
+    const auto keys =
+        parse_chan("# from elsewhere\r\n\r\n  1\t0 9 0 0 0 179 20\r\n+3 0 9 0 0 0 181 20", kSize);
     ASSERT_EQ(keys.size(), 2u);
     EXPECT_EQ(keys[1].frame, 3);
-    EXPECT_NEAR(std::tan(*keys[0].fov_deg * 0.008726646259971648), 2.0 * std::tan(0.17453292519943295), 1e-12);
+    EXPECT_NEAR(std::tan(*keys[0].fov_deg * 0.008726646259971648), 2.0 * std::tan(0.17453292519943295),
+                1e-12);
     EXPECT_NEAR(std::abs(keys[1].roll_deg - keys[0].roll_deg), 2.0, 1e-9);
     EXPECT_FALSE(parse_chan("1 0 9 0 0 0 0\n", kSize).front().fov_deg);
 }
@@ -72,7 +74,8 @@ TEST(Chan, WhatIsWrongIsToldWithItsLine) {
     EXPECT_EQ(refused("1.5 0 9 0 0 0 0\n"), "line 1: the frame 1.5 is none");
     EXPECT_EQ(refused("1 0 1e30 0 0 0 0\n"), "line 1: the position is outside the range");
     EXPECT_EQ(refused("1 0 9 0 0 0 1e30\n"), "line 1: an angle is outside the range");
-    EXPECT_EQ(refused("1 0 9 0 0 0 0 180\n"), "line 1: the angle of view of 180 degrees is outside the range");
+    EXPECT_EQ(refused("1 0 9 0 0 0 0 180\n"),
+              "line 1: the angle of view of 180 degrees is outside the range");
     EXPECT_EQ(refused("# nothing\n"), "has no frames");
 }
 
@@ -93,11 +96,15 @@ TEST(Chan, AShotTakesItForItsKeys) {
     ASSERT_EQ(scene.camera.keys.size(), 2u);
     expect_near(scene.camera.keys[1].position_m, {0.0, 50.0, 9.0});
     const std::string at = file.string() + ":2:8: camera.file = ";
-    EXPECT_EQ(message("file = \"bad.chan\"\n"), at + "\"bad.chan\": line 1: has 3 numbers; accepted: lines of frame x y z rx ry "
-                                                     "rz, and the vertical angle of view if there is one");
-    EXPECT_EQ(message("file = \"none.chan\"\n"), at + "\"none.chan\": the camera's path does not exist; accepted: a .chan of at most 16 MiB");
-    EXPECT_EQ(message("file = \"way.chan\"\nkeys = [{ frame = 1, position_m = [0, 0, 9], look_at_m = [0, 9, 9] }]\n"),
-              at + "\"way.chan\": is given beside camera.keys; accepted: one of the two");
+    EXPECT_EQ(message("file = \"bad.chan\"\n"),
+              at + "\"bad.chan\": line 1: has 3 numbers; accepted: lines of frame x y z rx ry "
+                   "rz, and the vertical angle of view if there is one");
+    EXPECT_EQ(message("file = \"none.chan\"\n"),
+              at + "\"none.chan\": the camera's path does not exist; accepted: a .chan of at most 16 MiB");
+    EXPECT_EQ(
+        message(
+            "file = \"way.chan\"\nkeys = [{ frame = 1, position_m = [0, 0, 9], look_at_m = [0, 9, 9] }]\n"),
+        at + "\"way.chan\": is given beside camera.keys; accepted: one of the two");
 }
 
 }  // namespace

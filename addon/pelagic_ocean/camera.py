@@ -18,7 +18,7 @@ from .module import pelagic
 from .operators import CLIP_END_M
 from .properties import shortest, shortest_for
 
-FILM_MM = 36.0
+WIDEST_F_STOP = 0.5  # of a shot's lens
 ROLL_DIGITS = 4  # of degrees: 1e-4 is a fiftieth of a pixel at the edge of an 8K picture
 SAME_DIRECTION = 1e-3  # radians
 # What a straight line between two keys may miss, in a pose's numbers: 10 µm, 1e-5° of view, 2e-4° of roll.
@@ -47,6 +47,21 @@ def half_film_mm(data, render):
     if fit == "VERTICAL":
         return 0.5 * data.sensor_height * width / height
     return 0.5 * data.sensor_width * (width / height if fit == "AUTO" and height > width else 1.0)
+
+
+def set_lens(table, data, render):
+    """The keys of a shot's camera that its poses don't have: shift, aperture and focus. Returns what those can't say, or ""."""
+    width = render.resolution_x * render.pixel_aspect_x
+    height = render.resolution_y * render.pixel_aspect_y
+    is_upright = data.sensor_fit == "VERTICAL" or (data.sensor_fit == "AUTO" and height > width)
+    side = height / width if is_upright else 1.0  # of the shift's unit, in widths
+    table.shift_x, table.shift_y = (shortest(each) if side == 1.0 else each * side for each in (data.shift_x, data.shift_y))
+    if not data.dof.use_dof:
+        return ""
+    table.sensor_width_mm = 2.0 * half_film_mm(data, render)
+    table.f_stop = max(shortest(data.dof.aperture_fstop), WIDEST_F_STOP)
+    table.focus_distance_m = shortest(data.dof.focus_distance)
+    return f"{data.name} is focused on an object: the shot is on the distance beside it" if data.dof.focus_object else ""
 
 
 def fov_deg(data, render):
@@ -148,8 +163,8 @@ def frames(context):
 # ---- Into Blender
 
 
-def _lens_mm(angle_deg):
-    return 0.5 * FILM_MM / math.tan(math.radians(angle_deg) / 2.0)
+def _lens_mm(angle_deg, film_mm):
+    return 0.5 * film_mm / math.tan(math.radians(angle_deg) / 2.0)
 
 
 def _keyframe(owner, path, values):
@@ -173,14 +188,22 @@ def _seen(scene, frame):
 
 def make(context, scene, name):
     """The shot's camera: it tracks an empty where it looks, and hangs in another if it rolls. Returns the camera."""
-    poses = {key.frame: Pose(key.position_m, key.look_at_m, key.fov_deg or scene.camera.fov_deg, key.roll_deg)
+    film_mm = scene.camera.sensor_width_mm
+    lens_deg = scene.camera.fov_deg
+    if scene.camera.focal_length_mm:
+        lens_deg = math.degrees(2 * math.atan(0.5 * film_mm / scene.camera.focal_length_mm))
+    poses = {key.frame: Pose(key.position_m, key.look_at_m, key.fov_deg or lens_deg, key.roll_deg)
              for key in scene.camera.keys}
     if scene.camera.interpolation == "smooth" and len(poses) > 2:  # the core's curves, which aren't Blender's
         poses = {frame: _seen(scene, frame) for frame in range(min(poses), max(poses) + 1)}
-    poses = poses or {1: Pose(scene.camera.position_m, scene.camera.look_at_m, scene.camera.fov_deg, 0.0)}
+    poses = poses or {1: Pose(scene.camera.position_m, scene.camera.look_at_m, lens_deg, 0.0)}
     first = poses[min(poses)]
     data = bpy.data.cameras.new(f"{name} Camera")
-    data.sensor_fit, data.sensor_width, data.lens = "HORIZONTAL", FILM_MM, _lens_mm(first.fov_deg)
+    data.sensor_fit, data.sensor_width, data.lens = "HORIZONTAL", film_mm, _lens_mm(first.fov_deg, film_mm)
+    data.shift_x, data.shift_y = scene.camera.shift_x, scene.camera.shift_y
+    if scene.camera.f_stop:
+        data.dof.use_dof, data.dof.aperture_fstop = True, scene.camera.f_stop
+        data.dof.focus_distance = scene.camera.focus_distance_m
     data.clip_end = CLIP_END_M
     camera = bpy.data.objects.new(data.name, data)
     target = bpy.data.objects.new(f"{name} Target", None)
@@ -204,5 +227,5 @@ def make(context, scene, name):
         if any(pose.fov_deg != first.fov_deg for pose in poses.values()):
             every = range(min(poses), max(poses) + 1)  # angles go straight, focal lengths don't
             angles = np.interp(every, list(poses), [pose.fov_deg for pose in poses.values()])
-            _keyframe(data, "lens", dict(zip(every, map(_lens_mm, angles))))
+            _keyframe(data, "lens", {frame: _lens_mm(angle, film_mm) for frame, angle in zip(every, angles)})
     return camera

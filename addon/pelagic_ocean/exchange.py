@@ -46,8 +46,7 @@ def shot_of(context, obj):
     if ocean.pinhole_of(obj, bpy_scene) is None:
         remarks.append("the scene has no perspective camera: the shot has the default one")
     else:
-        if bpy_scene.camera.data.shift_x or bpy_scene.camera.data.shift_y:
-            remarks.append(f"{bpy_scene.camera.name} has a lens shift, which a shot can't say")
+        remarks.extend(filter(None, [camera.set_lens(scene.camera, bpy_scene.camera.data, bpy_scene.render)]))
         if bpy_scene.render.pixel_aspect_x != bpy_scene.render.pixel_aspect_y:
             remarks.append("a shot can't say that pixels aren't square")
         camera.set_poses(scene, poses)

@@ -172,7 +172,7 @@ class Pinhole:
         return cls(position_m, right, up, forward, numbers[12], tuple(map(int, numbers[13:])))
 
     def view(self):
-        """A pelagic.View that shows all that is seen, with pixels as large. A View has no shift: it is the wider."""
+        """A pelagic.View that shows all that is seen, with pixels as large, and its axis in the middle."""
         across, along = (1 + abs(each) for each in self.shift)
         columns, rows = self.resolution
         return pelagic.View(position_m=tuple(self.position_m), right=tuple(self.right), up=tuple(self.up),
@@ -185,7 +185,9 @@ class Pinhole:
         table.position_m = tuple(self.position_m)
         table.look_at_m = tuple(self.position_m + LOOK_AHEAD_M * self.forward)
         table.fov_deg = math.degrees(2 * math.atan(self.tan_half_width))
-        table.resolution = self.resolution
+        table.focal_length_mm, table.resolution = None, self.resolution
+        columns, rows = self.resolution
+        table.shift_x, table.shift_y = self.shift[0] / 2, self.shift[1] / 2 * rows / columns  # in widths
         roll_deg = self.roll_deg()
         if abs(roll_deg) > 1e-3:
             table.keys = [pelagic.CameraKey(frame, table.position_m, table.look_at_m, table.fov_deg, roll_deg)]

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -18,6 +19,11 @@ std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, gl
 
 // Those random numbers, 0 … 1 (1 excluded), one for each component.
 glm::vec3 dither(glm::ivec2 pixel);
+
+// From the light's linear sRGB to what is shown where light of this colour temperature [K] is to look as light of 6500 K does
+// otherwise: von Kries' adaptation in the cones of Bradford. What has the temperature's own colour keeps its luminance. At 6500 it
+// is the identity, to the last bit.
+glm::mat3 white_balance(double kelvin);
 
 // The exposure of a photographer's meter that shows this number at ISO 100 (ISO 2720: L = K 2^EV/100, K = 12.5 cd/m²): middle grey
 // is a luminance of L.

@@ -77,7 +77,8 @@ std::string pose_text(const View& view) {
     std::string text = "pose";
     for (const glm::dvec3& v : {view.position_m, view.right, view.up, view.forward}) add_vector(text, v);
     return text + ' ' + number_text(view.tan_half_width) + ' ' + std::to_string(view.resolution.x) + ' ' +
-           std::to_string(view.resolution.y);
+           std::to_string(view.resolution.y) + ' ' + number_text(view.shift.x) + ' ' +
+           number_text(view.shift.y);
 }
 
 std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {

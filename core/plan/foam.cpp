@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/scene/lens.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/dispersion.h"
 #include "core/surface/footprint_levels.h"
@@ -96,11 +97,12 @@ struct Sector {
 Sector sector_of(const Camera& camera, double height_m) {
     const glm::dvec3 ahead = glm::normalize(camera.look_at_m - camera.position_m);
     const double level = std::hypot(ahead.x, ahead.y);
-    const double across = std::tan(0.5 * camera.fov_deg * kPi / 180.0);
+    const double across = std::tan(0.5 * lens_fov_deg(camera) * kPi / 180.0);
     const double upright = across * camera.resolution.y / camera.resolution.x;
     // Of the frame's lowest and highest lines: how far ahead and how far down a ray of length 1 along the axis goes.
-    const glm::dvec2 low(level + upright * ahead.z, upright * level - ahead.z),
-        high(level - upright * ahead.z, -upright * level - ahead.z);
+    const double middle = 2.0 * across * camera.shift_y, down = upright - middle, up = upright + middle;
+    const glm::dvec2 low(level + down * ahead.z, down * level - ahead.z),
+        high(level - up * ahead.z, -up * level - ahead.z);
     const auto distance_m = [&](glm::dvec2 line, double aside) {
         return line.y > 0.0 ? height_m * std::hypot(line.x, aside) / line.y
                             : std::numeric_limits<double>::infinity();
@@ -109,7 +111,7 @@ Sector sector_of(const Camera& camera, double height_m) {
     Sector sector{.farthest_m = std::max(distance_m(low, across), distance_m(high, across))};
     const double least_ahead = std::min(low.x, high.x);
     if (!(least_ahead > 0.0)) return sector;  // what is below it is in the frame
-    sector.half_angle = std::atan(across / least_ahead);
+    sector.half_angle = std::atan(across * (1.0 + 2.0 * std::abs(camera.shift_x)) / least_ahead);
     sector.nearest_m = distance_m(low, 0.0);
     return sector;
 }
@@ -137,12 +139,12 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, doub
         return std::sqrt(std::max(slant_m * slant_m - height_m * height_m, 0.0));
     };
     double lowest_m = std::max(camera.position_m.z, 1.0), highest_m = lowest_m,
-           narrowest_deg = camera.fov_deg;
+           narrowest_deg = lens_fov_deg(camera);
     for (const CameraKey& key : camera.keys) {
         const double height_m = std::max(key.position_m.z, 1.0);
         lowest_m = std::min(lowest_m, height_m);
         highest_m = std::max(highest_m, height_m);
-        narrowest_deg = std::min(narrowest_deg, key.fov_deg.value_or(camera.fov_deg));
+        narrowest_deg = std::min(narrowest_deg, key.fov_deg.value_or(lens_fov_deg(camera)));
     }
     // Between the keys a camera passes all heights. The reach grows with the height up to this one.
     const double farthest_height_m = cell_m / pixel_of(narrowest_deg) * std::pow(3.0, -0.75);
@@ -160,7 +162,7 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, doub
     if (!kind.is_of_frame) return round_it;
     // Footprints of less than a quarter of a cell read finer levels.
     const Sector sector = sector_of(camera, lowest_m);
-    const double finer_m = level > 0 ? reach_m(lowest_m, camera.fov_deg, 0.25 * cell_m, 0.0) : 0.0;
+    const double finer_m = level > 0 ? reach_m(lowest_m, lens_fov_deg(camera), 0.25 * cell_m, 0.0) : 0.0;
     const double from = std::max(sector.nearest_m, finer_m) / tile_m;
     const double to = std::min(sector.farthest_m, farthest_m) / tile_m;
     if (!(from < to)) return 0.0;

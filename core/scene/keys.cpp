@@ -367,6 +367,20 @@ void add_surface(Built& out) {
 
 void add_camera(Built& out) {
     constexpr KeyPartSet kView = key_parts(KeyPart::View);
+    // No member: the host that reads the file makes `keys` of it.
+    Row<Camera, 0> file{
+        key_about(
+            {.name = "file",
+             .help =
+                 "in a shot file, instead of keys: a camera's path from another program, a line for each frame, "
+                 "\"frame x y z rx ry rz [fov]\". Metres, y up; degrees about x, y and z, applied in the "
+                 "order z, x, y; fov is the vertical angle of view. Without it the lens is the camera's",
+             .accepted = "a string, the path of a .chan, from the shot file's folder",
+             .key_parts = kView},
+            KeyType::DataFile),
+        [](const Camera&) { return KeyValue(); },
+        {}};
+    file.key.is_optional = true;
     add_table<&Scene::camera>(
         out.tables, out.keys, {"camera", "from where", {}, {}},
         row<&Camera::position_m>(
@@ -398,6 +412,7 @@ void add_camera(Built& out) {
                  .unit = "degrees",
                  .range = limits::kAngle_deg,
                  .soft = kTurn})),
+        file,
         row<&Camera::interpolation>({.name = "interpolation",
                                      .help = "between keys: straight from one to the next, or a smooth curve "
                                              "through all of them",
@@ -408,6 +423,53 @@ void add_camera(Built& out) {
                                .range = limits::kFov_deg,
                                .soft = SoftRange{5.0, 120.0},
                                .key_parts = kView}),
+        row<&Camera::focal_length_mm>(
+            {.name = "focal_length_mm",
+             .help = "instead of fov_deg, which then says nothing: the angle of view is that of this lens "
+                     "before a film of sensor_width_mm. A key's own fov_deg still counts",
+             .unit = "mm",
+             .range = limits::kFocalLength_mm,
+             .soft = SoftRange{10.0, 300.0, true},
+             .key_parts = kView}),
+        row<&Camera::sensor_width_mm>(
+            {.name = "sensor_width_mm",
+             .help = "of the film or sensor: with focal_length_mm it gives the angle of view, with f_stop "
+                     "the size of the aperture",
+             .unit = "mm",
+             .range = limits::kSensorWidth_mm,
+             .soft = SoftRange{4.0, 70.0, true},
+             .key_parts = kView}),
+        row<&Camera::shift_x>(
+            {.name = "shift_x",
+             .help = "moves the picture to the right of the lens' axis, without turning the camera: in "
+                     "widths of the picture, as in Blender",
+             .range = limits::kLensShift,
+             .soft = SoftRange{-0.5, 0.5},
+             .key_parts = kView}),
+        row<&Camera::shift_y>(
+            {.name = "shift_y",
+             .help = "the same upwards, in widths of the picture too: verticals stay parallel",
+             .range = limits::kLensShift,
+             .soft = SoftRange{-0.5, 0.5},
+             .key_parts = kView}),
+        row<&Camera::f_stop>(
+            {.name = "f_stop",
+             .help =
+                 "the lens' opening, its focal length over this wide: what is nearer or farther than "
+                 "focus_distance_m is blurred in pelagic render, by its samples; take more of them. 0 is a "
+                 "pinhole, as the preview always is",
+             .range = limits::kFStop,
+             .soft = SoftRange{0.0, 22.0},
+             .accepted = "0, or 0.5 … 1000",
+             .key_parts = kView}),
+        row<&Camera::focus_distance_m>(
+            {.name = "focus_distance_m",
+             .help =
+                 "with f_stop: how far away the lens is sharp, along its axis; more than its focal length",
+             .unit = "m",
+             .range = limits::kFocus_m,
+             .soft = SoftRange{0.5, 1000.0, true},
+             .key_parts = kView}),
         row<&Camera::resolution>({.name = "resolution",
                                   .help = "of the picture",
                                   .unit = "pixels",
@@ -429,6 +491,22 @@ void add_camera(Built& out) {
              .unit = "stops",
              .range = limits::kEv100,
              .soft = SoftRange{0.0, 17.0},
+             .key_parts = key_parts(KeyPart::Light)}),
+        row<&Camera::white_balance_k>(
+            {.name = "white_balance_k",
+             .help =
+                 "of pictures on a screen: light of this colour temperature is shown as white; less makes a "
+                 "picture bluer. 6500 leaves colours as they are. EXRs hold the light itself",
+             .unit = "K",
+             .range = limits::kWhiteBalance_k,
+             .soft = SoftRange{2000.0, 12000.0, true},
+             .key_parts = key_parts(KeyPart::Light)}),
+        row<&Camera::glare>(
+            {.name = "glare",
+             .help = "of PNGs: the share of the light that the lens scatters round where it belongs, as the "
+                     "eye does: 0.1 is a clean lens. The preview has none, and EXRs hold the light itself",
+             .range = limits::kGlare,
+             .soft = SoftRange{0.0, 0.5},
              .key_parts = key_parts(KeyPart::Light)}));
 }
 

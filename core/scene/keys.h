@@ -149,7 +149,8 @@ std::span<const Key> keys();
 const Key* find_key(std::string_view path);
 
 // The keys of data files: what hosts read from them is a member of the scene.
-inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file";
+inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file",
+                                  kCameraFile = "camera.file";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);

@@ -88,6 +88,14 @@ inline constexpr Range kCageLevel{0, 6};
 inline constexpr Range kCameraCoordinate_m{-1e9, 1e9};  // beyond any orbit we draw
 inline constexpr double kOnTarget_m = 1e-6;  // nearer than this, rounding decides where a camera looks
 inline constexpr Range kFov_deg{1.0, 179.0};
+inline constexpr Range kFocalLength_mm{0.2, 2e3};  // kFov_deg before a film of 36 mm
+inline constexpr Range kSensorWidth_mm{0.1, 1e4};
+inline constexpr Range kLensShift{-2.0, 2.0};
+inline constexpr Range kFStop{0.0, 1e3};
+inline constexpr double kLeastFStop = 0.5;  // of an aplanatic lens in air
+inline constexpr Range kFocus_m{1e-3, 1e9};
+inline constexpr Range kWhiteBalance_k{1500.0, 15000.0};  // Krystek's fit of Planck's locus ends there
+inline constexpr Range kGlare{0.0, 1.0};
 inline constexpr Range kExposure_ev{-20.0, 20.0};
 inline constexpr Range kEv100{-20.0, 40.0};
 inline constexpr Range kImageResolution{1, 65536};

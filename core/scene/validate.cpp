@@ -13,6 +13,7 @@
 #include "core/scene/cascade_bands.h"
 #include "core/scene/editions.h"
 #include "core/scene/keys.h"
+#include "core/scene/lens.h"
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -348,7 +349,37 @@ double distance_to_origin(const glm::dvec3& a, const glm::dvec3& b) {
 
 constexpr const char* kOffTarget = "a target at least 1e-6 m away from the camera's position";
 
+void check_lens(SceneChecker& check, const Camera& camera) {
+    bool is_good = true;
+    for (const char* key : {"camera.focal_length_mm", "camera.sensor_width_mm", "camera.fov_deg"})
+        is_good = is_good && check.is_good(key);
+    if (is_good && camera.focal_length_mm && !limits::kFov_deg.holds(lens_fov_deg(camera))) {
+        check.refuse({"camera.focal_length_mm", number_text(*camera.focal_length_mm),
+                      "sees " + number_text(lens_fov_deg(camera)) + " degrees of a sensor_width_mm of " +
+                          number_text(camera.sensor_width_mm),
+                      "an angle of view of " + text_of(limits::kFov_deg) + " degrees"});
+        is_good = false;
+    }
+    if (!check.is_good("camera.f_stop") || camera.f_stop == 0.0) return;
+    if (camera.f_stop < limits::kLeastFStop) {
+        check.refuse({"camera.f_stop", number_text(camera.f_stop), "is wider than any lens in air",
+                      key_of("camera.f_stop").accepted});
+        return;
+    }
+    if (!is_good || !check.is_good("camera.focus_distance_m")) return;
+    double narrowest_deg = lens_fov_deg(camera);
+    for (const CameraKey& key : camera.keys)
+        if (key.fov_deg && limits::kFov_deg.holds(*key.fov_deg))
+            narrowest_deg = std::min(narrowest_deg, *key.fov_deg);
+    const double longest_m = focal_length_m(camera, std::tan(narrowest_deg * (kPi / 360.0)));
+    if (camera.focus_distance_m > longest_m) return;
+    check.refuse({"camera.focus_distance_m", number_text(camera.focus_distance_m),
+                  "is nearer than a lens of a focal length of " + number_text(longest_m) + " m can be sharp",
+                  "more than that"});
+}
+
 void check_camera(SceneChecker& check, const Camera& camera) {
+    check_lens(check, camera);
     // With keys, the camera's own two points are not used.
     if (check.is_good("camera.position_m") && check.is_good("camera.look_at_m") && camera.keys.empty() &&
         glm::distance(camera.position_m, camera.look_at_m) < limits::kOnTarget_m) {

@@ -102,7 +102,9 @@ Station station_of(const View& view, const ProjectedGridOptions& options) {
         std::max(std::hypot(at.height_m, 0.5 * options.significant_height_m), kLeastHeight_m);
     const double tan_corner =
         view.tan_half_width *
-        std::hypot(1.0, static_cast<double>(view.resolution.y) / static_cast<double>(view.resolution.x));
+        std::hypot(1.0 + 2.0 * std::abs(view.shift.x),
+                   static_cast<double>(view.resolution.y) / static_cast<double>(view.resolution.x) +
+                       2.0 * std::abs(view.shift.y));
     at.corner_cos = 1.0 / std::hypot(1.0, tan_corner);
     at.diagonal = 2.0 * std::atan(tan_corner);
     at.farthest_m = std::min(at.effective_height_m / (kHorizon_px * view.pixel_tangent() *
@@ -111,7 +113,8 @@ Station station_of(const View& view, const ProjectedGridOptions& options) {
     at.earth = EarthView(at.height_m, options.curvature_per_m, options.bounds.height_m);
     // The azimuth of `forward`; where that is vertical, the azimuth of the picture's upper or lower edge.
     // This expression goes from one to the other without a jump.
-    const glm::dvec3 middle = view.forward - view.forward.z * view.up;
+    // A shift to the right takes it along, so that rows reach no farther to one side than to the other.
+    const glm::dvec3 middle = view.forward - view.forward.z * view.up + view.middle_tangents().x * view.right;
     const double length = std::hypot(middle.x, middle.y);
     at.ahead = length > 0.0 ? glm::dvec2(middle) / length : glm::dvec2(0.0, 1.0);
     return at;

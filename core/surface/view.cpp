@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "core/base/constants.h"
+#include "core/scene/lens.h"
 #include "core/scene/limits.h"
 
 namespace pelagic {
@@ -20,7 +21,7 @@ struct Pose {
 };
 
 Pose pose_of(const Camera& camera, const CameraKey& key) {
-    return {key.position_m, key.look_at_m, key.fov_deg.value_or(camera.fov_deg), key.roll_deg};
+    return {key.position_m, key.look_at_m, key.fov_deg.value_or(lens_fov_deg(camera)), key.roll_deg};
 }
 
 Pose straight(const Pose& from, const Pose& to, double t) {
@@ -79,7 +80,7 @@ Pose smooth(const Camera& camera, std::size_t from, double t) {
 
 Pose pose_at(const Camera& camera, double frame) {
     const auto& keys = camera.keys;
-    if (keys.empty()) return {camera.position_m, camera.look_at_m, camera.fov_deg, 0.0};
+    if (keys.empty()) return {camera.position_m, camera.look_at_m, lens_fov_deg(camera), 0.0};
     const auto after = std::upper_bound(keys.begin(), keys.end(), frame,
                                         [](double f, const CameraKey& key) { return f < key.frame; });
     if (after == keys.begin()) return pose_of(camera, *after);
@@ -100,16 +101,19 @@ double View::fov_deg() const {
 
 glm::dvec3 View::direction(glm::dvec2 pixel) const {
     const double tangent = pixel_tangent();
-    return glm::normalize(forward + right * ((pixel.x - 0.5 * resolution.x) * tangent) +
-                          up * ((0.5 * resolution.y - pixel.y) * tangent));
+    const glm::dvec2 middle = middle_tangents();
+    return glm::normalize(forward + right * ((pixel.x - 0.5 * resolution.x) * tangent + middle.x) +
+                          up * ((0.5 * resolution.y - pixel.y) * tangent + middle.y));
 }
 
 // Rows of the matrix, with d = forward · (p − position): x = right · (p − position) / tan, y likewise with
-// the picture's proportions, z = d − 2 near, w = d. Then z/w = 1 − 2 near/d: −1 at near, 1 at infinity.
+// the picture's proportions, both less the middle's own times d; z = d − 2 near, w = d. Then z/w = 1 − 2 near/d: −1 at near, 1 at infinity.
 glm::dmat4 View::clip_from(glm::dvec3 origin_m, double near_m) const {
     const glm::dvec3 offset_m = origin_m - position_m;
     const double tan_half_height = tan_half_width * resolution.y / resolution.x;
-    const glm::dvec3 x = right / tan_half_width, y = up / tan_half_height;
+    const glm::dvec2 middle = 2.0 * shift * glm::dvec2(1.0, tan_half_width / tan_half_height);
+    const glm::dvec3 x = right / tan_half_width - middle.x * forward,
+                     y = up / tan_half_height - middle.y * forward;
     const double depth_m = glm::dot(forward, offset_m);
     glm::dmat4 clip(0.0);
     for (int i = 0; i < 3; ++i) clip[i] = glm::dvec4(x[i], y[i], forward[i], forward[i]);
@@ -133,6 +137,10 @@ View checked_view(View view) {
     view.forward = glm::normalize(z);
     view.right = glm::normalize(x - glm::dot(x, view.forward) * view.forward);
     view.up = glm::cross(view.right, view.forward);
+    for (int axis = 0; axis < 2; ++axis)
+        if (!limits::kLensShift.holds(view.shift[axis]))
+            throw std::invalid_argument("shift: is outside the range; accepted: " +
+                                        text_of(limits::kLensShift) + " widths of the picture");
     const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
     if (!(view.tan_half_width >= tangent(limits::kFov_deg.low) &&
           view.tan_half_width <= tangent(limits::kFov_deg.high)))
@@ -151,6 +159,7 @@ View view_at(const Camera& camera, double frame) {
     View view;
     view.position_m = pose.position_m;
     view.resolution = camera.resolution;
+    view.shift = {camera.shift_x, camera.shift_y};
     view.tan_half_width = std::tan(pose.fov_deg * (kPi / 360.0));
     const glm::dvec3 way_m = pose.look_at_m - pose.position_m;
     const double distance_m = glm::length(way_m);
@@ -165,6 +174,16 @@ View view_at(const Camera& camera, double frame) {
     const double roll = pose.roll_deg * (kPi / 180.0);
     view.right = std::cos(roll) * right - std::sin(roll) * up;
     view.up = std::sin(roll) * right + std::cos(roll) * up;
+    return view;
+}
+
+double aperture_radius_m(const Camera& camera, const View& view) {
+    return camera.f_stop > 0.0 ? 0.5 * focal_length_m(camera, view.tan_half_width) / camera.f_stop : 0.0;
+}
+
+View through_lens(View view, glm::dvec2 offset_m, double focus_m) {
+    view.position_m += offset_m.x * view.right + offset_m.y * view.up;
+    view.shift -= offset_m / (2.0 * view.tan_half_width * focus_m);
     return view;
 }
 

@@ -65,7 +65,11 @@ usd::Camera camera_of(const Scene& scene) {
                 const View view = view_at(scene.camera, frame);
                 return usd::CameraPose{view.position_m, view.right, view.up, -view.forward, view.fov_deg()};
             },
-        .resolution = scene.camera.resolution};
+        .resolution = scene.camera.resolution,
+        .film_width_mm = scene.camera.sensor_width_mm,
+        .shift = {scene.camera.shift_x, scene.camera.shift_y},
+        .f_stop = scene.camera.f_stop,
+        .focus_distance_m = scene.camera.focus_distance_m};
 }
 
 // A third of a degree a pixel: as fine as the texels of the sky's map near the horizon, where they are finest.

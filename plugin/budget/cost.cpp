@@ -10,6 +10,7 @@
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 #include "core/surface/view.h"
+#include "plugin/render/passes.h"
 #include "plugin/render/spray_map.h"
 
 namespace pelagic {
@@ -139,7 +140,7 @@ WorkDone work_of(const Plan& plan) {
 
 WorkDone picture_work(const Plan& plan, std::span<const int> frames, const RenderOptions& options) {
     const Camera& camera = plan.from->scene.camera;
-    const auto moments = static_cast<double>(moments_of(frames.front(), options).size());
+    const auto moments = static_cast<double>(passes_of(camera, frames.front(), options).all.size());
     double water = 0.0;
     for (const int frame : frames) water = std::max(water, water_share(camera, frame));
     const double samples = 1e-6 * camera.resolution.x * camera.resolution.y;

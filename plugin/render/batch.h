@@ -35,6 +35,7 @@ inline int rows_of_batch(int sample_width, int samples) {
 template <class T>
 struct Batch {
     std::vector<std::uint32_t> triangles;  // by sample
+    std::vector<PixelPlace> places;        // by sample; empty where all lie in their pixels' centres
     std::vector<SeaRadiance> radiance;     // by sample
     std::vector<float> spray;              // by sample: what it hides of the sky; empty where nobody asks
     std::vector<std::size_t> sea;          // which samples show the sea, rising

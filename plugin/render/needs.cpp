@@ -1,7 +1,6 @@
 // What the pictures of a shot need, before any of them is rendered.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -16,6 +15,8 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/glare.h"
+#include "plugin/render/passes.h"
 #include "plugin/render/render.h"
 #include "plugin/render/spray_map.h"
 
@@ -42,19 +43,6 @@ RenderOptions render_options(const Scene& scene) {
     return options;
 }
 
-std::vector<double> moments_of(int frame, const RenderOptions& options) {
-    std::vector<double> moments{static_cast<double>(frame)};
-    if (!(options.shutter_frames > 0.0)) return moments;
-    // Moments in the middles of equal parts. From sample to sample they jump by some 0.6 of all parts, so that a
-    // pixel's moments are spread over its rows and columns.
-    const int all = options.samples * options.samples;
-    int jump = std::max(1, static_cast<int>(0.618 * all));
-    while (std::gcd(jump, all) != 1) ++jump;
-    for (int i = 0; i < all; ++i)
-        moments.push_back(frame + options.shutter_frames * ((i * jump % all + 0.5) / all - 0.5));
-    return moments;
-}
-
 Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderOptions& options) {
     Scene shown = scene;
     if (!options.lighting.spray) row_of(Effect::Spray).turn_off(shown);
@@ -62,7 +50,8 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     if (frames.empty()) throw std::invalid_argument("a plan of pictures needs at least one frame");
     std::vector<View> views;
     for (const int frame : frames)
-        for (const double moment : moments_of(frame, options)) views.push_back(view_at(scene.camera, moment));
+        for (const PicturePass& pass : passes_of(scene.camera, frame, options).all)
+            views.push_back(view_of(scene.camera, pass));
     const ProjectedGridNeeds needs = projected_grid_needs(views, projected_grid_options(*prepared));
     Query query = view_query(*prepared, {.products = {},
                                          .finest_cell_m = needs.finest_cell_m,
@@ -113,9 +102,9 @@ constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(floa
 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
-constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     5 * sizeof(T) + 2 * sizeof(glm::vec3) + 2 * sizeof(float) +
-                                     sizeof(SeaPoint) + 12 * sizeof(float) +
+constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) +
+                                     sizeof(std::size_t) + 5 * sizeof(T) + 2 * sizeof(glm::vec3) +
+                                     2 * sizeof(float) + sizeof(SeaPoint) + 12 * sizeof(float) +
                                      (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
 }  // namespace
@@ -140,6 +129,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     if (options.lighting.spray)
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");
+    if (in_flight && scene.camera.glare > 0.0)
+        need.add("the lens' glare",
+                 static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),
+                 "set camera.glare to 0");
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);
     need.add("pictures",

@@ -22,6 +22,8 @@
 #include "plugin/format/png/png.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
+#include "plugin/render/glare.h"
+#include "plugin/render/passes.h"
 #include "plugin/run/part.h"
 #include "plugin/run/seals.h"
 
@@ -154,13 +156,13 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
 std::string PictureFingerprint::of(int frame) const {
     Fingerprint hash;
     hash.add(source_).add("frame " + std::to_string(frame));
-    std::vector<double> moments = moments_of(frame, options_);
-    const std::size_t shown = moments.size();
-    if (needs_motion(options_.layers)) moments.insert(moments.end(), {frame - 1.0, frame + 1.0});
-    for (const double moment : moments) hash.add(pose_text(view_at(camera_, moment)));
-    // Which time of a loop a frame shows isn't in any key.
-    if (shot_.loop_s > 0.0)
-        for (std::size_t i = 0; i < shown; ++i) hash.add("time " + number_text(shot_.time_s(moments[i])));
+    for (const PicturePass& pass : passes_of(camera_, frame, options_).all) {
+        hash.add(pose_text(view_of(camera_, pass)));
+        // Which time of a loop a frame shows isn't in any key.
+        if (shot_.loop_s > 0.0) hash.add("time " + number_text(shot_.time_s(pass.frame)));
+    }
+    if (needs_motion(options_.layers))
+        for (const double beside : {frame - 1.0, frame + 1.0}) hash.add(pose_text(view_at(camera_, beside)));
     return hash.text();
 }
 
@@ -213,13 +215,25 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
     const bool has_alpha = !picture.alpha.empty();
     const std::size_t components = has_alpha ? 4 : 3;
     std::vector<std::uint8_t> bytes(picture.layers.size() * components);
+    const Camera& camera = context.scene.camera;
+    const glm::mat3 balance = white_balance(camera.white_balance_k);
+    std::vector<glm::vec3> glaring;
+    if (camera.glare > 0.0) {
+        glaring.resize(picture.layers.size());
+        std::transform(picture.layers.begin(), picture.layers.end(), glaring.begin(), radiance_of);
+        add_glare(glaring, picture.resolution,
+                  {.share = camera.glare,
+                   .pixel_tangent = 2.0 * view_at(camera, frame).tan_half_width / picture.resolution.x});
+    }
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = width * row + x;
             const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
-            const glm::vec3 radiance = radiance_of(picture.layers[i]) / (alpha > 0.0f ? alpha : 1.0f);
-            const auto shown = display_bytes(radiance, context.exposure, {static_cast<int>(x), row});
+            const glm::vec3 light = glaring.empty() ? radiance_of(picture.layers[i]) : glaring[i];
+            const glm::vec3 radiance = light / (alpha > 0.0f ? alpha : 1.0f);
+            const auto shown =
+                display_bytes(balance * radiance, context.exposure, {static_cast<int>(x), row});
             std::copy(shown.begin(), shown.end(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
             if (has_alpha) bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * alpha));

@@ -5,6 +5,8 @@
 // exactly one. The arithmetic is in integers and therefore exact. The nearest triangle is shown; of equally
 // near ones the first. Both sides are drawn. The part in front of the near plane is clipped.
 //
+// Where a pixel is looked at may be chosen for each (draw's `places`): the same holds with that place for its centre.
+//
 // Weights are perspective-correct. They come from the unrounded corners in homogeneous coordinates (Olano and
 // Greer 1997), which need no clipping.
 #pragma once
@@ -21,6 +23,13 @@
 
 namespace pelagic {
 
+// Where a pixel is looked at, from its centre in 1/256 of a pixel: −128 … 127; or that it isn't.
+struct PixelPlace {
+    static constexpr std::int16_t kNowhere = std::numeric_limits<std::int16_t>::max();
+    std::int16_t x = 0, y = 0;
+    bool is_taken() const { return x != kNowhere; }
+};
+
 class Rasteriser {
   public:
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -29,14 +38,18 @@ class Rasteriser {
     static constexpr std::size_t kPieceBytes = 7 * sizeof(std::int32_t);  // held for each triangle in view
 
     // clip: OpenGL's clip coordinates by vertex, finite. indices: three per triangle. Both must stay alive
-    // and unchanged until the last call. Throws std::invalid_argument for a resolution out of range.
-    void set(std::span<const glm::dvec4> clip, std::span<const std::uint32_t> indices, glm::ivec2 resolution);
+    // and unchanged until the last call. has_places: whether draw() gets any. Throws std::invalid_argument for a
+    // resolution out of range.
+    void set(std::span<const glm::dvec4> clip, std::span<const std::uint32_t> indices, glm::ivec2 resolution,
+             bool has_places = false);
 
     int band_count() const { return static_cast<int>(band_begin_.size()) - 1; }
 
     // Writes the triangle that each pixel of a band shows, or kNone. Rows begin at band·kBandRows, from the
     // top, x fastest, at full width; the last band may have fewer rows. Bands may be drawn in parallel.
-    void draw(int band, std::span<std::uint32_t> triangles) const;
+    // Without places each pixel is looked at in its centre; otherwise where its own says, and kNone is of those that
+    // aren't.
+    void draw(int band, std::span<std::uint32_t> triangles, std::span<const PixelPlace> places = {}) const;
 
     // The weights of a triangle's corners, in the order of its indices, at a point of the picture in pixels:
     // each 0 … 1, with the sum 1. A point outside the triangle (rounding may put a pixel's centre there) gets
@@ -65,6 +78,7 @@ class Rasteriser {
     std::span<const glm::dvec4> clip_;
     std::span<const std::uint32_t> indices_;
     glm::ivec2 resolution_{0};
+    int beside_ = 0;  // pixels that a triangle may meet beside those whose centres it does
     std::vector<Piece> pieces_;
     std::vector<std::size_t> band_begin_{0};  // into band_pieces_; one more for the end of the last band
     std::vector<std::uint32_t> band_pieces_;  // ascending within each band

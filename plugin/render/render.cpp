@@ -9,6 +9,7 @@
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -21,6 +22,7 @@
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/motion.h"
+#include "plugin/render/passes.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
 #include "plugin/render/under_water.h"
@@ -38,10 +40,12 @@ class Renderer::Impl {
 
 namespace {
 
-// Which samples are taken at once: all of them, or of each pixel the one in this column and row.
+// Which samples are taken at once: all of them, or of each pixel the one in this column and row; or one of each pixel
+// that takes the pass, where place_of() says.
 struct SamplesOfPass {
     int stride = 1;  // samples between two that are taken
-    glm::ivec2 first{0};
+    glm::dvec2 first{0.0};
+    bool is_by_pixel = false;
 };
 
 // Of a scene of samples, in the plan's precision; Impl is Renderer's own.
@@ -62,27 +66,30 @@ class RendererOf final : public Impl {
     void render(int frame, Picture& picture, const BuildWatch& watch) override {
         const int n = options_.samples;
         clear(picture);
-        const std::vector<double> moments = moments_of(frame, options_);
-        const auto passes = static_cast<int>(moments.size());
+        const auto [all, parts] = passes_of(scene_.camera, frame, options_);
+        const auto passes = static_cast<int>(all.size());
         // In rising time, so that foam's past is gone through once.
-        std::vector<int> order(moments.size());
+        std::vector<int> order(all.size());
         std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return moments[a] < moments[b]; });
+        std::stable_sort(order.begin(), order.end(),
+                         [&](int a, int b) { return all[a].frame < all[b].frame; });
         double begun = 0.0;  // the share of the pass that its foam's past took
         int ended = 0;       // passes
         const auto tell = [&](double done) {
             if (watch.progress) watch.progress((ended + begun + (1.0 - begun) * done) / passes);
         };
         for (const int pass : order) {
-            // With a shutter the first pass is for what isn't blurred, and each of the others takes one sample.
+            // With others the first pass is for what isn't blurred.
             const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
-            const int sample = pass - 1;
             sampling_ = passes == 1 ? SamplesOfPass{}
-                        : is_own    ? SamplesOfPass{n, glm::ivec2(n / 2)}
-                                    : SamplesOfPass{n, {sample % n, sample / n}};
+                        : is_own    ? SamplesOfPass{n, glm::dvec2(n / 2)}
+                                    : SamplesOfPass{n, glm::dvec2(0.5 * (n - 1)), true};
+            pass_ = all[pass];
+            parts_ = parts;
+            frame_ = frame;
             const bool is_answered = is_lit || has_data();
             begun = 0.0;
-            begin(moments[pass], watch);
+            begin(all[pass], watch);
             const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
             if (is_answered && sea_.foam_lives()) {
                 const BuildWatch past{.progress =
@@ -113,10 +120,10 @@ class RendererOf final : public Impl {
 
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
         for (std::size_t i = 0; i < frames.size(); ++i)
-            for (const double moment : moments_of(frames[i], options_)) {
-                if (!is_among_waves(view_at(scene_.camera, moment), grid_options_)) continue;
-                sea_.set(scene_.shot.time_s(moment), watch.cancel);
-                refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
+            for (const PicturePass& pass : passes_of(scene_.camera, frames[i], options_).all) {
+                if (!is_among_waves(view_at(scene_.camera, pass.frame), grid_options_)) continue;
+                set_time(pass.frame, watch);
+                refuse_under_water(sea_.frame(), scene_, pass.frame, grid_options_);
                 if (watch.progress)
                     watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
                 stop_if(watch.cancel);
@@ -155,13 +162,24 @@ class RendererOf final : public Impl {
         sea_.prepare(watch);
     }
 
+    // Passes through a lens alone share the sea.
+    void set_time(double frame, const BuildWatch& watch) {
+        const double time_s = scene_.shot.time_s(frame);
+        if (time_s == set_s_) return;
+        set_s_.reset();  // until it is
+        sea_.set(time_s, watch.cancel);
+        set_s_ = time_s;
+    }
+
     // Of large pictures each step takes tenths of a second.
-    void begin(double moment, const BuildWatch& watch) {
-        sea_.set(scene_.shot.time_s(moment), watch.cancel);
-        refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
-        const double height_m = view_.position_m.z;
-        view_ = view_at(scene_.camera, moment);
-        if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
+    void begin(const PicturePass& pass, const BuildWatch& watch) {
+        set_time(pass.frame, watch);
+        refuse_under_water(sea_.frame(), scene_, pass.frame, grid_options_);
+        view_ = view_of(scene_.camera, pass);
+        // Before all of the lens the air is that before its middle.
+        const double height_m = view_at(scene_.camera, pass.frame).position_m.z;
+        if (air_.empty() || height_m != air_height_m_) air_ = sea_.air_before(height_m);
+        air_height_m_ = height_m;
         stop_if(watch.cancel);
         lay_out_grid(watch);
         spray_ = sea_.spray_before(view_, grid_options_);
@@ -205,8 +223,8 @@ class RendererOf final : public Impl {
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         // Moves the samples that are taken to the middles of the rasteriser's pixels.
-        const glm::dvec2 shift =
-            glm::dvec2(sampling_.stride - 1 - 2 * sampling_.first) / glm::dvec2(view_.resolution);
+        const glm::dvec2 shift = (static_cast<double>(sampling_.stride - 1) - 2.0 * sampling_.first) /
+                                 glm::dvec2(view_.resolution);
         for (std::size_t i = 0; i < count; ++i) {
             clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
             clip_[i].x += shift.x * clip_[i].w;
@@ -216,7 +234,7 @@ class RendererOf final : public Impl {
         stop_if(watch.cancel);
         if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
         triangles_size_ = size;
-        raster_.set(clip_, triangles_, raster_size());
+        raster_.set(clip_, triangles_, raster_size(), sampling_.is_by_pixel);
         stop_if(watch.cancel);
     }
 
@@ -242,12 +260,21 @@ class RendererOf final : public Impl {
         const auto width = static_cast<std::size_t>(raster_size().x);
         batch_.triangles.resize(width * rows);
         batch_.radiance.assign(width * rows, SeaRadiance{});
+        batch_.places.resize(sampling_.is_by_pixel ? width * rows : 0);
         const int first_band = first_row / Rasteriser::kBandRows;
         const int bands = (rows + Rasteriser::kBandRows - 1) / Rasteriser::kBandRows;
         tbb::parallel_for(0, bands, [&](int band) {
             const std::size_t begin = width * band * Rasteriser::kBandRows;
             const std::size_t size = std::min(width * Rasteriser::kBandRows, batch_.triangles.size() - begin);
-            raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size));
+            const std::span places = batch_.places.empty() ? std::span<PixelPlace>{}
+                                                           : std::span(batch_.places).subspan(begin, size);
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                const std::size_t at = begin + i;
+                places[i] =
+                    place_of(pass_, parts_, options_.samples, frame_,
+                             {static_cast<int>(at % width), first_row + static_cast<int>(at / width)});
+            }
+            raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });
         batch_.sea.clear();
         for (std::size_t i = 0; i < batch_.triangles.size(); ++i)
@@ -257,12 +284,15 @@ class RendererOf final : public Impl {
     // A sample of the batch in the rasteriser's pixels, and in those of the view.
     glm::dvec2 centre(int first_row, std::size_t sample) const {
         const auto width = static_cast<std::size_t>(raster_size().x);
-        return {static_cast<double>(sample % width) + 0.5,
-                static_cast<double>(sample / width) + first_row + 0.5};
+        const glm::dvec2 middle(static_cast<double>(sample % width) + 0.5,
+                                static_cast<double>(sample / width) + first_row + 0.5);
+        if (batch_.places.empty()) return middle;
+        const PixelPlace place = batch_.places[sample];
+        return middle + glm::dvec2(place.x, place.y) / 256.0;
     }
     glm::dvec2 seen_at(int first_row, std::size_t sample) const {
-        return (centre(first_row, sample) - 0.5) * static_cast<double>(sampling_.stride) +
-               glm::dvec2(sampling_.first) + 0.5;
+        return (centre(first_row, sample) - 0.5) * static_cast<double>(sampling_.stride) + sampling_.first +
+               0.5;
     }
 
     template <class Work>
@@ -280,6 +310,7 @@ class RendererOf final : public Impl {
         if (!has_sky && !has_spray) return;
         in_parallel(batch_.triangles.size(), [&](std::size_t i) {
             if (batch_.triangles[i] != Rasteriser::kNone) return;
+            if (!batch_.places.empty() && !batch_.places[i].is_taken()) return;
             const glm::dvec3 direction = view_.direction(seen_at(first_row, i));
             const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
             if (has_sky)
@@ -345,8 +376,10 @@ class RendererOf final : public Impl {
                                          PixelFootprint<double> at_rest) const {
         const double tangent = view_.pixel_tangent();
         const glm::dvec2 from_middle = seen_at(first_row, sample) - 0.5 * glm::dvec2(view_.resolution);
-        const glm::dvec3 ray =
-            view_.forward + tangent * (from_middle.x * view_.right - from_middle.y * view_.up);
+        const glm::dvec2 middle = view_.middle_tangents();
+        const glm::dvec3 ray = view_.forward +
+                               tangent * (from_middle.x * view_.right - from_middle.y * view_.up) +
+                               (middle.x * view_.right + middle.y * view_.up);
         const glm::dvec2 nearer =
             raster_.relative_change(triangle, centre(first_row, sample)) / (sampling_.stride * tangent);
         return footprint_on_mesh(at_rest, view_.right.x, view_.right.y, view_.up.x, view_.up.y, ray.x, ray.y,
@@ -467,7 +500,11 @@ class RendererOf final : public Impl {
     View view_;
     Air air_;  // before that view's eye
     Spray spray_;
+    double air_height_m_ = 0.0;
+    std::optional<double> set_s_;  // the time that the sea is set to
     SamplesOfPass sampling_;
+    PicturePass pass_;
+    int parts_ = 0, frame_ = 0;
     ProjectedGrid grid_;
     T first_pixel_m_ = T(0);  // the finest level that the frame reads
     ProjectedGridSize triangles_size_;

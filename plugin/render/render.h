@@ -56,8 +56,9 @@ inline glm::vec3 radiance_of(const SeaRadiance& layers) {
 struct RenderOptions {
     LightingChoice lighting;
     int samples = 1;  // N × N a pixel, averaged before any tone mapping: 1 … 16
-    // How long the shutter is open [frames], around the frame's own time: 0 … 4. Beyond 0 each of the N × N samples
-    // has a moment of its own, with the sea and the camera as they are then.
+    // How long the shutter is open [frames], around the frame's own time: 0 … 4. Beyond 0, and with camera.f_stop, each of
+    // a pixel's samples has a moment and a place in the aperture of its own (passes.h), with the sea and the camera as they
+    // are then; one sample a pixel is sharp.
     double shutter_frames = 0.0;
     bool alpha =
         false;  // transparent where there is no sea, nor spray; the light is then multiplied by alpha
@@ -68,9 +69,6 @@ struct RenderOptions {
 };
 
 inline constexpr double kLongestShutter_frames = 4.0;
-
-// The moments that a picture shows, in frames: the frame's own, and with a shutter that of each sample, row by row.
-std::vector<double> moments_of(int frame, const RenderOptions& options);
 
 inline constexpr int kMostSamples = 16;
 

@@ -27,9 +27,9 @@ struct Span {
 
 bool sees(const View& view, const glm::dvec3& direction) {
     const double ahead = glm::dot(direction, view.forward);
-    const double high = view.tan_half_width * view.resolution.y / view.resolution.x;
-    return ahead > 0.0 && std::abs(glm::dot(direction, view.right)) <= view.tan_half_width * ahead &&
-           std::abs(glm::dot(direction, view.up)) <= high * ahead;
+    const glm::dvec2 half = view.half_tangents(), middle = view.middle_tangents();
+    return ahead > 0.0 && std::abs(glm::dot(direction, view.right) - middle.x * ahead) <= half.x * ahead &&
+           std::abs(glm::dot(direction, view.up) - middle.y * ahead) <= half.y * ahead;
 }
 
 // Without a pole in the picture the azimuth is continuous in it, and its extremes are on the edge.

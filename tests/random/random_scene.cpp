@@ -317,6 +317,7 @@ class Drawing {
         // Few keys, or most of them.
         const double each = draw_.uniform(0.1, 0.7), of_light = 0.5;
         for (const Key& key : keys()) {
+            if (key.path == kCameraFile) continue;  // says what keys say
             const bool is_data = key.type == KeyType::DataFile || key.type == KeyType::DataTime;
             Draw& draw = key.path.starts_with("light.") ? light_ : draw_;
             if (draw.chance(is_data                                          ? 0.1

@@ -164,10 +164,17 @@ struct Camera {
     std::vector<CameraKey> keys;                                      // by rising frame, constant outside
     CameraInterpolation interpolation = CameraInterpolation::Linear;  // between keys
     double fov_deg = 50.0;                                            // horizontal, 1 … 179
-    glm::ivec2 resolution{1280, 720};                                 // 1 … 65536 each
-    double exposure_ev = 0.0;  // stops brighter than metered, or than ev100
+    std::optional<double> focal_length_mm{};                          // the lens, instead of fov_deg
+    double sensor_width_mm = 36.0;                                    // of the film behind it
+    double shift_x = 0.0, shift_y = 0.0;  // of the picture's centre off the axis, in picture widths
+    double f_stop = 0.0;                  // focal length over the aperture's diameter; 0: a pinhole
+    double focus_distance_m = 10.0;       // along the axis
+    glm::ivec2 resolution{1280, 720};     // 1 … 65536 each
+    double exposure_ev = 0.0;             // stops brighter than metered, or than ev100
     std::optional<double>
         ev100{};  // the exposure, as a photographer's meter gives it at ISO 100; without: metered
+    double white_balance_k = 6500.0;  // the light's colour temperature that is shown as neutral
+    double glare = 0.0;               // share of the light that the lens scatters
 };
 
 // [light]

@@ -317,8 +317,9 @@ void read_key(Reader& reader, const Asked& asked, Scene& scene) {
     const std::optional<KeyValue> value = read_value(reader, asked);
     if (!value) return;
     if (asked.key.type == KeyType::DataFile) {
-        (asked.key.path == kCageFile ? reader.cage_file : reader.spectrum_file) =
-            std::get<std::string>(*value);
+        (asked.key.path == kCageFile     ? reader.cage_file
+         : asked.key.path == kCameraFile ? reader.camera_file
+                                         : reader.spectrum_file) = std::get<std::string>(*value);
         return;
     }
     if (const std::optional<Problem> problem = set_value(scene, asked.key, *value))

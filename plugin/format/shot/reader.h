@@ -25,9 +25,9 @@ class Reader {
     // `file`: as messages call it.
     explicit Reader(std::string file) : file_(std::move(file)) {}
 
-    // A spectrum's file and hour and a cage's file, as asked for: they are parsed with their tables and loaded when all
+    // A spectrum's file and hour, a cage's file and a camera's, as asked for: they are parsed with their tables and loaded when all
     // is read.
-    std::optional<std::string> spectrum_file, cage_file;
+    std::optional<std::string> spectrum_file, cage_file, camera_file;
     std::optional<std::chrono::sys_seconds> spectrum_time;
 
     // The value of this key stands here.

@@ -9,6 +9,7 @@
 #include "core/scene/validate.h"
 #include "plugin/format/obj/obj.h"
 #include "plugin/format/shot/bounds.h"
+#include "plugin/format/shot/chan.h"
 #include "plugin/format/shot/ndbc.h"
 #include "plugin/format/shot/read_scene.h"
 #include "plugin/format/shot/reader.h"
@@ -91,6 +92,25 @@ void load_cage(Reader& reader, const std::filesystem::path& folder, Surface& sur
     }
 }
 
+// A camera's path becomes keys, and is data of the scene as they are.
+void load_camera(Reader& reader, const std::filesystem::path& folder, Camera& camera) {
+    const std::string key(kCameraFile);
+    if (!reader.camera_file || reader.has_failed(key)) return;
+    const auto refuse = [&](std::string problem, std::string accepted) {
+        reader.refuse({key, quoted_text(*reader.camera_file), std::move(problem), std::move(accepted)});
+    };
+    if (reader.knows("camera.keys")) return refuse("is given beside camera.keys", "one of the two");
+    if (reader.has_failed("camera.resolution")) return;
+    try {
+        camera.keys =
+            parse_chan(read_text_file(folder / *reader.camera_file, kMostChanBytes), camera.resolution);
+    } catch (const TextFileError& error) {
+        refuse("the camera's path " + std::string(error.what()), "a .chan of at most 16 MiB");
+    } catch (const ChanError& error) {
+        refuse(error.what(), error.accepted());
+    }
+}
+
 // Whether there is a file of that name. The system takes a path up to its first NUL.
 bool is_file(const std::filesystem::path& file) {
     std::error_code ignored;
@@ -130,6 +150,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     Scene scene = read_scene(reader, root);
     load_measured(reader, file.parent_path(), scene.sea);
     load_cage(reader, file.parent_path(), scene.surface);
+    load_camera(reader, file.parent_path(), scene.camera);
     find_sky(reader, file.parent_path(), scene.light);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
     if (!reader.has_failed("light.sky"))

@@ -33,18 +33,18 @@ double distance_of_angles(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-FilmBack film_back(double fov_deg, glm::ivec2 resolution) {
+FilmBack film_back(double fov_deg, glm::ivec2 resolution, double film_width_mm) {
     if (!(fov_deg > 0.0 && fov_deg < 180.0)) {
         throw std::invalid_argument("USD: the camera's field of view must be between 0 and 180 degrees");
     }
     if (resolution.x < 1 || resolution.y < 1) {
         throw std::invalid_argument("USD: the camera's resolution must be positive");
     }
-    constexpr double kFilmWidth = 0.36;  // 36 mm in tenths of a metre
+    const double film_width = film_width_mm / 100.0;  // in tenths of a metre
     const double half_fov_rad = fov_deg * (std::numbers::pi / 360.0);
-    return {.horizontal_aperture = kFilmWidth,
-            .vertical_aperture = kFilmWidth * resolution.y / resolution.x,
-            .focal_length = 0.5 * kFilmWidth / std::tan(half_fov_rad)};
+    return {.horizontal_aperture = film_width,
+            .vertical_aperture = film_width * resolution.y / resolution.x,
+            .focal_length = 0.5 * film_width / std::tan(half_fov_rad)};
 }
 
 void check(const CameraPose& pose, int frame) {

@@ -33,19 +33,23 @@ struct Camera {
     std::vector<int> key_frames{};
     // The pose at a frame of the shot. It is called more than once for a frame, and must give the same.
     std::function<CameraPose(int frame)> pose_at{};
-    glm::ivec2 resolution{1280, 720};    // pixels; their ratio is the film's
+    glm::ivec2 resolution{1280, 720};  // pixels; their ratio is the film's
+    double film_width_mm = 36.0;       // > 0
+    glm::dvec2 shift{0.0};             // of the film, to the right and up in the picture, in widths of it
+    double f_stop = 0.0;               // 0: a pinhole
+    double focus_distance_m = 10.0;
     glm::dvec2 clipping_m{0.1, 1000e3};  // near and far; far is beyond the horizon of any aircraft
 };
 
 // Film and focal length in USD's unit for them, a tenth of the stage's, so 0.1 m. Only their ratios matter to
-// the picture; the film is 36 mm wide, as a photographer's.
+// the picture.
 struct FilmBack {
     double horizontal_aperture;
     double vertical_aperture;
     double focal_length;
 };
 // Throws std::invalid_argument unless 0 < fov_deg < 180 and the resolution is positive.
-FilmBack film_back(double fov_deg, glm::ivec2 resolution);
+FilmBack film_back(double fov_deg, glm::ivec2 resolution, double film_width_mm = 36.0);
 
 // Throws std::invalid_argument, naming the frame, unless the pose is finite, its axes are orthonormal and
 // right-handed, and 0 < fov_deg < 180.

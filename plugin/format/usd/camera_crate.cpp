@@ -29,7 +29,7 @@ class Sampler {
         return {pose.position_m, rotate_xyz_deg(pose, before_deg)};
     }
     double focal_length(const CameraPose& pose) const {
-        return film_back(pose.fov_deg, camera_.resolution).focal_length;
+        return film_back(pose.fov_deg, camera_.resolution, camera_.film_width_mm).focal_length;
     }
 
     // Puts samples at `last` and, since the one of `before`, wherever lines between them are too far off.
@@ -93,7 +93,8 @@ void check(const Camera& camera) {
 Crate camera_layer(const Camera& camera) {
     check(camera);
     const auto course = std::make_shared<const Course>(course_of(camera));
-    const FilmBack film = film_back(camera.pose_at(camera.first_frame).fov_deg, camera.resolution);
+    const FilmBack film =
+        film_back(camera.pose_at(camera.first_frame).fov_deg, camera.resolution, camera.film_width_mm);
 
     Crate crate;
     Crate::Fields layer;
@@ -138,7 +139,7 @@ Crate camera_layer(const Camera& camera) {
     constexpr std::string_view kOrder[] = {kTranslate, kRotate};
     const CrateValue clipping = crate.stored(ValueType::Vec2f, glm::vec2(camera.clipping_m));
     const CrateValue order = crate.token_array(kOrder);
-    const std::vector<Crate::Attribute> attributes{
+    std::vector<Crate::Attribute> attributes{
         {.name = "clippingRange", .type = "float2", .more = {{"default", clipping}}},
         {.name = "focalLength", .type = "float", .more = focal_length},
         {.name = "horizontalAperture", .type = "float", .more = real32(film.horizontal_aperture)},
@@ -150,6 +151,20 @@ Crate camera_layer(const Camera& camera) {
          .type = "token[]",
          .variability = Variability::Uniform,
          .more = {{"default", order}}}};
+    // What a pinhole in the film's middle doesn't need. In the order of names, as the others.
+    const auto add = [&](const char* name, double number, const char* before) {
+        const auto at = std::find_if(attributes.begin(), attributes.end(),
+                                     [&](const Crate::Attribute& each) { return each.name == before; });
+        attributes.insert(at, {.name = name, .type = "float", .more = real32(number)});
+    };
+    if (camera.f_stop > 0.0) {
+        add("fStop", camera.f_stop, "focalLength");
+        add("focusDistance", camera.focus_distance_m, "horizontalAperture");
+    }
+    if (camera.shift.x != 0.0)
+        add("horizontalApertureOffset", camera.shift.x * film.horizontal_aperture, "projection");
+    if (camera.shift.y != 0.0)
+        add("verticalApertureOffset", camera.shift.y * film.horizontal_aperture, kRotate.data());
     crate.add_prim(kCameraName,
                    {{"specifier", crate.specifier(Specifier::Def)}, {"typeName", crate.token("Camera")}},
                    attributes);

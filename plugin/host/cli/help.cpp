@@ -85,6 +85,8 @@ const char* const kRenderFooter =
     "The PNG's exposure is metered from the light and the sea in view, once for the whole shot\n"
     "(at the camera's keys), so that a turning camera keeps its brightness.\n"
     "A frame doesn't depend on other frames or on the number of threads.\n"
+    "camera.f_stop blurs what isn't in focus by the samples, too. camera.white_balance_k and\n"
+    "camera.glare are for the PNG; the EXR holds the light itself.\n"
     "\n"
     "Layers of the EXR, as Nuke and Blender read them:\n"
     "  sun, sky, sea, foam, air  .R .G .B  the light by its source; their sum is R, G, B\n"
@@ -120,8 +122,9 @@ const char* const kTerms =
 
 const char* const kShutter =
     "How long the shutter is open, in frames: 0.5 is half a frame (180°), around the frame's own\n"
-    "time. Sea and camera move; each of a pixel's N × N samples has a moment of its own, so take\n"
-    "more --samples for fast cameras. 0 to 4. Default: 0, no motion blur";
+    "time. Sea and camera move; each of a pixel's N × N samples has a moment of its own, chosen by\n"
+    "chance: few leave grain, so take more --samples for fast cameras; one a pixel is sharp. 0 to 4.\n"
+    "Default: 0, no motion blur";
 const char* const kAlpha =
     "Transparent where there is no sea: no sky behind it, and A, by which the light is multiplied\n"
     "(in the PNG it isn't, as that format wants)";

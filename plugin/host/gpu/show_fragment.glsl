@@ -7,6 +7,7 @@ uniform sampler2D air_picture;
 uniform vec2 picture_from_window;  // picture pixels per viewport pixel
 uniform vec2 window_first;
 uniform float exposure;
+uniform mat3 white_balance;
 uniform sampler2D dither;  // the beginning of dither() in core/lighting/tone.h, repeated
 
 out vec4 colour_out;
@@ -24,5 +25,5 @@ void main() {
     }
     // As display_bytes(), for a framebuffer of 8 bits, which rounds to the nearest.
     vec4 noise = texelFetch(dither, ivec2(gl_FragCoord.xy - window_first) % textureSize(dither, 0), 0);
-    colour_out = vec4(display_colour(radiance.xyz, exposure) + (noise.xyz - 0.5) / 255.0, 1.0);
+    colour_out = vec4(display_colour(white_balance * radiance.xyz, exposure) + (noise.xyz - 0.5) / 255.0, 1.0);
 }

@@ -244,8 +244,9 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     set_uniform(program.uniform("view_forward"), glm::vec3(view.forward));
     set_uniform(program.uniform("view_right"), glm::vec3(view.right * tangent));
     set_uniform(program.uniform("view_up"), glm::vec3(view.up * tangent));
-    glUniform2f(program.uniform("view_centre"), 0.5f * static_cast<float>(view.resolution.x),
-                0.5f * static_cast<float>(view.resolution.y));
+    const glm::vec2 centre(0.5 * glm::dvec2(view.resolution) -
+                           view.shift * static_cast<double>(view.resolution.x));
+    glUniform2f(program.uniform("view_centre"), centre.x, centre.y);
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
@@ -480,7 +481,7 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
 }
 
-void SeaRenderer::show(float exposure) {
+void SeaRenderer::show(float exposure, const glm::mat3& white_balance) {
     Implementation& of = *implementation_;
     const ShaderProgram& program =
         of.program_of(ShaderVariant::of_screen(of.picture_layers, of.picture_plain));
@@ -497,6 +498,7 @@ void SeaRenderer::show(float exposure) {
     glUniform2f(program.uniform("window_first"), static_cast<float>(viewport[0]),
                 static_cast<float>(viewport[1]));
     glUniform1f(program.uniform("exposure"), exposure);
+    glUniformMatrix3fv(program.uniform("white_balance"), 1, GL_FALSE, &white_balance[0].x);
     glUniform1f(program.uniform("farthest"), 0.0f);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -84,7 +85,7 @@ class SeaRenderer {
 
     // Shows the last picture in the bound framebuffer, filling the viewport, through display_colour()
     // (core/lighting/tone.glsl). False colours and wireframes are shown unchanged.
-    void show(float exposure);
+    void show(float exposure, const glm::mat3& white_balance);
 
     // Reads the last picture back, and waits for it. The terms are separate with options.layers. Otherwise
     // `sea` has the whole radiance (and `sky` has it where there is no sea).

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/lighting/tone.h"
 #include "core/scene/canonical.h"
 #include "core/scene/shot_text.h"
 #include "core/surface/projected_grid.h"
@@ -418,6 +419,7 @@ class Preview {
         const double wider =
             static_cast<double>(view.resolution.x) / view.resolution.y * shot_size.y / shot_size.x;
         view.tan_half_width *= std::max(wider, 1.0);
+        view.shift /= std::max(wider, 1.0);
         return view;
     }
 
@@ -526,7 +528,8 @@ class Preview {
         renderer_.draw(view, *grid, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
-        renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)));
+        renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)),
+                       white_balance(controls_.scene.camera.white_balance_k));
         readout_.times.gpu = renderer_.times();
     }
 

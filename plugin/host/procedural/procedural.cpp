@@ -61,9 +61,12 @@ pelagic_camera camera_of(const View& view) {
         camera.up[axis] = view.up[axis];
         camera.forward[axis] = view.forward[axis];
     }
-    camera.tan_half_width = view.tan_half_width;
-    camera.width = view.resolution.x;
-    camera.height = view.resolution.y;
+    // Its axis is in the picture's middle: where the shot's isn't, it sees more, with pixels as large.
+    const double across = 1.0 + 2.0 * std::abs(view.shift.x),
+                 along = 1.0 + 2.0 * std::abs(view.shift.y) * view.resolution.x / view.resolution.y;
+    camera.tan_half_width = view.tan_half_width * across;
+    camera.width = static_cast<int>(std::lround(view.resolution.x * across));
+    camera.height = static_cast<int>(std::lround(view.resolution.y * along));
     return camera;
 }
 

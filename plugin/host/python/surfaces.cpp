@@ -54,13 +54,14 @@ py::tuple tuple_of(glm::dvec3 v) {
 }
 
 View make_view(const Triple& position_m, const Triple& right, const Triple& up, const Triple& forward,
-               double tan_half_width, std::array<int, 2> resolution) {
+               double tan_half_width, std::array<int, 2> resolution, std::array<double, 2> shift) {
     return checked_view({.position_m = vector_of(position_m),
                          .right = vector_of(right),
                          .up = vector_of(up),
                          .forward = vector_of(forward),
                          .tan_half_width = tan_half_width,
-                         .resolution = {resolution[0], resolution[1]}});
+                         .resolution = {resolution[0], resolution[1]},
+                         .shift = {shift[0], shift[1]}});
 }
 
 View view_of_scene(const Scene& scene, double frame) {
@@ -76,9 +77,11 @@ void add_view(py::module_& module) {
         "A camera: a pinhole whose pixels are square.\n\n"
         "position_m: (x, y, z) [m]. right, up, forward: unit vectors of the picture in world axes, "
         "up = right × forward. tan_half_width: the tangent of half the horizontal field of view. "
-        "resolution: (width, height) in pixels.")
+        "resolution: (width, height) in pixels. shift: of the picture's middle off the axis, to the right and up, in widths "
+        "of the picture.")
         .def(py::init(&make_view), py::kw_only(), py::arg("position_m"), py::arg("right"), py::arg("up"),
-             py::arg("forward"), py::arg("tan_half_width"), py::arg("resolution"))
+             py::arg("forward"), py::arg("tan_half_width"), py::arg("resolution"),
+             py::arg("shift") = std::array<double, 2>{})
         .def_static("of_scene", &view_of_scene, py::arg("scene"), py::arg("frame"),
                     "The camera of a scene at a frame, which may lie between frames.")
         .def_property_readonly(
@@ -95,6 +98,9 @@ void add_view(py::module_& module) {
             "resolution",
             [](const View& self) { return py::make_tuple(self.resolution.x, self.resolution.y); },
             "(width, height) in pixels.")
+        .def_property_readonly(
+            "shift", [](const View& self) { return py::make_tuple(self.shift.x, self.shift.y); },
+            "(x, y) of the picture's middle off the axis, in widths of the picture.")
         .def(
             "__eq__", [](const View& self, const View& other) { return self == other; }, py::is_operator());
 }

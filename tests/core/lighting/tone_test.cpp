@@ -56,6 +56,29 @@ TEST(Tone, RisesWithTheLightAndStaysInRange) {
     for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(display_colour(glm::vec3(most), 1e3f)[c]));
 }
 
+glm::dvec3 rgb_of_xy(double x, double y) {  // Y = 1; the published inverse of IEC 61966-2-1's primaries
+    const glm::dvec3 xyz(x / y, 1.0, (1.0 - x - y) / y);
+    return {glm::dot(glm::dvec3(3.2404542, -1.5371385, -0.4985314), xyz),
+            glm::dot(glm::dvec3(-0.9692660, 1.8760108, 0.0415560), xyz),
+            glm::dot(glm::dvec3(0.0556434, -0.2040259, 1.0572252), xyz)};
+}
+
+// Light of a temperature gets the colour that light of 6500 K has without, at its own luminance. Illuminant A is a radiator of
+// 2856 K (CIE 015: x = 0.44757, y = 0.40745); at 6500 K Planck's locus is at x = 0.3135, y = 0.3237 (Wyszecki and Stiles 1982).
+TEST(Tone, WhiteBalanceMakesALightsColourNeutral) {
+    EXPECT_EQ(white_balance(6500.0), glm::mat3(1.0f));
+    const glm::dvec3 shown = glm::dmat3(white_balance(2856.0)) * rgb_of_xy(0.44757, 0.40745),
+                     wanted = rgb_of_xy(0.3135, 0.3237);
+    // The fit's 1e-4 in (u, v) is some 3e-3 of A's little blue, which becomes two to three times as bright.
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], wanted[c], 8e-3) << c;
+    glm::vec3 before = white_balance(1500.0) * glm::vec3(1.0f);
+    for (const double kelvin : {3000.0, 5000.0, 6500.0, 9000.0, 15000.0}) {
+        const glm::vec3 white = white_balance(kelvin) * glm::vec3(1.0f);
+        EXPECT_TRUE(white.x > before.x && white.z < before.z) << kelvin;
+        before = white;
+    }
+}
+
 // Hue as it is seen, the angle of Oklab's two opponent colours [degrees], and saturation as a colour picker has it.
 double hue_deg(glm::dvec3 linear) {
     const glm::dvec3 felt(

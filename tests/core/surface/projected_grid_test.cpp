@@ -20,6 +20,7 @@ struct Shot {
     glm::ivec2 resolution{1280, 720};
     glm::dvec2 at_m{0.0};
     double roll_deg = 0.0;
+    glm::dvec2 shift{0.0};
 };
 
 View view_of(const Shot& shot) {
@@ -32,6 +33,8 @@ View view_of(const Shot& shot) {
                                                               level * std::sin(azimuth), std::sin(pitch));
     camera.fov_deg = shot.fov_deg;
     camera.resolution = shot.resolution;
+    camera.shift_x = shot.shift.x;
+    camera.shift_y = shot.shift.y;
     camera.keys = {{.frame = 1,
                     .position_m = camera.position_m,
                     .look_at_m = camera.look_at_m,
@@ -93,13 +96,19 @@ std::vector<Shot> hard_shots() {
     for (const double roll_deg : {3.0, -45.0, 90.0, 180.0})
         for (const double pitch_deg : {-90.0, -35.0, 0.0, 20.0})
             shots.push_back({.pitch_deg = pitch_deg, .roll_deg = roll_deg});
+    for (const glm::dvec2 shift : {glm::dvec2(0.6, 0.0), {-0.3, -0.4}, {0.1, 1.5}})
+        for (const double fov_deg : {5.0, 50.0, 100.0})
+            for (const double pitch_deg : {-90.0, -20.0, 0.0})
+                shots.push_back(
+                    {.height_m = 6.0, .pitch_deg = pitch_deg, .fov_deg = fov_deg, .shift = shift});
     return shots;
 }
 
 std::string text_of(const Shot& shot) {
     return "height " + std::to_string(shot.height_m) + " pitch " + std::to_string(shot.pitch_deg) + " fov " +
            std::to_string(shot.fov_deg) + " " + std::to_string(shot.resolution.x) + " × " +
-           std::to_string(shot.resolution.y) + " roll " + std::to_string(shot.roll_deg);
+           std::to_string(shot.resolution.y) + " roll " + std::to_string(shot.roll_deg) + " shift " +
+           std::to_string(shot.shift.x) + ' ' + std::to_string(shot.shift.y);
 }
 
 // Draws points at rest that a displacement within the bounds brings into view, in reverse: a pixel, a height

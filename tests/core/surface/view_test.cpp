@@ -36,6 +36,56 @@ TEST(View, FollowsKeysLinearlyAndStandsStillOutside) {
     expect_near(view_at(camera, 12.5).forward, {0.0, 1.0, 0.0}, 1e-15);
 }
 
+// Where the matrix has what lies along a pixel's direction: in that pixel. With a shift its middle is so many widths off
+// the axis.
+TEST(View, AShiftMovesThePictureAndNothingInIt) {
+    Camera camera = camera_with({3.0, -20.0, 5.0}, {9.0, 4.0, 2.0});
+    camera.resolution = {640, 300};
+    camera.shift_x = 0.3;
+    camera.shift_y = -0.7;
+    const View view = view_at(camera, 1.0);
+    for (const glm::dvec2 pixel : {glm::dvec2(0.0), {640.0, 0.0}, {100.5, 222.5}}) {
+        const glm::dvec4 clip =
+            view.clip_from(view.position_m, 0.0) * glm::dvec4(7.0 * view.direction(pixel), 1.0);
+        EXPECT_NEAR((0.5 + 0.5 * clip.x / clip.w) * 640.0, pixel.x, 1e-9);
+        EXPECT_NEAR((0.5 - 0.5 * clip.y / clip.w) * 300.0, pixel.y, 1e-9);
+    }
+    const double width = 2.0 * view.tan_half_width;
+    const glm::dvec3 middle = view.direction({320.0, 150.0});
+    EXPECT_NEAR(glm::dot(middle, view.right) / glm::dot(middle, view.forward), 0.3 * width, 1e-12);
+    EXPECT_NEAR(glm::dot(middle, view.up) / glm::dot(middle, view.forward), -0.7 * width, 1e-12);
+}
+
+TEST(View, ALensSeesWhatIsInFocusInOnePlace) {
+    Camera camera = camera_with({0.0, 0.0, 5.0}, {9.0, 40.0, 2.0});
+    camera.focal_length_mm = 50.0;
+    camera.f_stop = 2.0;
+    camera.shift_x = 0.1;
+    const View middle = view_at(camera, 1.0);
+    EXPECT_NEAR(middle.fov_deg(), 39.5978, 1e-4);  // of the photographer's normal lens
+    const double radius_m = aperture_radius_m(camera, middle);
+    EXPECT_NEAR(radius_m, 0.0125, 1e-12);
+    constexpr double kFocus_m = 8.0;
+    const View beside = through_lens(middle, radius_m * glm::dvec2(0.6, -0.8), kFocus_m);
+    expect_near(beside.position_m - middle.position_m, radius_m * (0.6 * middle.right - 0.8 * middle.up),
+                1e-12);
+    const auto seen = [](const View& view, glm::dvec3 point_m) {
+        const glm::dvec4 clip = view.clip_from(glm::dvec3(0.0), 0.0) * glm::dvec4(point_m, 1.0);
+        return 0.5 * glm::dvec2(clip) / clip.w * glm::dvec2(view.resolution);
+    };
+    const auto moved_px = [&](double ahead_m) {
+        const glm::dvec3 point_m =
+            middle.position_m + ahead_m * middle.forward + 0.2 * middle.right - 0.1 * middle.up;
+        return glm::distance(seen(beside, point_m), seen(middle, point_m));
+    };
+    EXPECT_NEAR(moved_px(kFocus_m), 0.0, 1e-9);
+    // The circle of confusion's radius: f²/N |s − s₀|/(s s₀) / 2 of a thin lens whose film is at f.
+    const double film_px = 0.5 * middle.resolution.x / 0.018;
+    for (const double ahead_m : {2.0, 30.0})
+        EXPECT_NEAR(moved_px(ahead_m),
+                    0.05 * radius_m * std::abs(ahead_m - kFocus_m) / (ahead_m * kFocus_m) * film_px, 1e-9);
+}
+
 // Keys at uneven frames, with a stand and turns in them.
 Camera smooth_camera() {
     Camera camera;

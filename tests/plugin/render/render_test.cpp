@@ -215,7 +215,7 @@ TEST(Render, FarFromTheOriginThePictureIsTheSame) {
 TEST(Render, SameBitsForAnyNumberOfThreadsAndOrderOfFrames) {
     Scene scene = small_scene();
     scene.camera.resolution = {150, 90};  // more than a band
-    const RenderOptions options{.lighting = render_options(scene).lighting, .samples = 3};
+    RenderOptions options{.lighting = render_options(scene).lighting, .samples = 3};
     const auto on_threads = [&](int threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                         static_cast<std::size_t>(threads));
@@ -230,6 +230,62 @@ TEST(Render, SameBitsForAnyNumberOfThreadsAndOrderOfFrames) {
     EXPECT_FALSE(same_bits(one, again));  // the sea moves
     renderer.render(5, again);
     EXPECT_TRUE(same_bits(one, again));
+    // Where each pixel has its own samples.
+    scene.camera.resolution = {50, 30};
+    scene.camera.f_stop = 2.0;
+    options.samples = 2;
+    options.shutter_frames = 0.5;
+    EXPECT_TRUE(same_bits(on_threads(1), on_threads(4)));
+}
+
+// A picture with a shift of a quarter of its width shows on its left what one without shows on its right: the same but for
+// grids that are laid out anew.
+TEST(Render, AShiftedPictureGoesOnWhereTheOtherEnds) {
+    Scene scene = small_scene();
+    const Picture straight = picture_of(scene);
+    scene.camera.shift_x = 0.25;
+    scene.camera.shift_y = 0.125;  // 8 rows
+    const Picture shifted = picture_of(scene);
+    double apart = 0.0, same = 0.0, all = 0.0;
+    for (int y = 8; y < 40; ++y)
+        for (int x = 0; x < 48; ++x) {
+            const auto light = [](const Picture& picture, int column, int row) {
+                return static_cast<double>(
+                    radiance_of(picture.layers[static_cast<std::size_t>(row * 64 + column)]).y);
+            };
+            apart += std::abs(light(shifted, x, y) - light(straight, x + 16, y - 8));
+            same += std::abs(light(shifted, x, y) - light(straight, x, y));
+            all += light(shifted, x, y);
+        }
+    EXPECT_LT(apart / all, 0.01);
+    EXPECT_GT(same, 5.0 * apart);
+}
+
+// A wide aperture keeps what it is focused on, and blurs the rest; the mean light stays.
+TEST(Render, ALensIsSharpWhereItIsFocused) {
+    Scene scene = small_scene();
+    scene.camera.resolution = {96, 40};
+    scene.camera.position_m = {0.0, 0.0, 3.0};
+    scene.camera.look_at_m = {0.0, 10.0, 2.0};
+    RenderOptions options = render_options(scene);
+    options.samples = 4;
+    const Picture pinhole = picture_of(scene, options);
+    scene.camera.sensor_width_mm = 900.0;  // a giant's camera: an aperture of some 1 m
+    scene.camera.f_stop = 1.0;
+    const auto error = [&](double focus_m, int first_row, int last_row) {
+        scene.camera.focus_distance_m = focus_m;
+        const Picture picture = picture_of(scene, options);
+        double off = 0.0, all = 0.0;
+        for (int i = first_row * 96; i < last_row * 96; ++i) {
+            off += std::abs(
+                static_cast<double>(radiance_of(picture.layers[i]).y - radiance_of(pinhole.layers[i]).y));
+            all += static_cast<double>(radiance_of(pinhole.layers[i]).y);
+        }
+        return off / all;
+    };
+    // The last rows are some 11 m away.
+    EXPECT_LT(2.0 * error(10.8, 36, 40), error(1000.0, 36, 40));
+    EXPECT_LT(2.0 * error(1000.0, 12, 20), error(2.0, 12, 20));
 }
 
 // Half way between two keys the picture is that of a camera that stands there. 1e-4 of the sky: places are

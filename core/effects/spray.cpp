@@ -64,7 +64,8 @@ SprayVeil::SprayVeil(const Frame<T>& frame) {
 }
 
 // e^{strength Σ w u} over its mean, Π sinh(strength w)/(strength w), u of −1 … 1 at the corners of the cell of place and time, Σ w² = 1.
-SprayVeil::Torn SprayVeil::drawn(int height, int octave, glm::dvec2 place_m, double time_s, double strength) const {
+SprayVeil::Torn SprayVeil::drawn(int height, int octave, glm::dvec2 place_m, double time_s,
+                                 double strength) const {
     const Tear& tear = kTears[static_cast<std::size_t>(height)];
     const double finer = std::pow(kFiner, octave), moved_m = tear.of_wind * wind_mps_ * time_s;
     const std::array at{(glm::dot(place_m, downwind_) - moved_m) / (finer * tear.along_m),
@@ -147,7 +148,8 @@ void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, s
     std::vector<std::size_t> moved;
     std::vector<Vec> places_m, cell_axes, pixel_axes;
     std::vector<T> cells, pixels, there;
-    const auto gather = [&]<class V>(const Strided<const V>& from, std::vector<V>& to, Strided<const V>& view) {
+    const auto gather = [&]<class V>(const Strided<const V>& from, std::vector<V>& to,
+                                     Strided<const V>& view) {
         if (!from) return;
         to.clear();
         for (const std::size_t i : moved) to.push_back(from[i]);
@@ -180,7 +182,8 @@ void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, s
         for (std::size_t i = 0; i < count; ++i) {
             const bool is_moved = next < moved.size() && moved[next] == i;
             shares[i][each.height] += each.weight * torn[3 * i + height].factor *
-                                      static_cast<double>(is_moved ? there[next] : breaking[i]) / mean_breaking_;
+                                      static_cast<double>(is_moved ? there[next] : breaking[i]) /
+                                      mean_breaking_;
             next += is_moved ? 1 : 0;
         }
     }
@@ -191,8 +194,8 @@ template double mean_breaking(const Sea<double>&);
 template SprayVeil::SprayVeil(const Frame<float>&);
 template SprayVeil::SprayVeil(const Frame<double>&);
 template void SprayVeil::shares(const PreparedQuery<float>&, const Points<float>&, std::span<const float>,
-                                     std::span<const double>, std::span<glm::dvec3>) const;
+                                std::span<const double>, std::span<glm::dvec3>) const;
 template void SprayVeil::shares(const PreparedQuery<double>&, const Points<double>&, std::span<const double>,
-                                     std::span<const double>, std::span<glm::dvec3>) const;
+                                std::span<const double>, std::span<glm::dvec3>) const;
 
 }  // namespace pelagic

@@ -42,7 +42,7 @@ class SprayVeil {
     // evaluate_at() takes them. On all threads of the calling arena.
     template <class T>
     void shares(const PreparedQuery<T>& query, const Points<T>& places, std::span<const T> breaking,
-                     std::span<const double> mean_cell_m, std::span<glm::dvec3> shares) const;
+                std::span<const double> mean_cell_m, std::span<glm::dvec3> shares) const;
 
     // At height 0, 1 or 2, at a place of the world: the noise, mean 1, and how far spray there has strayed [m].
     struct Torn {

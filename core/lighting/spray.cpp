@@ -34,9 +34,10 @@ struct Shading {
 }  // namespace spray_shading
 
 spray_shading::Shading::SprayView view_of(const Spray& spray) {
-    return {spray.columns,  spray.rows,    spray.azimuth, spray.columns_per_rad, spray.first_m,
-            spray.row_step, spray.is_torn, spray.scale_m, spray.step_m, spray.haze_per_m, spray.forward, spray.eye_m, spray.top_m,
-            spray.to_sun, spray.sun, spray.above, spray.below, spray.low_ahead, spray.low_beside, spray.low_behind};
+    return {spray.columns,  spray.rows,    spray.azimuth,   spray.columns_per_rad, spray.first_m,
+            spray.row_step, spray.is_torn, spray.scale_m,   spray.step_m,          spray.haze_per_m,
+            spray.forward,  spray.eye_m,   spray.top_m,     spray.to_sun,          spray.sun,
+            spray.above,    spray.below,   spray.low_ahead, spray.low_beside,      spray.low_behind};
 }
 
 void take(SeaRadiance& radiance, const spray_shading::Shading::SprayPath& path) {

@@ -22,12 +22,12 @@ struct Spray {
     // exp(−z/scale).
     bool is_torn = false;
     float scale_m = 1.0f, step_m = 1.0f;
-    float haze_per_m = 0.0f;      // extinction at the surface
-    glm::vec2 forward{0.85f};     // mean cosines of what the sun's light is scattered into, half each
+    float haze_per_m = 0.0f;   // extinction at the surface
+    glm::vec2 forward{0.85f};  // mean cosines of what the sun's light is scattered into, half each
     float eye_m = 0.0f, top_m = 0.0f;
     // Its light (light_spray()).
-    glm::vec3 to_sun{0.0f, 0.0f, 1.0f}, sun{0.0f}, above{0.0f}, below{0.0f}, low_ahead{0.0f}, low_beside{0.0f},
-        low_behind{0.0f};
+    glm::vec3 to_sun{0.0f, 0.0f, 1.0f}, sun{0.0f}, above{0.0f}, below{0.0f}, low_ahead{0.0f},
+        low_beside{0.0f}, low_behind{0.0f};
     // columns × rows, columns fastest: the surface's height in the axes of the eye's nadir [m], and the extinctions there [1/m]: at the surface, at 1 and
     // at 2.5 steps.
     std::vector<glm::vec4> texels{};

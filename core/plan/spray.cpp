@@ -37,7 +37,7 @@ SprayLaw monahan_law(double wind_speed_mps) {
     constexpr double kScaleHeight_m = 2.0;
     constexpr double kDeposition_mps = 0.01;  // concentration = flux / this
     double number = 0.0, area_um2 = 0.0,
-           volume_um3 = 0.0;                  // fluxes of droplets, of their sections, of their volumes
+           volume_um3 = 0.0;  // fluxes of droplets, of their sections, of their volumes
     over_radii(kSmallest_um, kLargest_um, 64, [&](double r_um, double weight) {
         const double flux = weight * monahan_source(wind_speed_mps, r_um);
         number += flux;
@@ -47,7 +47,7 @@ SprayLaw monahan_law(double wind_speed_mps) {
     return {.number_flux_per_m2_s = number,
             .mass_flux_kg_per_m2_s = volume_um3 * kM3PerUm3 * SprayLaw::kDroplet_kg_per_m3,
             .over_foam = {SprayLaw::kExtinctionEfficiency * area_um2 * kM2PerUm2 / kDeposition_mps,
-                      kScaleHeight_m}};
+                          kScaleHeight_m}};
 }
 
 // Andreas' ranges of r80 [µm], in each of which the source is a power of it.
@@ -72,7 +72,8 @@ double smith_source(double wind_14_mps, double radius_um) {
 double andreas_shape(double radius_um) {
     double shape = 3.5;
     for (std::size_t i = 0; i < kPowers.size(); ++i)
-        shape *= std::pow(std::clamp(radius_um, kBounds_um[i], kBounds_um[i + 1]) / kBounds_um[i], kPowers[i]);
+        shape *=
+            std::pow(std::clamp(radius_um, kBounds_um[i], kBounds_um[i + 1]) / kBounds_um[i], kPowers[i]);
     return shape;
 }
 
@@ -89,10 +90,12 @@ SprayLaw andreas_law(double wind_speed_mps, double significant_height_m) {
     if (!(blown > 0.0)) return {};
     const double wind_mps = std::min(wind_speed_mps, kFastestSeen_mps);
     const WindProfile wind(wind_mps);
-    const double friction_mps = wind.friction_mps(), at_10_um = blown * smith_source(wind_at_14_m(wind), 10.0);
+    const double friction_mps = wind.friction_mps(),
+                 at_10_um = blown * smith_source(wind_at_14_m(wind), 10.0);
     constexpr double kFlattest_m = 0.1, kCounts_m = 20.0, kKarman = 0.4;
     const double flat_m = std::max(0.25 * significant_height_m, kFlattest_m);
-    const double rest = std::log((flat_m + kCounts_m) / flat_m), turbulent_mps = friction_mps * friction_mps / wind_mps;
+    const double rest = std::log((flat_m + kCounts_m) / flat_m),
+                 turbulent_mps = friction_mps * friction_mps / wind_mps;
     SprayLaw law;
     double extinction_per_m = 0.0, thickness = 0.0;
     for (std::size_t i = 0; i < kPowers.size(); ++i)
@@ -163,8 +166,8 @@ SprayLaw spray_law(const Scene& scene, double significant_height_m) {
     if (!is_on(Effect::Spray, scene)) return {};
     SprayLaw law = spray_law(scene.effects.spray_law, scene.sea.wind_speed_mps, significant_height_m);
     const double gain = scene.effects.spray_gain;
-    for (double* part : {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s, &law.over_foam.extinction_per_m,
-                         &law.haze.extinction_per_m})
+    for (double* part : {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s,
+                         &law.over_foam.extinction_per_m, &law.haze.extinction_per_m})
         *part *= gain;
     law.ribbons.extinction_per_m *= gain;
     return law;

@@ -41,9 +41,7 @@ struct SprayRibbons {
     // The mean over [from_m, to_m] above the surface, below which there is none, of one with these extinctions.
     double mean(glm::dvec3 extinctions, double from_m, double to_m) const;
     // Straight up, on average.
-    double optical_thickness() const {
-        return mean(extinction_per_m, 0.0, top_m()) * top_m();
-    }
+    double optical_thickness() const { return mean(extinction_per_m, 0.0, top_m()) * top_m(); }
     double top_m() const { return kHeights.back() * step_m; }
 };
 

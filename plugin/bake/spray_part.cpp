@@ -6,8 +6,8 @@
 
 #include "core/base/constants.h"
 #include "core/effects/spray.h"
-#include "core/plan/wind_profile.h"
 #include "core/plan/spray.h"
+#include "core/plan/wind_profile.h"
 #include "plugin/bake/volume_blocks.h"
 #include "plugin/bake/volume_part.h"
 
@@ -24,13 +24,16 @@ struct SpraySlot final : OutputSlot {
 // The profile's mean over [from_m, to_m] above the sea, none below it.
 double mean_profile(double scale_m, double from_m, double to_m) {
     if (!(to_m > 0.0)) return 0.0;
-    return scale_m * (std::exp(-std::max(from_m, 0.0) / scale_m) - std::exp(-to_m / scale_m)) / (to_m - from_m);
+    return scale_m * (std::exp(-std::max(from_m, 0.0) / scale_m) - std::exp(-to_m / scale_m)) /
+           (to_m - from_m);
 }
 
 class SprayPart final : public VolumePart {
   public:
     SprayPart(const Plan& plan, const PlannedOutput& output)
-        : VolumePart(plan, output), law_(spray_law(scene(), plan.from->extent.significant_height_m)), wind_(scene().sea.wind_speed_mps) {
+        : VolumePart(plan, output),
+          law_(spray_law(scene(), plan.from->extent.significant_height_m)),
+          wind_(scene().sea.wind_speed_mps) {
         const int columns = voxels_a_side(scene());
         const double half_m = 0.5 * size_m();
         for (int i = 0; i < columns; ++i) {
@@ -84,21 +87,20 @@ class SprayPart final : public VolumePart {
         const SprayVeil veil(sea);
         std::vector<glm::dvec3> shares;
         std::vector<double> cells_m;
-        for_each_row<T>(sea, middles_m_, watch,
-                        [&](std::size_t first, const Row<T>& row, const PreparedQuery<T>& ask) {
-                            const std::size_t count = row.breaking.size();
-                            shares.resize(count);
-                            cells_m.assign(count, voxel_m());
-                            veil.shares<T>(ask, {.count = count, .rest_m = {row.places_m.data()}}, row.breaking,
-                                           cells_m, shares);
-                            for (std::size_t i = 0; i < count; ++i) {
-                                slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
-                                slot.breaking[first + i] =
-                                    mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean)
-                                               : 0.0f;
-                                slot.shares[first + i] = glm::vec3(shares[i]);
-                            }
-                        });
+        for_each_row<T>(
+            sea, middles_m_, watch, [&](std::size_t first, const Row<T>& row, const PreparedQuery<T>& ask) {
+                const std::size_t count = row.breaking.size();
+                shares.resize(count);
+                cells_m.assign(count, voxel_m());
+                veil.shares<T>(ask, {.count = count, .rest_m = {row.places_m.data()}}, row.breaking, cells_m,
+                               shares);
+                for (std::size_t i = 0; i < count; ++i) {
+                    slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
+                    slot.breaking[first + i] =
+                        mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean) : 0.0f;
+                    slot.shares[first + i] = glm::vec3(shares[i]);
+                }
+            });
     }
 
     // The extinctions of a column's voxels at the heights of the ribbons, or at the surface alone, as means over them where the
@@ -214,8 +216,7 @@ class SprayPart final : public VolumePart {
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 const double top_m =
                     (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
-                spray.optical_thickness +=
-                    mean_over(extinction, 0.0, top_m) * top_m;
+                spray.optical_thickness += mean_over(extinction, 0.0, top_m) * top_m;
             }
         spray.breaking_over_mean /= area;
         spray.optical_thickness /= area;

@@ -137,18 +137,19 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     const Radii radii = radii_of(view, curvature);
     const double step = std::log(radii.last_m / radii.first_m) / (size.rows - 1);
     const double turn = span.rad / (size.columns - 1);
-    Spray spray{.columns = size.columns,
-                .rows = size.rows,
-                .azimuth = glm::vec2(glm::dvec2(std::cos(span.first_rad), std::sin(span.first_rad))),
-                .columns_per_rad = static_cast<float>(1.0 / turn),
-                .first_m = static_cast<float>(radii.first_m),
-                .row_step = static_cast<float>(step),
-                .is_torn = veil.is_torn(),
-                .scale_m = static_cast<float>((veil.is_torn() ? veil.law().haze : veil.law().over_foam).scale_m),
-                .step_m = static_cast<float>(veil.law().ribbons.step_m),
-                .haze_per_m = static_cast<float>(veil.law().haze.extinction_per_m),
-                .forward = veil.is_torn() ? kTornForward : Spray{}.forward,
-                .eye_m = static_cast<float>(view.position_m.z)};
+    Spray spray{
+        .columns = size.columns,
+        .rows = size.rows,
+        .azimuth = glm::vec2(glm::dvec2(std::cos(span.first_rad), std::sin(span.first_rad))),
+        .columns_per_rad = static_cast<float>(1.0 / turn),
+        .first_m = static_cast<float>(radii.first_m),
+        .row_step = static_cast<float>(step),
+        .is_torn = veil.is_torn(),
+        .scale_m = static_cast<float>((veil.is_torn() ? veil.law().haze : veil.law().over_foam).scale_m),
+        .step_m = static_cast<float>(veil.law().ribbons.step_m),
+        .haze_per_m = static_cast<float>(veil.law().haze.extinction_per_m),
+        .forward = veil.is_torn() ? kTornForward : Spray{}.forward,
+        .eye_m = static_cast<float>(view.position_m.z)};
 
     const auto count = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
     using Vec = glm::vec<2, T>;
@@ -206,9 +207,10 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     spray.top_m = -std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 at(glm::dvec2(places[i]), static_cast<double>(displacement[i].z));
-        spray.texels[i] = {static_cast<float>(on_earth(at, curvature).z),
-                           of_foam ? glm::vec3(static_cast<float>(law.over_foam.extinction_per_m * shares[i].x), 0.0f, 0.0f)
-                                   : glm::vec3(law.ribbons.extinction_per_m * shares[i])};
+        spray.texels[i] = {
+            static_cast<float>(on_earth(at, curvature).z),
+            of_foam ? glm::vec3(static_cast<float>(law.over_foam.extinction_per_m * shares[i].x), 0.0f, 0.0f)
+                    : glm::vec3(law.ribbons.extinction_per_m * shares[i])};
         spray.top_m = std::max(spray.top_m, spray.texels[i].x);
     }
     return spray;

@@ -69,9 +69,7 @@ std::vector<Uniform> air_uniforms(const Air& air) {
 std::vector<Uniform> spray_uniforms(const Spray& spray) {
     return {vector("spray_azimuth", glm::vec3(spray.azimuth, spray.columns_per_rad)),
             vector("spray_rows", glm::vec3(spray.first_m, spray.row_step, spray.eye_m)),
-            {.name = "spray_is_torn",
-             .value = glm::vec4(spray.is_torn ? 1.0f : 0.0f),
-             .is_integer = true},
+            {.name = "spray_is_torn", .value = glm::vec4(spray.is_torn ? 1.0f : 0.0f), .is_integer = true},
             vector("spray_scales", {spray.scale_m, spray.step_m, spray.haze_per_m}),
             vector("spray_forward", glm::vec3(spray.forward, 0.0f)),
             number("spray_top_m", static_cast<double>(spray.top_m)),

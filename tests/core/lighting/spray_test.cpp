@@ -264,7 +264,8 @@ TEST(SprayBefore, IsFiniteEverywhere) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (const double eye_m : {-8.0, 0.0, 1e-3, 3.0, 60.0, 1e5, 1e8})
-        for (const auto& [factor, torn] : {std::pair(0.0, false), {1e-6, true}, {1.0, false}, {1.0, true}, {1e6, false}, {1e6, true}}) {
+        for (const auto& [factor, torn] :
+             {std::pair(0.0, false), {1e-6, true}, {1.0, false}, {1.0, true}, {1e6, false}, {1e6, true}}) {
             Spray spray = torn ? torn_spray(eye_m, kWaves) : spray_of(eye_m, kWaves);
             for (glm::vec4& texel : spray.texels)
                 for (int i = 1; i < 4; ++i) texel[i] *= static_cast<float>(factor);

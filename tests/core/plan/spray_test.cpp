@@ -53,8 +53,7 @@ TEST(Spray, SaysFromWhichGainOnAPictureShowsIt) {
     const std::string warning = warning_of(scene);
     Scene breeze = scene;
     breeze.sea.wind_speed_mps = 10.0;  // two digits, whatever doubles make of them
-    EXPECT_NE(warning_of(breeze).find("takes 0.013 % of the light"), std::string::npos)
-        << warning_of(breeze);
+    EXPECT_NE(warning_of(breeze).find("takes 0.013 % of the light"), std::string::npos) << warning_of(breeze);
     const std::string key = "effects.spray_gain = ";
     const std::size_t at = warning.find(key);
     ASSERT_NE(at, std::string::npos) << warning;
@@ -131,8 +130,10 @@ TEST(Spray, TornOffCrestsItIsAsMuchAsItsPapersSay) {
     struct AndreasCase {
         double wind_mps, height_m, mass, extinction, thickness;
     };
-    for (const AndreasCase& of : {AndreasCase{15.0, 4.817, 4.84e-5, 8.90e-4, 4.16e-3}, AndreasCase{20.0, 8.563, 1.88e-4, 3.39e-3, 2.68e-2},
-                           AndreasCase{25.0, 13.38, 6.22e-4, 1.09e-2, 0.124}, AndreasCase{32.0, 21.92, 2.78e-3, 4.67e-2, 0.754}}) {
+    for (const AndreasCase& of : {AndreasCase{15.0, 4.817, 4.84e-5, 8.90e-4, 4.16e-3},
+                                  AndreasCase{20.0, 8.563, 1.88e-4, 3.39e-3, 2.68e-2},
+                                  AndreasCase{25.0, 13.38, 6.22e-4, 1.09e-2, 0.124},
+                                  AndreasCase{32.0, 21.92, 2.78e-3, 4.67e-2, 0.754}}) {
         const SprayLaw law = spray_law(SpraySource::Andreas1998, of.wind_mps, of.height_m);
         EXPECT_NEAR(law.mass_flux_kg_per_m2_s / of.mass, 1.0, 0.01) << of.wind_mps;
         EXPECT_NEAR(law.extinction_per_m() / of.extinction, 1.0, 0.01) << of.wind_mps;
@@ -156,7 +157,8 @@ TEST(Spray, IsFiniteAndGrowsUpToWhatHasBeenSeen) {
     for (double wind_mps = 0.0; wind_mps <= 80.0; wind_mps += 0.25)
         for (const double height_m : {0.0, 0.3, 6.0, 40.0}) {
             const SprayLaw law = spray_law(SpraySource::Andreas1998, wind_mps, height_m);
-            ASSERT_TRUE(std::isfinite(law.optical_thickness()) && std::isfinite(law.extinction_per_m())) << wind_mps;
+            ASSERT_TRUE(std::isfinite(law.optical_thickness()) && std::isfinite(law.extinction_per_m()))
+                << wind_mps;
             if (wind_mps <= 8.0) {
                 EXPECT_EQ(law.optical_thickness(), 0.0);
             }

@@ -76,7 +76,7 @@ inline SprayBalance spray_balance(const Scene& scene) {
     read_vdb(file).front().for_each(
         [&](glm::ivec3, glm::vec3 value) { sum += static_cast<double>(value.x); });
     balance.optical_thickness = sum * std::pow(scene.output.voxel_m, 3.0) / area_m2 /
-                               (law.optical_thickness() - law.haze.optical_thickness());
+                                (law.optical_thickness() - law.haze.optical_thickness());
     balance.breaking = breaking_in_square(scene);
     fs::remove(file);
     return balance;

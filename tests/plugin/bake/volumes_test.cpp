@@ -12,9 +12,9 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,10 +22,10 @@
 
 #include "core/base/constants.h"
 #include "core/effects/spray.h"
-#include "core/plan/wind_profile.h"
 #include "core/evaluate/places.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/spray.h"
+#include "core/plan/wind_profile.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/level_set.h"
 #include "plugin/bake/volume_blocks.h"
@@ -176,9 +176,9 @@ TEST_F(Volumes, TornSprayIsTheVeil) {
     const PreparedQuery<double> ask(frame, output->query, products(Product::Displacement, Product::Breaking));
     const SprayVeil veil(frame);
     const SprayLaw& law = veil.law();
-    EXPECT_NEAR(law.optical_thickness(), 2.0 * spray_law(SpraySource::Andreas1998, 18.0,
-                                                         plan.from->extent.significant_height_m)
-                                                   .optical_thickness(),
+    EXPECT_NEAR(law.optical_thickness(),
+                2.0 * spray_law(SpraySource::Andreas1998, 18.0, plan.from->extent.significant_height_m)
+                          .optical_thickness(),
                 1e-12);
     const Columns columns = columns_of(density);
     ASSERT_GT(columns.size(), 200u);
@@ -186,9 +186,8 @@ TEST_F(Volumes, TornSprayIsTheVeil) {
     std::vector<double> seen, breaking, cells_m;
     for (const auto& [column, voxels] : columns) {
         places_m.emplace_back(density.place_m({column.first, column.second, 0}));
-        seen.push_back(std::accumulate(voxels.begin(), voxels.end(), 0.0, [](double sum, const auto& voxel) {
-            return sum + voxel.second;
-        }));
+        seen.push_back(std::accumulate(voxels.begin(), voxels.end(), 0.0,
+                                       [](double sum, const auto& voxel) { return sum + voxel.second; }));
     }
     const Points<double> points{.count = places_m.size(), .rest_m = {places_m.data()}};
     breaking.resize(points.count);
@@ -582,8 +581,11 @@ TEST_F(Volumes, HaveAboutAsManyBlocksAsTheirPlanExpects) {
         double wind_mps, size_m, voxel_m;
         bool torn = false;
     };
-    for (const auto& [wind_mps, size_m, voxel_m, torn] :
-         {Case{8.0, 100.0, 0.5}, {16.0, 150.0, 1.0}, {24.0, 40.0, 0.25}, {0.0, 40.0, 0.5}, {17.0, 150.0, 1.0, true}}) {
+    for (const auto& [wind_mps, size_m, voxel_m, torn] : {Case{8.0, 100.0, 0.5},
+                                                          {16.0, 150.0, 1.0},
+                                                          {24.0, 40.0, 0.25},
+                                                          {0.0, 40.0, 0.5},
+                                                          {17.0, 150.0, 1.0, true}}) {
         SCOPED_TRACE(testing::Message() << wind_mps << " m/s, voxels of " << voxel_m << " m");
         Scene scene = stormy(size_m, voxel_m);
         scene.sea.wind_speed_mps = wind_mps;

@@ -1,11 +1,40 @@
 #include "core/effects/spray.h"
 
-#include <cmath>
+#include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/base/random.h"
 #include "core/plan/spray.h"
 #include "core/waves/whitecaps.h"
 
 namespace pelagic {
+namespace {
+
+// Ages of the spray at a height, and their weights: chosen by eye.
+struct Age {
+    int height;
+    double age_s, weight;
+};
+constexpr std::array kAges{Age{0, 0.0, 0.5}, Age{0, 0.6, 0.5},  Age{1, 0.8, 0.5}, Age{1, 1.8, 0.5},
+                           Age{2, 2.2, 0.4}, Age{2, 3.5, 0.35}, Age{2, 5.5, 0.25}};
+// How fast wind and crest come apart: crests that break run at half the wind's speed, more or less.
+constexpr double kApart = 0.5;
+
+struct Tear {
+    double across_m, along_m, lasts_s, strength, of_wind;
+    double strays_m;  // at most, about; a third of it across the wind
+};
+constexpr std::array kTears{Tear{3.0, 14.0, 1.0, 1.8, 0.6, 4.0}, Tear{4.0, 24.0, 1.5, 2.0, 0.75, 8.0},
+                            Tear{6.0, 40.0, 2.5, 2.2, 0.9, 14.0}};
+constexpr int kOctaves = 2;
+constexpr double kFiner = 0.5, kWeaker = 0.75;  // from octave to octave
+
+}  // namespace
 
 template <class T>
 double mean_breaking(const Sea<T>& sea) {
@@ -20,14 +49,153 @@ double mean_breaking(const Sea<T>& sea) {
 }
 
 template <class T>
-double spray_extinction_per_coverage(const Sea<T>& sea) {
-    const double mean = mean_breaking(sea);
-    return mean > 0.0 ? spray_law(sea.plan().from->scene).extinction_per_m / mean : 0.0;
+SprayVeil::SprayVeil(const Frame<T>& frame) {
+    const PreparedScene& from = *frame.sea().plan().from;
+    law_ = spray_law(from.scene, from.extent.significant_height_m);
+    const double mean = mean_breaking(frame.sea());
+    if (!(mean > 0.0) || !(law_.extinction_per_m() > 0.0)) return;
+    mean_breaking_ = mean;
+    wind_mps_ = from.scene.sea.wind_speed_mps;
+    const double towards = from.scene.sea.wind_direction_deg * kPi / 180.0;
+    downwind_ = glm::dvec2(std::cos(towards), std::sin(towards));
+    time_s_ = frame.time_within_loop_s();
+    loop_s_ = from.scene.shot.sea_loop_s();
+    seed_ = from.scene.shot.seed;
+}
+
+// e^{strength Σ w u} over its mean, Π sinh(strength w)/(strength w), u of −1 … 1 at the corners of the cell of place and time, Σ w² = 1.
+SprayVeil::Torn SprayVeil::drawn(int height, int octave, glm::dvec2 place_m, double time_s,
+                                 double strength) const {
+    const Tear& tear = kTears[static_cast<std::size_t>(height)];
+    const double finer = std::pow(kFiner, octave), moved_m = tear.of_wind * wind_mps_ * time_s;
+    const std::array at{(glm::dot(place_m, downwind_) - moved_m) / (finer * tear.along_m),
+                        (place_m.y * downwind_.x - place_m.x * downwind_.y) / (finer * tear.across_m),
+                        time_s / (finer * tear.lasts_s)};
+    std::array<std::int64_t, 3> cell{};
+    std::array<double, 3> part{};
+    for (std::size_t d = 0; d < 3; ++d) {
+        const double low = std::floor(at[d]), x = at[d] - low;
+        cell[d] = static_cast<std::int64_t>(low);
+        part[d] = x * x * (3.0 - 2.0 * x);
+    }
+    std::array<double, 8> weights{};
+    double square = 0.0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        weights[i] = (i & 1 ? part[0] : 1.0 - part[0]) * (i & 2 ? part[1] : 1.0 - part[1]) *
+                     (i & 4 ? part[2] : 1.0 - part[2]);
+        square += weights[i] * weights[i];
+    }
+    const auto word = [](std::int64_t value, std::size_t more) {
+        return static_cast<std::uint32_t>(value + static_cast<std::int64_t>(more));
+    };
+    const auto unit = [](std::uint32_t bits) { return (bits + 0.5) * 0x1p-31 - 1.0; };
+    constexpr std::uint32_t kStream = 0x73707279u;  // of the shot's random numbers
+    double sum = 0.0, mean = 1.0;
+    glm::dvec2 strayed(0.0);
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double s = strength * weights[i] / std::sqrt(square);
+        if (!(s > 1e-9)) continue;
+        const auto bits = philox({word(cell[0], i & 1), word(cell[1], i >> 1 & 1), word(cell[2], i >> 2),
+                                  kStream + static_cast<std::uint32_t>(kOctaves * height + octave)},
+                                 seed_);
+        sum += s * unit(bits[0]);
+        mean *= std::sinh(s) / s;
+        strayed += weights[i] * glm::dvec2(unit(bits[1]), unit(bits[2]) / 3.0);
+    }
+    const glm::dvec2 across(-downwind_.y, downwind_.x);
+    return {std::exp(sum) / mean, tear.strays_m * (strayed.x * downwind_ + strayed.y * across)};
+}
+
+SprayVeil::Torn SprayVeil::torn(int height, glm::dvec2 place_m, double cell_m) const {
+    Torn torn;
+    if (!is_torn()) return torn;
+    const Tear& of = kTears[static_cast<std::size_t>(height)];
+    for (int i = 0; i < kOctaves; ++i) {
+        const double in_cell = cell_m / (of.across_m * std::pow(kFiner, i));
+        const double strength = of.strength * std::pow(kWeaker, i) / (1.0 + in_cell * in_cell);
+        if (strength < 0.05) continue;
+        const auto add = [&](double time_s, double part) {
+            const Torn more = drawn(height, i, place_m, time_s, strength * part);
+            torn.factor *= more.factor;
+            if (i == 0) torn.strayed_m += part * more.strayed_m;
+        };
+        // In a loop the end fades into what was before the beginning.
+        const double over = loop_s_ > 0.0 ? time_s_ / loop_s_ : 0.0;
+        add(time_s_, std::sqrt(1.0 - over));
+        if (over > 0.0) add(time_s_ - loop_s_, std::sqrt(over));
+    }
+    return torn;
+}
+
+template <class T>
+void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, std::span<const T> breaking,
+                       std::span<const double> mean_cell_m, std::span<glm::dvec3> shares) const {
+    std::fill(shares.begin(), shares.end(), glm::dvec3(0.0));
+    if (empty()) return;
+    if (!is_torn()) {
+        for (std::size_t i = 0; i < breaking.size(); ++i)
+            shares[i].x = static_cast<double>(breaking[i]) / mean_breaking_;
+        return;
+    }
+    const std::size_t count = breaking.size();
+    std::vector<Torn> torn(3 * count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const glm::dvec2 place_m = places.origin_m + glm::dvec2(places.rest_m[i]);
+        for (int height = 0; height < 3; ++height)
+            torn[3 * i + static_cast<std::size_t>(height)] = this->torn(height, place_m, mean_cell_m[i]);
+    });
+    using Vec = glm::vec<2, T>;
+    std::vector<std::size_t> moved;
+    std::vector<Vec> places_m, cell_axes, pixel_axes;
+    std::vector<T> cells, pixels, there;
+    const auto gather = [&]<class V>(const Strided<const V>& from, std::vector<V>& to,
+                                     Strided<const V>& view) {
+        if (!from) return;
+        to.clear();
+        for (const std::size_t i : moved) to.push_back(from[i]);
+        view = {to.data()};
+    };
+    for (const Age& each : kAges) {
+        const double away_m = kApart * wind_mps_ * each.age_s;
+        const auto height = static_cast<std::size_t>(each.height);
+        // A cell that is longer than that has as much upwind.
+        moved.clear();
+        places_m.clear();
+        if (away_m > 0.0)
+            for (std::size_t i = 0; i < count; ++i)
+                if (mean_cell_m[i] < away_m) {
+                    moved.push_back(i);
+                    places_m.push_back(places.rest_m[i] -
+                                       static_cast<Vec>(away_m * downwind_ + torn[3 * i + height].strayed_m));
+                }
+        there.resize(moved.size());
+        Points<T> upwind{.origin_m = places.origin_m, .count = moved.size(), .rest_m = {places_m.data()}};
+        gather(places.cell_m, cells, upwind.cell_m);
+        gather(places.pixel_m, pixels, upwind.pixel_m);
+        gather(places.cell_axis_m, cell_axes, upwind.cell_axis_m);
+        gather(places.pixel_axis_m, pixel_axes, upwind.pixel_axis_m);
+        Results<T> results;
+        results.set(Product::Breaking, {there.data()});
+        constexpr PlaceSearch kSearch{.tolerance_m = 0.2, .most_steps = 16};
+        if (!moved.empty()) evaluate_at(query, upwind, kSearch, results);
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool is_moved = next < moved.size() && moved[next] == i;
+            shares[i][each.height] += each.weight * torn[3 * i + height].factor *
+                                      static_cast<double>(is_moved ? there[next] : breaking[i]) /
+                                      mean_breaking_;
+            next += is_moved ? 1 : 0;
+        }
+    }
 }
 
 template double mean_breaking(const Sea<float>&);
 template double mean_breaking(const Sea<double>&);
-template double spray_extinction_per_coverage(const Sea<float>&);
-template double spray_extinction_per_coverage(const Sea<double>&);
+template SprayVeil::SprayVeil(const Frame<float>&);
+template SprayVeil::SprayVeil(const Frame<double>&);
+template void SprayVeil::shares(const PreparedQuery<float>&, const Points<float>&, std::span<const float>,
+                                std::span<const double>, std::span<glm::dvec3>) const;
+template void SprayVeil::shares(const PreparedQuery<double>&, const Points<double>&, std::span<const double>,
+                                std::span<const double>, std::span<glm::dvec3>) const;
 
 }  // namespace pelagic

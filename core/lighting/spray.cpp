@@ -7,6 +7,7 @@
 
 #include "core/base/constants.h"
 #include "core/lighting/air.h"
+#include "core/lighting/background.h"
 
 namespace pelagic {
 namespace {
@@ -20,7 +21,7 @@ struct Shading {
     const Spray& map;
 
     vec4 air_texel(int, int) const { return vec4(0.0f); }  // the air has been counted
-    vec2 spray_texel(int column, int row) const {
+    vec4 spray_texel(int column, int row) const {
         return map.texels[static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column)];
     }
 
@@ -33,9 +34,10 @@ struct Shading {
 }  // namespace spray_shading
 
 spray_shading::Shading::SprayView view_of(const Spray& spray) {
-    return {spray.columns,  spray.rows,    spray.azimuth, spray.columns_per_rad, spray.first_m,
-            spray.row_step, spray.scale_m, spray.eye_m,   spray.top_m,           spray.to_sun,
-            spray.sun,      spray.above,   spray.below};
+    return {spray.columns,  spray.rows,    spray.azimuth,   spray.columns_per_rad, spray.first_m,
+            spray.row_step, spray.is_torn, spray.scale_m,   spray.step_m,          spray.haze_per_m,
+            spray.forward,  spray.eye_m,   spray.top_m,     spray.to_sun,          spray.sun,
+            spray.above,    spray.below,   spray.low_ahead, spray.low_beside,      spray.low_behind};
 }
 
 void take(SeaRadiance& radiance, const spray_shading::Shading::SprayPath& path) {
@@ -60,6 +62,16 @@ void light_spray(Spray& spray, const LightingChoice& choice, const Sky& sky, con
     spray.to_sun = sky.sun_direction;
     spray.sun = sky.sun_radiance * (sun * kPi_f * sky.sun_angular_radius * sky.sun_angular_radius);
     spray.above = sky.sky_irradiance * (rest / kPi_f);
+    constexpr float kLow = 0.2f;  // of a unit vector's height
+    const float flat = std::hypot(sky.sun_direction.x, sky.sun_direction.y);
+    const glm::vec2 sunwards =
+        flat > 1e-6f ? glm::vec2(sky.sun_direction.x, sky.sun_direction.y) / flat : glm::vec2(1.0f, 0.0f);
+    const auto low = [&](glm::vec2 towards) {
+        return rest * background(sky, glm::vec3(towards * std::sqrt(1.0f - kLow * kLow), kLow), kLow).sky;
+    };
+    spray.low_ahead = low(sunwards);
+    spray.low_beside = 0.5f * (low({-sunwards.y, sunwards.x}) + low({sunwards.y, -sunwards.x}));
+    spray.low_behind = low(-sunwards);
     constexpr float kSurface = 0.06751f;  // of a diffuse sky's light, as kDiffuseFresnel in fresnel.glsl
     const SeaAlbedo albedo = sea_albedo(water);
     const auto covered = choice.whitecaps ? static_cast<float>(foam) : 0.0f;

@@ -1,10 +1,11 @@
 // The spray before an eye: droplets over breaking crests, which take light away from a ray and scatter light of the sun, the sky
 // and the sea into it (Darles et al. 2007, §4.2). Needs air.glsl before it. The includer defines
-//   vec2 spray_texel(int column, int row)   the map (spray.h): the surface's height [m], and the extinction there [1/m]
+//   vec4 spray_texel(int column, int row)   the map (spray.h): the surface's height [m], and the extinctions there [1/m]
 //
 // Rows of the map are circles round the eye's nadir in geometric progression, columns are azimuths: a ray stays between two columns.
 // From row to row both its height above the surface and the extinction there are taken as linear, and extinction falls with that
-// height z as exp(−z/scale): the integral is known. Where the map has the ray below the surface, z counts as 0. Transmittances of
+// height z as exp(−z/scale): the integral is known. Torn spray is ribbons, linear between some
+// heights, and haze of the same extinction everywhere, which falls off like that. Where the map has the ray below the surface, z counts as 0. Transmittances of
 // pieces multiply (the paper adds them).
 //
 // Droplets absorb nothing. They are much larger than light's wavelengths: all colours alike, and most goes on nearly straight.
@@ -19,13 +20,20 @@ struct SprayView {
     float columns_per_rad;  // counter-clockwise
     float first_m;          // row 0's distance from the nadir
     float row_step;         // the logarithm of the next row's over it
-    float scale_m;
+    bool is_torn;
+    float scale_m;          // of the haze, or of all spray
+    float step_m;           // of the ribbons' heights
+    float haze_per_m;       // extinction at the surface
+    vec2 forward;           // mean cosines of the two lobes that the light of the sun is scattered into, half each
     float eye_m;            // heights: of the eye,
     float top_m;            // and of the highest place in the map
     vec3 to_sun;
     vec3 sun;               // irradiance, on a plane across it
     vec3 above;             // mean radiance: of the sky,
     vec3 below;             // and of the sea
+    vec3 low_ahead;         // radiance of the low sky: below the sun,
+    vec3 low_beside;        // a quarter round,
+    vec3 low_behind;        // and opposite
 };
 
 struct SprayPath {
@@ -48,6 +56,35 @@ struct SprayPoint {
 };
 
 SprayPoint spray_point(float extinction, float z) { return SprayPoint(extinction, z, exp(-max(z, 0.0f))); }
+
+struct SprayPlace {
+    SprayPoint point;  // of haze, or of all spray
+    vec3 torn;         // the ribbons' extinctions at three heights
+    float steps;       // the height above the surface
+};
+
+// z: in scale heights.
+SprayPlace spray_place(vec4 texel, float z, SprayView spray) {
+    if (!spray.is_torn) return SprayPlace(spray_point(texel.y, z), vec3(0.0f), 0.0f);
+    return SprayPlace(spray_point(spray.haze_per_m, z), vec3(texel.y, texel.z, texel.w),
+                      z * spray.scale_m / spray.step_m);
+}
+
+// The integral of the ribbons' extinction from the surface up to a height, in steps; below the surface they are as at it.
+float torn_below(vec3 torn, float z) {
+    float a = min(z, 1.0f);
+    float b = clamp(z - 1.0f, 0.0f, 1.5f);
+    float c = clamp(z - 2.5f, 0.0f, 2.5f);
+    return torn.x * a + (torn.y - torn.x) * 0.5f * max(a, 0.0f) * a + b * (torn.y + (torn.z - torn.y) * b * (1.0f / 3.0f)) +
+           c * torn.z * (1.0f - 0.2f * c);
+}
+
+// Straight up from there.
+float spray_column(SprayPlace at, SprayView spray) {
+    float column = at.point.extinction * at.point.thinner * spray.scale_m;
+    if (!spray.is_torn) return column;
+    return column + spray.step_m * (torn_below(at.torn, 5.0f) - torn_below(at.torn, max(at.steps, 0.0f)));
+}
 
 // The mean of the extinction between two places above the surface. The first integral of exp(−z), by the height's own difference, has no
 // digits where that is small.
@@ -77,24 +114,48 @@ float spray_mean(SprayPoint a, SprayPoint b) {
     return mix(behind, before, part);
 }
 
-// Light that a ray in this direction has scattered into it where the extinction is so much, over the extinction.
-vec3 spray_source(vec3 ray, float extinction_per_m, SprayView spray) {
-    float column = extinction_per_m * spray.scale_m;
+float spray_mean_of(SprayPlace a, SprayPlace b, SprayView spray) {
+    float mean = spray_mean(a.point, b.point);
+    if (!spray.is_torn) return mean;
+    // The ribbons are taken as half those of either place. A ray that hardly rises stays at its height.
+    vec3 torn = 0.5f * (a.torn + b.torn);
+    float low = min(a.steps, b.steps);
+    if (low >= 5.0f) return mean;
+    float high = max(a.steps, b.steps);
+    if (high <= 0.0f) return mean + torn.x;
+    float wider = max(0.005f - 0.5f * (high - low), 0.0f);
+    low -= wider;
+    high += wider;
+    return mean + (torn_below(torn, high) - torn_below(torn, low)) / (high - low);
+}
+
+// Light that a ray in this direction has scattered into it below so thick a column, over the extinction.
+vec3 spray_source(vec3 ray, float column, SprayView spray) {
     float left = exp(-(1.0f - kSprayForward * kSprayForward) * column / max(spray.to_sun.z, kSprayLowSun));
-    float phase = phase_lobe(dot(ray, spray.to_sun), kSprayForward);
-    // Of light from all sides most comes from ahead.
-    vec3 around = mix(spray.below, spray.above, 0.5f + 0.5f * kSprayForward * ray.z);
+    float cosine = dot(ray, spray.to_sun);
+    float phase = 0.5f * (phase_lobe(cosine, spray.forward.x) + phase_lobe(cosine, spray.forward.y));
+    // Of light from all sides most comes from ahead, and along the sea from the low sky there.
+    vec3 sky = spray.above;
+    if (spray.is_torn) {
+        float across = length(vec2(ray.x, ray.y));
+        float turned = (ray.x * spray.to_sun.x + ray.y * spray.to_sun.y) /
+                       max(across * length(vec2(spray.to_sun.x, spray.to_sun.y)), 1.0e-6f);
+        vec3 low = spray.low_beside + 0.5f * turned * (spray.low_ahead - spray.low_behind) +
+                   turned * turned * (0.5f * (spray.low_ahead + spray.low_behind) - spray.low_beside);
+        sky = mix(sky, max(low, vec3(0.0f)), kSprayForward * across * across);
+    }
+    vec3 around = mix(spray.below, sky, 0.5f + 0.5f * kSprayForward * ray.z);
     return around + spray.sun * (left * phase + (1.0f - left) * 0.07957747f);
 }
 
-SprayPath spray_behind(SprayPath path, vec3 ray, float thickness, float extinction_per_m, SprayView spray) {
+SprayPath spray_behind(SprayPath path, vec3 ray, float thickness, float column, SprayView spray) {
     float left = exp(-thickness);
     float lost = thickness < 1.0e-3f ? thickness * (1.0f - 0.5f * thickness) : 1.0f - left;
     return SprayPath(path.transmittance * left,
-                     path.scattered + path.transmittance * lost * spray_source(ray, extinction_per_m, spray));
+                     path.scattered + path.transmittance * lost * spray_source(ray, column, spray));
 }
 
-vec2 spray_between(float column, int row) {
+vec4 spray_between(float column, int row) {
     int left = int(column);
     return mix(spray_texel(left, row), spray_texel(left + 1, row), column - float(left));
 }
@@ -127,16 +188,16 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         if (from_m > spray.first_m) row = min(int(log(from_m / spray.first_m) / spray.row_step), end);
     }
     float at_m = row < 0 ? 0.0f : spray.first_m * exp(spray.row_step * float(row));
-    vec2 here = spray_between(column, max(row, 0));
+    vec4 here = spray_between(column, max(row, 0));
     // The map's cells don't resolve all waves. A ray that ends on the surface ends at height 0. The row before its end
     // is moved by the same height, and the one before that the more, the nearer the end is to the last row.
-    vec2 ends = vec2(0.0f);
+    vec4 ends = vec4(0.0f);
     float ends_z = 0.0f;
     float astray = 0.0f;
     float astray_before = 0.0f;
     if (!is_endless) {
-        vec2 before = spray_between(column, max(end, 0));
-        vec2 behind = spray_between(column, min(end + 1, last));
+        vec4 before = spray_between(column, max(end, 0));
+        vec4 behind = spray_between(column, min(end + 1, last));
         float before_m = spray.first_m * exp(spray.row_step * float(max(end, 0)));
         float part = end < 0 ? 0.0f : clamp((end_m - before_m) / (before_m * (ratio - 1.0f)), 0.0f, 1.0f);
         ends = mix(before, behind, part);
@@ -148,7 +209,7 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         }
     }
     float off = row < 0 || row < end - 1 ? 0.0f : row == end ? astray : astray_before;
-    SprayPoint a = spray_point(here.y, (spray.eye_m + slope * at_m - here.x) / spray.scale_m - off);
+    SprayPlace a = spray_place(here, (spray.eye_m + slope * at_m - here.x) / spray.scale_m - off, spray);
     SprayPath path = SprayPath(1.0f, vec3(0.0f));
     float rise_per_m = slope * across / spray.scale_m;
     bool has_left = false;
@@ -157,11 +218,11 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         float next_m = row == 0 ? spray.first_m : at_m * ratio;
         here = spray_between(column, row);
         off = row < end - 1 ? 0.0f : row == end ? astray : astray_before;
-        SprayPoint b = spray_point(here.y, (spray.eye_m + slope * next_m - here.x) / spray.scale_m - off);
+        SprayPlace b = spray_place(here, (spray.eye_m + slope * next_m - here.x) / spray.scale_m - off, spray);
         float length_m = (next_m - at_m) / across;
-        path = spray_behind(path, ray, spray_mean(a, b) * length_m,
-                            0.5f * (a.extinction * a.thinner + b.extinction * b.thinner), spray);
-        rise_per_m = (b.z - a.z) / length_m;
+        path = spray_behind(path, ray, spray_mean_of(a, b, spray) * length_m,
+                            0.5f * (spray_column(a, spray) + spray_column(b, spray)), spray);
+        rise_per_m = (b.point.z - a.point.z) / length_m;
         at_m = next_m;
         a = b;
         has_left = slope > 0.0f && spray.eye_m + slope * at_m > high_m;
@@ -169,11 +230,11 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
     }
     if (has_left) return path;
     if (!is_endless) {
-        SprayPoint b = spray_point(ends.y, ends_z);
-        return spray_behind(path, ray, spray_mean(a, b) * max((end_m - at_m) / across, 0.0f),
-                            0.5f * (a.extinction * a.thinner + b.extinction * b.thinner), spray);
+        SprayPlace b = spray_place(ends, ends_z, spray);
+        return spray_behind(path, ray, spray_mean_of(a, b, spray) * max((end_m - at_m) / across, 0.0f),
+                            0.5f * (spray_column(a, spray) + spray_column(b, spray)), spray);
     }
     // Beyond the last row the ray goes on rising over a sea like that there.
-    float dense = a.extinction * a.thinner;
-    return spray_behind(path, ray, dense / max(rise_per_m, 1.0e-6f), 0.5f * dense, spray);
+    float above = spray_column(a, spray);
+    return spray_behind(path, ray, above / (max(rise_per_m, 1.0e-6f) * spray.scale_m), 0.5f * above, spray);
 }

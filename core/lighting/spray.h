@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,12 +18,19 @@ struct Spray {
     int columns = 0, rows = 0;  // at least 2 each
     glm::vec2 azimuth{1.0f, 0.0f};
     float columns_per_rad = 1.0f, first_m = 1.0f, row_step = 0.1f;
-    float scale_m = 1.0f;  // of the profile exp(−z/scale)
+    // Torn: ribbons, linear between heights of 0, 1, 2.5 and 5 steps, and haze everywhere. Otherwise spray over each texel. Haze and spray fall off by
+    // exp(−z/scale).
+    bool is_torn = false;
+    float scale_m = 1.0f, step_m = 1.0f;
+    float haze_per_m = 0.0f;   // extinction at the surface
+    glm::vec2 forward{0.85f};  // mean cosines of what the sun's light is scattered into, half each
     float eye_m = 0.0f, top_m = 0.0f;
     // Its light (light_spray()).
-    glm::vec3 to_sun{0.0f, 0.0f, 1.0f}, sun{0.0f}, above{0.0f}, below{0.0f};
-    // columns × rows, columns fastest: the surface's height in the axes of the eye's nadir [m], and the extinction there [1/m].
-    std::vector<glm::vec2> texels{};
+    glm::vec3 to_sun{0.0f, 0.0f, 1.0f}, sun{0.0f}, above{0.0f}, below{0.0f}, low_ahead{0.0f},
+        low_beside{0.0f}, low_behind{0.0f};
+    // columns × rows, columns fastest: the surface's height in the axes of the eye's nadir [m], and the extinctions there [1/m]: at the surface, at 1 and
+    // at 2.5 steps.
+    std::vector<glm::vec4> texels{};
     bool empty() const { return texels.empty(); }
 };
 

@@ -1,43 +1,83 @@
-// Spray: droplets that bursting bubbles throw up, over the sea as a whole. Monahan et al. 1986, as Darles et al. 2007
-// (§4.2) use it. A place's share of it follows from how much breaks there (core/effects/spray.h).
+// Spray: droplets over a sea that breaks, over the sea as a whole. A place's share of it follows from how much breaks there
+// (core/effects/spray.h). A volume's density is its extinction. A flux isn't a density: the air holds as much as falls back in
+// the same time.
 //
-// A volume's density is its extinction. A flux isn't a density: the air holds as much as falls back in the same time. The
-// source function's radii are those of droplets in air of 80 % humidity; it holds for 0.8 … 10 µm. Darles' Eq. 5 is
-// misprinted (0.0057 for 0.057, e^{−B²} outside the exponent of 10, the logarithm's place in B); Eq. 6 counts the wind
-// twice, since U10^3.41 is the coverage already: a place has the share s′/⟨s⟩ of what the law says.
+// andreas-1998: film and jet drops by Smith, Park and Consterdine 1993, carried on to spume, which the wind tears off crests
+// (Andreas 1998). r80, by which a source function counts, is a drop's radius when it has come to rest with air of 80 % humidity; over
+// the crest that it comes from it still has r0, 0.518 r0^0.976 = r80 (Fitzgerald 1975), and is that large to light. It takes drops of
+// r80 = 10 … 250 µm: smaller ones are haze of the whole air. They fall by Schiller and Naumann 1933, and are mixed by turbulence: v_d =
+// v_s/(1 − e^{−v_s/v_t}), v_t = u*²/U, falls off as min(1, (z/h)^{−v_s/κu*}) over h = Hs/4, and counts up to h + 20 m. Published source
+// functions differ by orders of magnitude: hence the gain. Smith's winds end at 32 m/s; what blows harder makes as much.
+//
+// monahan-1986: the bubbles' alone, 0.8 … 10 µm, as Darles et al. 2007 (§4.2) use it. Darles' Eq. 5 is misprinted (0.0057 for
+// 0.057, e^{−B²} outside the exponent of 10, the logarithm's place in B); Eq. 6 counts the wind twice, since U10^3.41 is the
+// coverage already: a place has the share s′/⟨s⟩ of what the law says.
 #pragma once
 
+#include <array>
+#include <glm/vec3.hpp>
 #include <string>
 
 #include "pelagic/scene.h"
 
 namespace pelagic {
 
+// exp(−z/scale), z above the local surface.
+struct SprayLayer {
+    double extinction_per_m = 0.0;  // at the surface, on average over the sea
+    double scale_m = 1.0;
+
+    // Straight up, on average.
+    double optical_thickness() const { return extinction_per_m * scale_m; }
+};
+
+// Of three heights above the local surface, linear between them, and none at a fourth.
+struct SprayRibbons {
+    static constexpr std::array kHeights{0.0, 1.0, 2.5, 5.0};  // in steps
+
+    glm::dvec3 extinction_per_m{0.0};  // at three heights, on average over the sea
+    double step_m = 1.0;
+
+    // The mean over [from_m, to_m] above the surface, below which there is none, of one with these extinctions.
+    double mean(glm::dvec3 extinctions, double from_m, double to_m) const;
+    // Straight up, on average.
+    double optical_thickness() const { return mean(extinction_per_m, 0.0, top_m()) * top_m(); }
+    double top_m() const { return kHeights.back() * step_m; }
+};
+
 struct SprayLaw {
-    static constexpr double kSmallest_um = 0.8, kLargest_um = 10.0;
-    static constexpr double kScaleHeight_m = 2.0;    // of the profile exp(−z/H), z above the local surface
-    static constexpr double kDeposition_mps = 0.01;  // concentration = flux / this
     static constexpr double kDroplet_kg_per_m3 = 1025.0;
     static constexpr double kExtinctionEfficiency = 2.0;  // Q_e of spheres much larger than the wavelength
 
     double number_flux_per_m2_s = 0.0;   // of droplets, upwards
     double mass_flux_kg_per_m2_s = 0.0;  // likewise
-    double extinction_per_m = 0.0;       // at the surface, on average over the sea
+    // monahan-1986: over what breaks. andreas-1998: ribbons behind crests, and haze everywhere, whose extinctions and thicknesses add up to the law's.
+    SprayLayer over_foam{};
+    SprayRibbons ribbons{};
+    SprayLayer haze{};
 
-    // Straight up through the whole layer, on average.
-    double optical_thickness() const { return extinction_per_m * kScaleHeight_m; }
+    double extinction_per_m() const {
+        return over_foam.extinction_per_m + ribbons.extinction_per_m.x + haze.extinction_per_m;
+    }
+    double optical_thickness() const {
+        return over_foam.optical_thickness() + ribbons.optical_thickness() + haze.optical_thickness();
+    }
 };
 
-// dF/dr [1/(m² µm s)] at a radius of so many µm, > 0.
-double spray_source(double wind_speed_mps, double radius_um);
+// How fast a drop of this radius falls in air that rests [m/s].
+double settling_mps(double radius_um);
 
-// Nature's, at gain 1. All 0 without wind.
-SprayLaw spray_law(double wind_speed_mps);
+// dF/dr [1/(m² µm s)] at a radius of so many µm, > 0: r80, for andreas-1998 10 … 250.
+double spray_source(SpraySource source, double wind_speed_mps, double radius_um);
 
-// The scene's: spray_gain times nature's, and none without spray or whitecaps.
-SprayLaw spray_law(const Scene& scene);
+// Nature's, at gain 1. All 0 without wind, and andreas-1998 in less than 8 m/s: the wind tears crests from 9 on (Monahan et al. 1986).
+SprayLaw spray_law(SpraySource source, double wind_speed_mps, double significant_height_m);
+
+// The scene's: spray_gain times nature's, and none without spray or whitecaps. Of which waves: extent.h has their height.
+SprayLaw spray_law(const Scene& scene, double significant_height_m);
+bool has_spray(const Scene& scene);
 
 // What an artist should know of it: that no picture shows it, and the gain from which on one does. Empty: nothing.
-std::string spray_warning(const Scene& scene);
+std::string spray_warning(const Scene& scene, double significant_height_m);
 
 }  // namespace pelagic

@@ -630,8 +630,14 @@ void add_effects_and_quality(Built& out) {
         row<&Effects::spray>({.name = "spray",
                               .help = "droplets over breaking crests; none without whitecaps",
                               .key_parts = key_parts(KeyPart::Spray)}),
+        row<&Effects::spray_law>(
+            {.name = "spray_law",
+             .help =
+                 "how much spray a wind makes: andreas-1998, drops torn off crests, seen in a gale; monahan-1986, "
+                 "the bubbles' alone, too thin to be seen",
+             .key_parts = key_parts(KeyPart::Spray)}),
         row<&Effects::spray_gain>({.name = "spray_gain",
-                                   .help = "how much spray there is; 1 is nature's, too thin to be seen",
+                                   .help = "how much spray there is; 1 is the law's",
                                    .range = limits::kSprayGain,
                                    .soft = SoftRange{1.0, 100.0, true},
                                    .key_parts = key_parts(KeyPart::Spray)}));

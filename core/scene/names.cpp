@@ -31,6 +31,10 @@ constexpr std::array kWhitecapLaws = std::to_array<Word<WhitecapLaw>>({
     {WhitecapLaw::Monahan1986, "monahan-1986"},
     {WhitecapLaw::Callaghan2008, "callaghan-2008"},
 });
+constexpr std::array kSpraySources = std::to_array<Word<SpraySource>>({
+    {SpraySource::Monahan1986, "monahan-1986"},
+    {SpraySource::Andreas1998, "andreas-1998"},
+});
 constexpr std::array kSpreadings = std::to_array<Word<SpreadingKind>>({
     {SpreadingKind::Hasselmann, "hasselmann"},
     {SpreadingKind::DonelanBanner, "donelan-banner"},
@@ -136,6 +140,9 @@ std::span<const Word<GrowthLaw>> words_of(GrowthLaw) {
 }
 std::span<const Word<WhitecapLaw>> words_of(WhitecapLaw) {
     return kWhitecapLaws;
+}
+std::span<const Word<SpraySource>> words_of(SpraySource) {
+    return kSpraySources;
 }
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind) {
     return kSpreadings;

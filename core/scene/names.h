@@ -25,6 +25,7 @@ std::span<const Word<SpectrumKind>> words_of(SpectrumKind);
 std::span<const Word<ShortWaves>> words_of(ShortWaves);
 std::span<const Word<GrowthLaw>> words_of(GrowthLaw);
 std::span<const Word<WhitecapLaw>> words_of(WhitecapLaw);
+std::span<const Word<SpraySource>> words_of(SpraySource);
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind);
 std::span<const Word<WaveModel>> words_of(WaveModel);
 std::span<const Word<Tiling>> words_of(Tiling);

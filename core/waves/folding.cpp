@@ -168,7 +168,8 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
     for (auto* more : {&trough_warning, &unpressed_warning, &repeats_warning, &blending_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
-    if (std::string thin = spray_warning(prepared.scene); !thin.empty()) warnings.push_back(std::move(thin));
+    if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
+        warnings.push_back(std::move(thin));
     return warnings;
 }
 

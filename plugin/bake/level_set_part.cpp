@@ -55,10 +55,11 @@ class LevelSetPart final : public VolumePart {
         for (int i = 0; i <= cells_; ++i)
             corners_m.push_back(size_m() * (static_cast<double>(i) / cells_ - 0.5));
         slot.heights_m.resize(corners_m.size() * corners_m.size());
-        for_each_row<T>(sea, corners_m, watch, [&](std::size_t first, const Row<T>& row) {
-            for (std::size_t i = 0; i < row.displacement_m.size(); ++i)
-                slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
-        });
+        for_each_row<T>(sea, corners_m, watch,
+                        [&](std::size_t first, const Row<T>& row, const PreparedQuery<T>&) {
+                            for (std::size_t i = 0; i < row.displacement_m.size(); ++i)
+                                slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
+                        });
     }
 
     // Some voxels below the deepest trough to be expected, the same at every frame; deeper where a frame's is lower still.

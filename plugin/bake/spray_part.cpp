@@ -6,31 +6,34 @@
 
 #include "core/base/constants.h"
 #include "core/effects/spray.h"
-#include "core/effects/wind_profile.h"
 #include "core/plan/spray.h"
+#include "core/plan/wind_profile.h"
 #include "plugin/bake/volume_blocks.h"
 #include "plugin/bake/volume_part.h"
 
 namespace pelagic {
 namespace {
 
-constexpr double kH_m = SprayLaw::kScaleHeight_m;
 struct SpraySlot final : OutputSlot {
-    // By column: the sea's height, and how much spray beside the sea's mean.
-    std::vector<float> heights_m, shares;
+    // By column: the sea's height, how much breaks beside the sea's mean, and how much spray, at three heights.
+    std::vector<float> heights_m, breaking;
+    std::vector<glm::vec3> shares;
     std::string file;
 };
 
 // The profile's mean over [from_m, to_m] above the sea, none below it.
-double mean_profile(double from_m, double to_m) {
+double mean_profile(double scale_m, double from_m, double to_m) {
     if (!(to_m > 0.0)) return 0.0;
-    return kH_m * (std::exp(-std::max(from_m, 0.0) / kH_m) - std::exp(-to_m / kH_m)) / (to_m - from_m);
+    return scale_m * (std::exp(-std::max(from_m, 0.0) / scale_m) - std::exp(-to_m / scale_m)) /
+           (to_m - from_m);
 }
 
 class SprayPart final : public VolumePart {
   public:
     SprayPart(const Plan& plan, const PlannedOutput& output)
-        : VolumePart(plan, output), law_(spray_law(scene())), wind_(scene().sea.wind_speed_mps) {
+        : VolumePart(plan, output),
+          law_(spray_law(scene(), plan.from->extent.significant_height_m)),
+          wind_(scene().sea.wind_speed_mps) {
         const int columns = voxels_a_side(scene());
         const double half_m = 0.5 * size_m();
         for (int i = 0; i < columns; ++i) {
@@ -52,7 +55,7 @@ class SprayPart final : public VolumePart {
     OutputMemory memory() const override {
         constexpr double kBlockBytes = 500.0, kVoxelBytes = 6.0;  // of a file; fitted to 4 … 30 m/s
         const ExpectedSpray spray = expected_spray(plan_);
-        return memory_of(columns() * columns() * 2 * sizeof(float), 2,
+        return memory_of(columns() * columns() * 5 * sizeof(float), 2,
                          spray.blocks * (vdb::bytes_a_block<float>() + vdb::bytes_a_block<glm::vec3>()),
                          spray.blocks * kBlockBytes + spray.voxels * kVoxelBytes);
     }
@@ -78,32 +81,59 @@ class SprayPart final : public VolumePart {
     template <class T>
     void compute_as(const Frame<T>& sea, SpraySlot& slot, const BuildWatch& watch) const {
         slot.heights_m.resize(columns() * columns());
+        slot.breaking.resize(slot.heights_m.size());
         slot.shares.resize(slot.heights_m.size());
         const double mean = mean_breaking(sea.sea());
-        for_each_row<T>(sea, middles_m_, watch, [&](std::size_t first, const Row<T>& row) {
-            for (std::size_t i = 0; i < row.breaking.size(); ++i) {
-                slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
-                slot.shares[first + i] =
-                    mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean) : 0.0f;
-            }
-        });
+        const SprayVeil veil(sea);
+        std::vector<glm::dvec3> shares;
+        std::vector<double> cells_m;
+        for_each_row<T>(
+            sea, middles_m_, watch, [&](std::size_t first, const Row<T>& row, const PreparedQuery<T>& ask) {
+                const std::size_t count = row.breaking.size();
+                shares.resize(count);
+                cells_m.assign(count, voxel_m());
+                veil.shares<T>(ask, {.count = count, .rest_m = {row.places_m.data()}}, row.breaking, cells_m,
+                               shares);
+                for (std::size_t i = 0; i < count; ++i) {
+                    slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
+                    slot.breaking[first + i] =
+                        mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean) : 0.0f;
+                    slot.shares[first + i] = glm::vec3(shares[i]);
+                }
+            });
     }
 
-    // The extinction at the surface below a column's voxels, as a mean over them where the square ends within.
-    double extinction_per_m(const SpraySlot& slot, std::size_t x, std::size_t y) const {
-        const auto share = static_cast<double>(slot.shares[y * columns() + x]);
-        return share < kNegligibleSpray ? 0.0 : law_.extinction_per_m * share * widths_[x] * widths_[y];
+    // The extinctions of a column's voxels at the heights of the ribbons, or at the surface alone, as means over them where the
+    // square ends within.
+    glm::dvec3 extinction_per_m(const SpraySlot& slot, std::size_t x, std::size_t y) const {
+        glm::dvec3 share(slot.shares[y * columns() + x]);
+        for (int i = 0; i < 3; ++i)
+            if (share[i] < kNegligibleSpray) share[i] = 0.0;
+        if (law_.over_foam.extinction_per_m > 0.0)
+            return {law_.over_foam.extinction_per_m * share.x * widths_[x] * widths_[y], 0.0, 0.0};
+        return law_.ribbons.extinction_per_m * share * widths_[x] * widths_[y];
+    }
+    // Their mean over a height above the sea.
+    double mean_over(const glm::dvec3& extinction_per_m, double from_m, double to_m) const {
+        return law_.over_foam.extinction_per_m > 0.0
+                   ? extinction_per_m.x * mean_profile(law_.over_foam.scale_m, from_m, to_m)
+                   : law_.ribbons.mean(extinction_per_m, from_m, to_m);
     }
 
     std::string encoded(int frame, const SpraySlot& slot) const {
         const VoxelLattice lattice = voxels();
         const auto grid_of = [&](const char* name, vdb::GridKind kind, const char* content,
                                  const char* unit) {
+            std::vector<vdb::Attribute> about = attributes(frame, content, unit);
+            if (law_.haze.extinction_per_m > 0.0) {
+                about.push_back({"haze_extinction_per_m", law_.haze.extinction_per_m});
+                about.push_back({"haze_scale_m", law_.haze.scale_m});
+            }
             return vdb::Grid({.name = name,
                               .kind = kind,
                               .voxel_m = lattice.voxel_m,
                               .first_m = lattice.first_m,
-                              .attributes = attributes(frame, content, unit)});
+                              .attributes = std::move(about)});
         };
         std::vector<vdb::Grid> grids;
         grids.push_back(
@@ -124,7 +154,7 @@ class SprayPart final : public VolumePart {
         int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
         for (int y = first.y; y < end.y; ++y)
             for (int x = first.x; x < end.x; ++x) {
-                if (!(extinction_per_m(slot, x, y) > 0.0)) continue;
+                if (extinction_per_m(slot, x, y) == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 low = std::min(low, static_cast<int>(std::floor(height_m / voxel_m())));
                 high = std::max(high, static_cast<int>(std::floor((height_m + top_m_) / voxel_m())));
@@ -147,12 +177,12 @@ class SprayPart final : public VolumePart {
             for (int j = 0; j < vdb::kBlock && first.y + j < count; ++j) {
                 const auto x = static_cast<std::size_t>(first.x + i),
                            y = static_cast<std::size_t>(first.y + j);
-                const double extinction = extinction_per_m(slot, x, y);
-                if (!(extinction > 0.0)) continue;
+                const glm::dvec3 extinction = extinction_per_m(slot, x, y);
+                if (extinction == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 for (int k = 0; k < vdb::kBlock; ++k) {
                     const double from_m = (first.z + k) * voxel_m() - height_m, to_m = from_m + voxel_m();
-                    const auto value = static_cast<float>(extinction * mean_profile(from_m, to_m));
+                    const auto value = static_cast<float>(mean_over(extinction, from_m, to_m));
                     if (!(value > 0.0f) || from_m > top_m_) continue;
                     const std::size_t at = vdb::index_in_block(i, j, k);
                     thick.active[at] = moved.active[at] = true;
@@ -175,17 +205,18 @@ class SprayPart final : public VolumePart {
         for (std::size_t y = 0; y < columns(); ++y)
             for (std::size_t x = 0; x < columns(); ++x) {
                 const double width = widths_[x] * widths_[y];
-                const auto share = static_cast<double>(slot.shares[y * columns() + x]);
+                const auto breaking = static_cast<double>(slot.breaking[y * columns() + x]);
                 area += width;
-                spray.breaking_over_mean += width * share;
-                if (share < kNegligibleSpray) continue;
-                spray.mass_flux_kg_per_s +=
-                    width * share * law_.mass_flux_kg_per_m2_s * voxel_m() * voxel_m();
+                spray.breaking_over_mean += width * breaking;
+                if (breaking >= kNegligibleSpray)
+                    spray.mass_flux_kg_per_s +=
+                        width * breaking * law_.mass_flux_kg_per_m2_s * voxel_m() * voxel_m();
+                const glm::dvec3 extinction = extinction_per_m(slot, x, y);
+                if (extinction == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 const double top_m =
                     (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
-                spray.optical_thickness +=
-                    width * share * law_.extinction_per_m * mean_profile(0.0, top_m) * top_m;
+                spray.optical_thickness += mean_over(extinction, 0.0, top_m) * top_m;
             }
         spray.breaking_over_mean /= area;
         spray.optical_thickness /= area;
@@ -194,7 +225,7 @@ class SprayPart final : public VolumePart {
 
     SprayLaw law_;
     WindProfile wind_;
-    double top_m_ = spray_top_m();
+    double top_m_ = spray_top_m(law_);
     std::vector<double> middles_m_, widths_;  // of columns along a side, within the square; widths in voxels
     mutable std::mutex encoding_;
 };

@@ -79,7 +79,7 @@ ExpectedSpray expected_spray(const Plan& plan) {
     const double threshold = calibrated_threshold(
         total, law_coverage(scene), mean_choppiness(spectrum, plan.breaking), third, foam_life(plan));
     const JacobianVariance variance = jacobian_variance(plan, plan.breaking.footprint_of(voxel_m));
-    if (!std::isfinite(threshold) || !(variance.resolved > 0.0)) return {};
+    if (!has_spray(scene) || !std::isfinite(threshold) || !(variance.resolved > 0.0)) return {};
 
     // How far a voxel's sea must be compressed for spray: there what its footprint leaves unresolved breaks now and
     // then.
@@ -112,9 +112,12 @@ ExpectedSpray expected_spray(const Plan& plan) {
         std::max(kAlone * edge * (side / kPi - side * side * deviate / std::pow(kTwoPi, 1.5)), 0.0);
     const double hit = share + (1.0 - share) * -std::expm1(-nearby / std::max(1.0 - share, 1e-9));
     const double columns = voxels_a_side(scene), blocks = std::ceil(columns / kBlock);
-    const double high = spray_top_m() / voxel_m + 1.0;
-    return {.blocks = blocks * blocks * hit * blocks_of_row(high),
-            .voxels = columns * columns * share * high};
+    const SprayLaw law = spray_law(scene, plan.from->extent.significant_height_m);
+    const double high = spray_top_m(law) / voxel_m + 1.0;
+    // Ribbons come from several places upwind, more or less each for itself.
+    const double from = law.ribbons.extinction_per_m.x > 0.0 ? 6.0 : 1.0;
+    return {.blocks = blocks * blocks * (1.0 - std::pow(1.0 - hit, from)) * blocks_of_row(high),
+            .voxels = columns * columns * (1.0 - std::pow(1.0 - share, from)) * high};
 }
 
 double expected_level_set_blocks(const Plan& plan) {

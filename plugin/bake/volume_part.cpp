@@ -1,5 +1,6 @@
 #include "plugin/bake/volume_part.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -8,8 +9,10 @@
 
 namespace pelagic {
 
-double spray_top_m() {
-    return -SprayLaw::kScaleHeight_m * std::log(kNegligibleSpray);
+double spray_top_m(const SprayLaw& law) {
+    return std::max(
+        law.over_foam.extinction_per_m > 0.0 ? -law.over_foam.scale_m * std::log(kNegligibleSpray) : 0.0,
+        law.ribbons.top_m());
 }
 
 FilePattern volume_pattern(const Scene& scene, VolumeKind volume) {
@@ -27,8 +30,11 @@ usd::Volume volume_prim(const Plan& plan, VolumeKind volume) {
         return {.prim = "Spray",
                 .file_prefix = {},
                 .fields = {{"density", "fogVolume"}, {"velocity", "unknown", true}},
-                .extent = round({-half_m, -half_m, -height_m - voxel_m},
-                                {half_m + voxel_m, half_m + voxel_m, height_m + spray_top_m() + voxel_m})};
+                .extent =
+                    round({-half_m, -half_m, -height_m - voxel_m},
+                          {half_m + voxel_m, half_m + voxel_m,
+                           height_m + spray_top_m(spray_law(scene, plan.from->extent.significant_height_m)) +
+                               voxel_m})};
     const double beside_m = kHalfWidth_voxels * voxel_m;
     return {.prim = "LevelSet",
             .file_prefix = {},

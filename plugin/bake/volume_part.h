@@ -41,7 +41,7 @@ class VolumePart : public OutputPart {
     }
 
     // The sea at places of the world, row after row of rising y, some rows at a time: take(first place, its row's
-    // neighbours, …) sees the values of the query's products there.
+    // neighbours, …, the query) sees the values of the query's products there.
     template <class T>
     struct Row {
         std::vector<glm::vec<2, T>> places_m;
@@ -74,7 +74,7 @@ class VolumePart : public OutputPart {
                 results.set(Product::Breaking, {at.breaking.data()});
             }
             evaluate_at<T>(ask, {.count = count, .rest_m = {at.places_m.data()}}, search, results);
-            take(first * a_row, at);
+            take(first * a_row, at, ask);
         }
     }
 

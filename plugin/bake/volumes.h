@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/plan/plan.h"
+#include "core/plan/spray.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/format/usd/volumes.h"
 
@@ -10,7 +11,7 @@ namespace pelagic {
 // The height above which spray's profile is this small, and the share of the sea's mean below which a column has none:
 // what is left out. Each takes at most as much of the whole.
 inline constexpr double kNegligibleSpray = 1e-3;
-double spray_top_m();
+double spray_top_m(const SprayLaw& law);
 
 // A level set's floor lies so far below the deepest trough that is to be expected.
 inline constexpr double kBelow_voxels = 8.0;

@@ -26,7 +26,7 @@ RenderOptions render_options(const Scene& scene) {
     const QualityRow& quality = quality_of(scene.quality.level);
     RenderOptions options;
     options.lighting.whitecaps = is_on(Effect::Whitecaps, scene);
-    options.lighting.spray = spray_law(scene).extinction_per_m > 0.0;
+    options.lighting.spray = has_spray(scene);
     switch (quality.sky) {
         case SkyLookups::One:
             options.lighting.sky_quality = SkyQuality::One;

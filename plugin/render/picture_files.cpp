@@ -51,8 +51,8 @@ struct Ranges {
     exr::PixelType sun, whole;
 };
 
-// Radiance over the sun's and its radius squared: π times the largest value of what droplets scatter ahead.
-constexpr float kMostOfSpray = 20.6f;
+// Radiance over the sun's and its radius squared: π times the largest value of what droplets scatter ahead, small ones and large.
+constexpr float kMostOfSpray = 20.6f, kMostOfTornSpray = 101.0f;
 
 Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
     if (sees_other_suns(scene, sky)) return {.sun = exr::PixelType::Float, .whole = exr::PixelType::Float};
@@ -62,7 +62,8 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
     float most = largest(sky.sun_irradiance + sky.sky_irradiance);
     // Before the sun itself it is brighter than a white surface.
     if (has_spray)
-        most += kMostOfSpray * largest(sky.sun_radiance) * sky.sun_angular_radius * sky.sun_angular_radius;
+        most += (scene.effects.spray_law == SpraySource::Monahan1986 ? kMostOfSpray : kMostOfTornSpray) *
+                largest(sky.sun_radiance) * sky.sun_angular_radius * sky.sun_angular_radius;
     if (sky.map.level_count() > 0)
         for (const glm::vec3& texel : sky.map.level(0)) most = std::max(most, largest(texel));
     // The air takes less from the disc's upper limb than from the mean.

@@ -22,7 +22,7 @@ std::size_t spray_map_bytes(SprayMapSize size);
 // Without light yet. Query 0 of the frame's plan is that of pictures (picture_plan()), with Product::Displacement; the footprints
 // of no texel are finer than the view's own pixels. Columns span what the view sees, or the whole circle where it sees its nadir or the zenith. Rows
 // go from a part of the eye's height to where the layer is behind the horizon. Texels are means over themselves, and over
-// the layer's scale height at least, where volumes have a voxel's: near the camera a picture's spray is smoother than a fine volume's. Empty where the
+// two metres at least, where volumes have a voxel's: near the camera a picture's spray is smoother than a fine volume's. Empty where the
 // scene has no spray, and where no wave breaks. On all threads of the calling arena; the same bits whatever their number.
 template <class T>
 Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGridOptions& options,

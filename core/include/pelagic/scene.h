@@ -26,6 +26,7 @@ enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhail
 enum class ShortWaves { Elfouhaily, None };
 enum class GrowthLaw { HeightAndPeak, Height };
 enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
+enum class SpraySource { Monahan1986, Andreas1998 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class Tiling { Random, Periodic };
@@ -207,6 +208,7 @@ struct Effects {
     double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
     double foam_streaks = 0.5;     // 0 … 1, along the wind
     bool spray = false;
+    SpraySource spray_law = SpraySource::Andreas1998;
     double spray_gain = 1.0;
 };
 

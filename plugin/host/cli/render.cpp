@@ -13,6 +13,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/plan/effects.h"
+#include "core/plan/prepared_scene.h"
 #include "core/plan/spray.h"
 #include "core/scene/text.h"
 #include "plugin/format/shot/shot.h"
@@ -132,11 +134,14 @@ int run(const RenderArguments& arguments) {
                ") or lower the cascades' resolutions; files already written are whole";
     };
     const auto work = [&](RunOptions watched, Session& session) {
-        if (const std::string thin = spray_warning(order.scene); !thin.empty())
-            std::cerr << line_text(arguments.shot) << ": note: " << thin << std::endl;
         const Settled settled = settled_for(watched, order.scene, Purpose::Pictures, session, fixed);
         settled.apply(order);
         settled.apply(watched);
+        if (is_on(Effect::Spray, order.scene))
+            if (const std::string thin =
+                    spray_warning(order.scene, prepare(order.scene)->extent.significant_height_m);
+                !thin.empty())
+                std::cerr << line_text(arguments.shot) << ": note: " << thin << std::endl;
         return render_files(order, watched);
     };
     return run_frames(arguments, options,

@@ -2,14 +2,17 @@
 
 uniform sampler2D spray_map;
 uniform vec3 spray_azimuth; // column 0's, and columns per radian
-uniform vec4 spray_rows;    // the first distance, the logarithm of the next over it, the scale of the profile, the eye's height
+uniform vec3 spray_rows;    // the first distance, the logarithm of the next over it, the eye's height
+uniform bool spray_is_torn;
+uniform vec3 spray_scales;  // of heights: scale, step; and the haze's extinction
+uniform vec3 spray_forward; // mean cosines of two lobes
 uniform float spray_top_m;
 uniform vec3 spray_to_sun;
 uniform vec3 spray_sun;
 uniform vec3 spray_above;
 uniform vec3 spray_below;
+uniform vec3 spray_low_ahead;
+uniform vec3 spray_low_beside;
+uniform vec3 spray_low_behind;
 
-vec2 spray_texel(int column, int row) {
-    vec4 texel = texelFetch(spray_map, ivec2(column, row), 0);
-    return vec2(texel.x, texel.y);
-}
+vec4 spray_texel(int column, int row) { return texelFetch(spray_map, ivec2(column, row), 0); }

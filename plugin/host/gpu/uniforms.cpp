@@ -68,12 +68,18 @@ std::vector<Uniform> air_uniforms(const Air& air) {
 
 std::vector<Uniform> spray_uniforms(const Spray& spray) {
     return {vector("spray_azimuth", glm::vec3(spray.azimuth, spray.columns_per_rad)),
-            {"spray_rows", 4, glm::vec4(spray.first_m, spray.row_step, spray.scale_m, spray.eye_m)},
+            vector("spray_rows", glm::vec3(spray.first_m, spray.row_step, spray.eye_m)),
+            {.name = "spray_is_torn", .value = glm::vec4(spray.is_torn ? 1.0f : 0.0f), .is_integer = true},
+            vector("spray_scales", {spray.scale_m, spray.step_m, spray.haze_per_m}),
+            vector("spray_forward", glm::vec3(spray.forward, 0.0f)),
             number("spray_top_m", static_cast<double>(spray.top_m)),
             vector("spray_to_sun", spray.to_sun),
             vector("spray_sun", spray.sun),
             vector("spray_above", spray.above),
-            vector("spray_below", spray.below)};
+            vector("spray_below", spray.below),
+            vector("spray_low_ahead", spray.low_ahead),
+            vector("spray_low_beside", spray.low_beside),
+            vector("spray_low_behind", spray.low_behind)};
 }
 
 }  // namespace pelagic

@@ -404,9 +404,8 @@ void SeaRenderer::set_spray(const Spray& spray) {
     texels_as_they_are();
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    const TexelFormat format = float_texels(2);
-    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), spray.columns, spray.rows, 0,
-                 format.format, GL_FLOAT, spray.texels.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, spray.columns, spray.rows, 0, GL_RGBA, GL_FLOAT,
+                 spray.texels.data());
 }
 
 void SeaRenderer::upload(const PackedFrame& frame) {

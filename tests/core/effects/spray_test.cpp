@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "core/plan/spray.h"
@@ -63,15 +64,88 @@ TEST(Spray, FoamThatStaysIsNoneThatBreaks) {
 }
 
 TEST(Spray, ThereIsNoneWhereNoWaveBreaks) {
+    const auto veil_of = [](const Scene& scene) {
+        Frame<float> frame(spray_sea(scene));
+        frame.set(1.0);
+        return SprayVeil(frame);
+    };
     Scene scene = spray_scene(0.0);
     EXPECT_EQ(mean_breaking(*spray_sea(scene)), 0.0);
-    EXPECT_EQ(spray_extinction_per_coverage(*spray_sea(scene)), 0.0);
+    EXPECT_TRUE(veil_of(scene).empty());
     scene = spray_scene(15.0);
-    const auto sea = spray_sea(scene);
-    EXPECT_NEAR(spray_extinction_per_coverage(*sea) * mean_breaking(*sea), spray_law(15.0).extinction_per_m,
-                1e-12);
+    EXPECT_FALSE(veil_of(scene).empty());
     scene.effects.spray = false;
-    EXPECT_EQ(spray_extinction_per_coverage(*spray_sea(scene)), 0.0);
+    EXPECT_TRUE(veil_of(scene).empty());
+}
+
+// The noise is 1 on average over places, times and seeds; also in a loop, which it closes.
+TEST(Spray, TheTearingHasTheMeanOne) {
+    for (const double loop_s : {0.0, 10.0}) {
+        std::array<double, 3> sum{}, square{};
+        int count = 0;
+        for (std::uint64_t seed = 0; seed < 10; ++seed) {
+            Scene scene = spray_scene(20.0);
+            scene.shot.seed = seed;
+            scene.shot.loop_s = loop_s;
+            Frame<float> frame(spray_sea(scene));
+            frame.set(loop_s > 0.0 ? 3.0 : 1e4 * static_cast<double>(seed));
+            const SprayVeil veil(frame);
+            for (int i = 0; i < 100; ++i)
+                for (int j = 0; j < 100; ++j, ++count)
+                    for (int height = 0; height < 3; ++height) {
+                        const double factor = veil.torn(height, {47.3 * i - 1e5, 7.7 * j}, 0.2).factor;
+                        EXPECT_GE(factor, 0.0);
+                        sum[static_cast<std::size_t>(height)] += factor;
+                        square[static_cast<std::size_t>(height)] += factor * factor;
+                    }
+            frame.set(0.0);
+            const SprayVeil begins(frame);
+            frame.set(loop_s > 0.0 ? loop_s * (1.0 - 1e-9) : 0.0);
+            const SprayVeil ends(frame);
+            EXPECT_NEAR(begins.torn(1, {31.0, 5.0}, 0.2).factor, ends.torn(1, {31.0, 5.0}, 0.2).factor, 1e-3);
+        }
+        for (std::size_t height = 0; height < 3; ++height) {
+            EXPECT_NEAR(sum[height] / count, 1.0, 0.03) << height;
+            EXPECT_GT(square[height] / count, 2.0) << "it hardly tears";
+        }
+    }
+}
+
+// Where cells are coarse for the noise what ribbons have is what breaks, over the sea; it lies downwind of that.
+TEST(Spray, RibbonsAreWhatBreaksUpwind) {
+    Scene scene = spray_scene(20.0);
+    const auto sea = std::make_shared<const Sea<float>>(
+        make_plan(scene, {filtered(products(Product::Displacement, Product::Breaking), 2.0)}));
+    Frame<float> frame(sea);
+    frame.set(7.0);
+    constexpr int kSide = 400;
+    constexpr double kSpacing_m = 5.0;
+    std::vector<glm::vec2> places_m;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) places_m.emplace_back(glm::dvec2(kSpacing_m * i, kSpacing_m * j));
+    const Points<float> points{.count = places_m.size(), .rest_m = {places_m.data()}};
+    const PreparedQuery<float> query(frame, 0, products(Product::Displacement, Product::Breaking));
+    std::vector<float> breaking(points.count);
+    Results<float> results;
+    results.set(Product::Breaking, {breaking.data()});
+    evaluate_at(query, points, {.tolerance_m = 0.05}, results);
+    const SprayVeil veil(frame);
+    std::vector<glm::dvec3> shares(points.count);
+    veil.shares<float>(query, points, breaking, std::vector<double>(points.count, 5.9), shares);
+    glm::dvec3 sum(0.0);
+    double broken = 0.0, downwind = 0.0, upwind = 0.0;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const auto at = static_cast<std::size_t>(j * kSide + i);
+            sum += shares[at];
+            broken += static_cast<double>(breaking[at]) / mean_breaking(*sea);
+            if (i < 6 || i + 6 >= kSide) continue;
+            // The wind blows along x.
+            downwind += shares[at + 5].z * static_cast<double>(breaking[at]);
+            upwind += shares[at - 5].z * static_cast<double>(breaking[at]);
+        }
+    for (int height = 0; height < 3; ++height) EXPECT_NEAR(sum[height] / broken, 1.0, 0.03) << height;
+    EXPECT_GT(downwind, 2.0 * upwind);
 }
 
 }  // namespace

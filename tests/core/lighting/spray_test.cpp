@@ -36,7 +36,7 @@ Spray spray_of(double eye_m, const Sea& sea) {
     spray.top_m = -1e30f;
     for (int row = 0; row < kRows; ++row)
         for (int column = 0; column < kColumns; ++column) {
-            spray.texels.emplace_back(glm::vec2(sea(radius_m(row))));
+            spray.texels.emplace_back(glm::vec2(sea(radius_m(row))), 0.0f, 0.0f);
             spray.top_m = std::max(spray.top_m, spray.texels.back().x);
         }
     return spray;
@@ -88,6 +88,18 @@ double seen_thickness(const Spray& spray, double elevation, double distance_m, b
     return -std::log(static_cast<double>(
         spray_before(spray, glm::vec3(spray_towards(elevation)), static_cast<float>(distance_m), on_sea)
             .transmittance));
+}
+
+// Ribbons with a half and a quarter of what they have at the surface, and haze.
+constexpr double kStep_m = 3.0, kHaze_per_m = 0.004, kHazeScale_m = 40.0;
+Spray torn_spray(double eye_m, const Sea& sea) {
+    Spray spray = spray_of(eye_m, sea);
+    spray.is_torn = true;
+    spray.scale_m = static_cast<float>(kHazeScale_m);
+    spray.step_m = static_cast<float>(kStep_m);
+    spray.haze_per_m = static_cast<float>(kHaze_per_m);
+    for (glm::vec4& texel : spray.texels) texel = {texel.x, texel.y, 0.5f * texel.y, 0.25f * texel.y};
+    return spray;
 }
 
 TEST(SprayBefore, RaysAreTheIntegralOverTheMap) {
@@ -143,9 +155,9 @@ TEST(SprayBefore, ARayToTheSeaEndsOnIt) {
 }
 
 // Under the same light from everywhere there is no spray to be seen: what is dimmed comes back.
-TEST(SprayBefore, AWhiteFurnaceStaysWhite) {
-    Spray spray = spray_of(3.0, kWaves);
-    spray.above = spray.below = glm::vec3(1.0f);
+void expect_white_furnace(Spray spray) {
+    spray.above = spray.below = spray.low_ahead = spray.low_beside = spray.low_behind = glm::vec3(1.0f);
+    spray.to_sun = glm::vec3(0.6f, 0.0f, 0.8f);
     double least = 1.0;
     for (const double elevation : {-0.3, -0.02, 0.0, 0.02, 0.7}) {
         for (const double distance_m : {1.0, 100.0, 1e4}) {
@@ -160,11 +172,64 @@ TEST(SprayBefore, AWhiteFurnaceStaysWhite) {
     }
     EXPECT_LT(least, 1e-3);  // through thick spray as well
 }
+TEST(SprayBefore, AWhiteFurnaceStaysWhite) {
+    expect_white_furnace(spray_of(3.0, kWaves));
+    expect_white_furnace(torn_spray(3.0, kWaves));
+}
+
+// Ribbons and haze are the integral of what they are at each height.
+TEST(SprayBefore, RaysThroughTornSprayAreTheIntegral) {
+    const auto density = [](double z) {
+        constexpr std::array kAt{0.0, 1.0, 2.5, 5.0}, kPart{1.0, 0.5, 0.25, 0.0};
+        double torn = z < 0.0 ? 1.0 : 0.0;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (const double step = z / kStep_m; step >= kAt[i] && step < kAt[i + 1])
+                torn = std::lerp(kPart[i], kPart[i + 1], (step - kAt[i]) / (kAt[i + 1] - kAt[i]));
+        return 0.05 * torn + kHaze_per_m * std::exp(-std::max(z, 0.0) / kHazeScale_m);
+    };
+    for (const double eye_m : {1.0, 4.5, 12.0, 200.0})
+        for (const double elevation : {-0.5, -0.05, -0.003, 0.0, 0.003, 0.1})
+            for (const double distance_m : {0.3, 7.0, 60.0, 390.0}) {
+                double expected = 0.0;
+                constexpr int kSteps = 20000;
+                for (int i = 0; i < kSteps; ++i)
+                    expected += density(eye_m + (i + 0.5) / kSteps * distance_m * std::sin(elevation)) *
+                                distance_m / kSteps;
+                if (expected > 8.0) continue;
+                EXPECT_NEAR(seen_thickness(torn_spray(eye_m, kFlat), elevation, distance_m), expected,
+                            2e-3 * expected + 3e-6)
+                    << eye_m << " m, " << elevation << ", " << distance_m << " m";
+            }
+    // The whole of it, from its bottom up.
+    for (const double elevation : {0.5 * kPi, 1.0, 0.2}) {
+        const auto up = spray_before(torn_spray(0.0, kFlat), glm::vec3(spray_towards(elevation)), {}, false);
+        const double whole = 0.05 * kStep_m * (0.75 + 0.5625 + 0.3125) + kHaze_per_m * kHazeScale_m;
+        EXPECT_NEAR(-std::log(up.transmittance) / (whole / std::sin(elevation)), 1.0, 3e-3) << elevation;
+    }
+}
+
+// Against a low sun torn spray is brighter than the sky that it hides.
+TEST(SprayBefore, TornSprayShinesAgainstTheSun) {
+    Spray spray = torn_spray(3.0, kFlat);
+    spray.forward = {0.95f, 0.75f};
+    spray.to_sun = glm::vec3(spray_towards(0.2, 0.0));
+    // A clear sky's: its light is a fourth of the sun's, and twice as bright low below that.
+    spray.sun = glm::vec3(4.0f);
+    spray.above = glm::vec3(static_cast<float>(1.0 / kPi));
+    spray.low_ahead = 2.0f * spray.above;
+    spray.low_beside = spray.low_behind = spray.above;
+    const auto seen = [&](double azimuth) {
+        const auto path = spray_before(spray, glm::vec3(spray_towards(0.01, azimuth)), 30.0f, false);
+        return path.scattered.y / (1.0f - path.transmittance);
+    };
+    EXPECT_GT(seen(0.15), 1.3f * spray.low_ahead.y);
+    EXPECT_LT(seen(kPi), spray.low_behind.y);
+}
 
 TEST(SprayBefore, ThinSprayIsLinearAndThickSprayIsItsOwnLight) {
     const auto times = [](double factor) {
         Spray spray = spray_of(3.0, kWaves);
-        for (glm::vec2& texel : spray.texels) texel.y *= static_cast<float>(factor);
+        for (glm::vec4& texel : spray.texels) texel.y *= static_cast<float>(factor);
         spray.to_sun = glm::vec3(0.0f, 0.6f, 0.8f);
         spray.sun = glm::vec3(100.0f);
         spray.above = glm::vec3(5.0f);
@@ -187,7 +252,7 @@ TEST(SprayBefore, ScattersAhead) {
     Spray spray = spray_of(3.0, kFlat);
     spray.to_sun = glm::vec3(spray_towards(0.1, 0.0));
     spray.sun = glm::vec3(1.0f);
-    for (glm::vec2& texel : spray.texels) texel.y = 1e-6f;
+    for (glm::vec4& texel : spray.texels) texel.y = 1e-6f;
     const auto light = [&](double azimuth) {
         return spray_before(spray, glm::vec3(spray_towards(0.0, azimuth)), 100.0f, false).scattered.y;
     };
@@ -199,9 +264,11 @@ TEST(SprayBefore, IsFiniteEverywhere) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (const double eye_m : {-8.0, 0.0, 1e-3, 3.0, 60.0, 1e5, 1e8})
-        for (const double factor : {0.0, 1e-6, 1.0, 1e6}) {
-            Spray spray = spray_of(eye_m, kWaves);
-            for (glm::vec2& texel : spray.texels) texel.y *= static_cast<float>(factor);
+        for (const auto& [factor, torn] :
+             {std::pair(0.0, false), {1e-6, true}, {1.0, false}, {1.0, true}, {1e6, false}, {1e6, true}}) {
+            Spray spray = torn ? torn_spray(eye_m, kWaves) : spray_of(eye_m, kWaves);
+            for (glm::vec4& texel : spray.texels)
+                for (int i = 1; i < 4; ++i) texel[i] *= static_cast<float>(factor);
             spray.to_sun = glm::vec3(spray_towards(-0.01));
             spray.sun = spray.above = spray.below = glm::vec3(100.0f);
             const auto check = [&](glm::vec3 direction, std::optional<float> distance_m) {

@@ -103,6 +103,7 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.effects.whitecap_amount = 2.0; },
         [](Scene& s) { s.effects.breaking_from_m = 2.0; },
         [](Scene& s) { s.effects.spray = true; },
+        [](Scene& s) { s.effects.spray_law = SpraySource::Monahan1986; },
         [](Scene& s) { s.effects.spray_gain = 2.0; },
         [](Scene& s) { s.quality.level = QualityLevel::Draft; },
         [](Scene& s) { s.output.mesh = MeshFormat::None; },

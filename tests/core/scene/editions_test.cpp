@@ -42,6 +42,7 @@ TEST(Editions, TheFirstIsKept) {
     EXPECT_EQ(first.waves.trains, 60);
     EXPECT_EQ(first.light.turbidity, 3.0);
     EXPECT_EQ(first.effects.whitecap_law, WhitecapLaw::Monahan1980);
+    EXPECT_EQ(first.effects.spray_law, SpraySource::Monahan1986);
 }
 
 // A preset in a scene of the first edition is what it was then: no camera, and Beaufort's are the wind sea alone.

@@ -22,6 +22,7 @@ TEST(Names, AreTheShotFilesWords) {
     expect_words<SpectrumKind>(
         {"pierson-moskowitz", "jonswap", "jonswap-1973", "tma", "elfouhaily", "omega-2", "phillips", "file"});
     expect_words<SpreadingKind>({"hasselmann", "donelan-banner", "cosine", "elfouhaily"});
+    expect_words<SpraySource>({"monahan-1986", "andreas-1998"});
     expect_words<WhitecapLaw>({"monahan-1980", "monahan-1986", "callaghan-2008"});
     expect_words<WaveModel>({"fft", "trochoid"});
     expect_words<SurfaceKind>({"patch", "projected-grid", "near-far", "cage", "planet"});

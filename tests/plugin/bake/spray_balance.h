@@ -10,6 +10,7 @@
 
 #include "core/effects/spray.h"
 #include "core/evaluate/values.h"
+#include "core/plan/prepared_scene.h"
 #include "core/plan/spray.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/bake/bake.h"
@@ -66,7 +67,7 @@ inline SprayBalance spray_balance(const Scene& scene) {
     sequence->compute(frame, slot);
     sequence->encode(slot);
     sequence->write(slot, [&](const FileJob& job) { files::write_atomically(file, job.content); });
-    const SprayLaw law = spray_law(scene);
+    const SprayLaw law = spray_law(scene, prepare(scene)->extent.significant_height_m);
     const double area_m2 = scene.surface.size_m * scene.surface.size_m;
     SprayBalance balance;
     for (const auto& [path, recorded] : slot.record.files)
@@ -74,7 +75,8 @@ inline SprayBalance spray_balance(const Scene& scene) {
     double sum = 0.0;  // of extinctions
     read_vdb(file).front().for_each(
         [&](glm::ivec3, glm::vec3 value) { sum += static_cast<double>(value.x); });
-    balance.optical_thickness = sum * std::pow(scene.output.voxel_m, 3.0) / area_m2 / law.optical_thickness();
+    balance.optical_thickness = sum * std::pow(scene.output.voxel_m, 3.0) / area_m2 /
+                                (law.optical_thickness() - law.haze.optical_thickness());
     balance.breaking = breaking_in_square(scene);
     fs::remove(file);
     return balance;
@@ -86,6 +88,7 @@ inline Scene spray_shot(double wind_speed_mps, double size_m, double voxel_m) {
     scene.sea.wind_speed_mps = wind_speed_mps;
     scene.surface.size_m = size_m;
     scene.effects.spray = true;
+    scene.effects.spray_law = SpraySource::Monahan1986;
     scene.output.mesh = MeshFormat::None;
     scene.output.volumes = {VolumeKind::Spray};
     scene.output.voxel_m = voxel_m;

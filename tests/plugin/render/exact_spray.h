@@ -29,8 +29,10 @@ struct SprayRay {
 inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dvec3& eye_m,
                                         double curvature_per_m, double cell_m,
                                         std::span<const SprayRay> rays) {
-    constexpr double kScale_m = SprayLaw::kScaleHeight_m, kLonger = 1.3;
-    const double extinction = spray_extinction_per_coverage(frame.sea());
+    constexpr double kLonger = 1.3, kSmoothest_m = 2.0;
+    const SprayVeil veil(frame);
+    const SprayLaw& law = veil.law();
+    const double high_m = veil.is_torn() ? 10.0 * law.haze.scale_m : 10.0 * law.over_foam.scale_m;
     struct Step {
         std::size_t ray;
         double at_m, height_m, length_m;
@@ -44,13 +46,13 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
             const glm::dvec3 flat = curvature_per_m > 0.0 ? from_earth(at, curvature_per_m) : at;
             s_m += length_m;
             // Above all crests by many scale heights.
-            if (flat.z > 2.0 * frame.sea().extent().height_m + 10.0 * kScale_m) continue;
+            if (flat.z > 2.0 * frame.sea().extent().height_m + high_m) continue;
             if (flat.z < -2.0 * frame.sea().extent().height_m) break;
             places.emplace_back(glm::dvec2(flat));
             steps.push_back({i, s_m - 0.5 * length_m, flat.z, length_m});
         }
     std::vector<float> cells(places.size(), static_cast<float>(cell_m)),
-        spreads(places.size(), static_cast<float>(std::max(cell_m, kScale_m))), coverage(places.size());
+        spreads(places.size(), static_cast<float>(std::max(cell_m, kSmoothest_m))), coverage(places.size());
     std::vector<glm::vec3> displacement(places.size());
     Points<float> points{.origin_m = glm::dvec2(eye_m),
                          .count = places.size(),
@@ -63,6 +65,8 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
     results.set(Product::Displacement, {displacement.data()});
     results.set(Product::Breaking, {coverage.data()});
     evaluate_at(query, points, {}, results);
+    std::vector<glm::dvec3> shares(places.size());
+    veil.shares<float>(query, points, coverage, std::vector<double>(places.size(), cell_m), shares);
     std::vector<SprayRay> met;
     for (std::size_t i = 0; i < steps.size();) {
         SprayRay ray{.direction = rays[steps[i].ray].direction};
@@ -71,9 +75,13 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
         for (; i < steps.size() && steps[i].ray == of; ++i) {
             if (ray.length_m > 0.0) continue;
             const double z_m = steps[i].height_m - static_cast<double>(displacement[i].z);
-            const double density = extinction * static_cast<double>(coverage[i]);
+            const double z_over_m = std::max(z_m, 0.0);
+            const double density =
+                law.over_foam.extinction_per_m * shares[i].x * std::exp(-z_over_m / law.over_foam.scale_m) +
+                law.haze.extinction_per_m * std::exp(-z_over_m / law.haze.scale_m) +
+                law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], z_over_m, z_over_m + 1e-3);
             if (z_m > 0.0) {
-                ray.thickness += density * std::exp(-z_m / kScale_m) * steps[i].length_m;
+                ray.thickness += density * steps[i].length_m;
                 before_m = steps[i].at_m;
                 before_z = z_m;
                 continue;

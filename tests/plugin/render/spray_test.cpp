@@ -64,12 +64,18 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
     const double gain = 10.0;
     // From higher up the map's cells tell fewer of the patches apart that break. Each of those is so dense that spray spread evenly over
     // a cell takes more light than they do.
+    // Torn spray is spread wider, and most of its thickness lies everywhere: +2 % from 12 m, +4 % from 40 m, −3 % from 400 m.
     struct Case {
         double height_m, most_error, most_rms;
+        int edition = 1;
     };
-    for (const auto [height_m, most_error, most_rms] :
-         {Case{12.0, 0.06, 0.06}, Case{40.0, 0.2, 0.12}, Case{400.0, 0.4, 0.25}}) {
-        Scene scene = spray_storm(gain);
+    for (const auto [height_m, most_error, most_rms, edition] :
+         {Case{12.0, 0.06, 0.06}, Case{40.0, 0.2, 0.12}, Case{400.0, 0.4, 0.25}, Case{40.0, 0.1, 0.08, 2}}) {
+        Scene scene = spray_storm(edition == 1 ? gain : 1.0);
+        if (edition == 2) {
+            scene.effects.whitecap_law = WhitecapLaw::Callaghan2008;
+            scene.effects.spray_law = SpraySource::Andreas1998;
+        }
         scene.camera.position_m.z = height_m;
         scene.camera.look_at_m = {0.0, 10.0 * height_m, 0.0};
         RenderOptions options = spray_options(scene);

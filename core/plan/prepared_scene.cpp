@@ -28,10 +28,9 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
     const Choppiness choppiness = Choppiness::asked(scene);
     Extent extent = expected_extent(spectrum, choppiness);
     // Of a value x deviations high, a skewness s makes one of x + s (x² − 1)/6 (Cornish and Fisher 1938).
-    const double skewness = std::abs(second.skewness()) * second.limit() * scene.waves.second_order *
-                            choppiness.largest();
-    extent.height_m *=
-        1.0 + skewness * (kExtentDeviations - 1.0 / kExtentDeviations) / 6.0;
+    const double skewness =
+        std::abs(second.skewness()) * second.limit() * scene.waves.second_order * choppiness.largest();
+    extent.height_m *= 1.0 + skewness * (kExtentDeviations - 1.0 / kExtentDeviations) / 6.0;
     return extent;
 }
 

@@ -23,7 +23,8 @@ constexpr double kMostAdded = 1.5;
 std::size_t SecondOrderPlan::bytes(bool double_precision) const {
     const std::size_t scalar = double_precision ? sizeof(double) : sizeof(float);
     const std::size_t rows = static_cast<std::size_t>(resolution), half = static_cast<std::size_t>(radius);
-    return 2 * scalar * (rows * ((2 * half - 1) * sums() + half * results()) + results() * lattice_modes(radius));
+    return 2 * scalar *
+           (rows * ((2 * half - 1) * sums() + half * results()) + results() * lattice_modes(radius));
 }
 
 SecondOrderBand::SecondOrderBand(const SecondOrder& pairs, double k_lower, double k_upper, double size_m,

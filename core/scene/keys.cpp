@@ -216,16 +216,18 @@ void add_waves(Built& out) {
              .key_parts = kWaves}),
         row<&Waves::lean_deg>(
             {.name = "lean_deg",
-             .help = "how far the sideways displacement runs ahead of the waves in phase, with fft: fronts are steeper than backs, and "
-                     "foam breaks on them; 0 is the trochoid's symmetry",
+             .help =
+                 "how far the sideways displacement runs ahead of the waves in phase, with fft: fronts are steeper than backs, and "
+                 "foam breaks on them; 0 is the trochoid's symmetry",
              .unit = "degrees",
              .range = limits::kLean_deg,
              .soft = SoftRange{0.0, 40.0},
              .key_parts = kWaves}),
         row<&Waves::second_order>(
             {.name = "second_order",
-             .help = "of what pairs of waves add to the surface, with fft: 1 is nature's, which raises the groups of high waves so "
-                     "that crests are some 10 % higher than troughs are deep; 0, as high. As the displacement, it goes with choppiness",
+             .help =
+                 "of what pairs of waves add to the surface, with fft: 1 is nature's, which raises the groups of high waves so "
+                 "that crests are some 10 % higher than troughs are deep; 0, as high. As the displacement, it goes with choppiness",
              .range = limits::kSecondOrder,
              .key_parts = kWaves}),
         entries<&Waves::cascades>(

@@ -38,8 +38,7 @@ PairKernels pair_kernels(double k1, double theta1, double k2, double theta2, dou
     const double below = slower * slower - (apart > 0.0 ? slow(apart) : 0.0);
     double difference = 0.0;
     if (std::abs(below) > 1e-12 * (r1 + r2))
-        difference =
-            (slower * (s2 * rest1 - s1 * rest2) + 2.0 * slower * slower * (dot + r1 * r2)) / below;
+        difference = (slower * (s2 * rest1 - s1 * rest2) + 2.0 * slower * slower * (dot + r1 * r2)) / below;
     const double above = faster * faster - (together > 0.0 ? slow(together) : 0.0);
     const double sum = (faster * (s1 * rest2 + s2 * rest1) + 2.0 * faster * faster * (dot - r1 * r2)) / above;
     const double per = 1.0 / (s1 * s2);
@@ -131,8 +130,7 @@ SecondOrder second_order(const DirectionalSpectrum& spectrum) {
             const double width = kTwoPi / kDirections, theta = (static_cast<double>(d) - 0.5) * width;
             const double part = spectrum.arc(k, theta, theta + width) / density;
             constexpr double kLeast = 1e-4;
-            if (part > kLeast)
-                nodes.push_back({k, theta + 0.5 * width, part * energy / whole, bin});
+            if (part > kLeast) nodes.push_back({k, theta + 0.5 * width, part * energy / whole, bin});
         }
     }
     const double depth_m = spectrum.dispersion().depth_m;
@@ -140,8 +138,7 @@ SecondOrder second_order(const DirectionalSpectrum& spectrum) {
         for (std::size_t b = a; b < nodes.size(); ++b) {
             const Node &first = nodes[a], &second = nodes[b];
             const double share = (a == b ? 1.0 : 2.0) * first.share * second.share;
-            const PairKernels kernels =
-                pair_kernels(first.k, first.theta, second.k, second.theta, depth_m);
+            const PairKernels kernels = pair_kernels(first.k, first.theta, second.k, second.theta, depth_m);
             const double mean = share * std::sqrt(first.k * second.k),
                          cosine = std::cos(first.theta - second.theta);
             result.pairs[first.bin][second.bin] +=

@@ -30,9 +30,9 @@ struct SecondOrder {
     static constexpr std::size_t kBins = 16;
     // Over pairs of a bin and another, of the products of both energies, each over m0:
     struct Sums {
-        double difference = 0.0, sum = 0.0;      // L⁻, L⁺ [rad/m]
-        double together = 0.0, against = 0.0;    // √(k_i k_j) (1 + cos θ), √(k_i k_j) (1 − cos θ) [rad/m]
-        double shallow = 0.0;                    // √(q_i q_j), q: shallow_wavenumber()
+        double difference = 0.0, sum = 0.0;    // L⁻, L⁺ [rad/m]
+        double together = 0.0, against = 0.0;  // √(k_i k_j) (1 + cos θ), √(k_i k_j) (1 − cos θ) [rad/m]
+        double shallow = 0.0;                  // √(q_i q_j), q: shallow_wavenumber()
 
         Sums& operator+=(const Sums& other);
     };

@@ -12,8 +12,8 @@
 #include "core/scene/limits.h"
 #include "core/waves/kernels.h"
 #include "core/waves/realisation.h"
-#include "core/waves/second_order.h"
 #include "core/waves/sea.h"
+#include "core/waves/second_order.h"
 #include "core/waves/transform.h"
 
 namespace pelagic {
@@ -99,7 +99,7 @@ class Frame {
     Kernels<T> kernels_;
     std::vector<std::vector<GridState>> grids_;  // by cascade
     std::optional<SecondOrderWaves<T>> second_order_;
-    std::vector<Block> blocks_;                  // largest first, so that the threads end together
+    std::vector<Block> blocks_;  // largest first, so that the threads end together
     std::vector<Rows> rows_;
     std::size_t block_modes_ = 0, line_values_ = 0;  // sizes of a scratch's buffers
     std::unique_ptr<Scratches> scratches_;

@@ -143,8 +143,8 @@ void SecondOrderWaves<T>::sum_columns(int first_mx, int end_mx, double time_s) {
         const auto transform = [&](Line<T>& line, Plane& plane, int column) {
             transform_.execute(line.from.data(), line.to.data());
             for (int y = 0; y < n; ++y) {
-                const std::size_t to = static_cast<std::size_t>(y) * columns() +
-                                       static_cast<std::size_t>(r - 1 + column);
+                const std::size_t to =
+                    static_cast<std::size_t>(y) * columns() + static_cast<std::size_t>(r - 1 + column);
                 plane.re[to] = line.to_re()[y];
                 plane.im[to] = line.to_im()[y];
             }
@@ -224,7 +224,8 @@ void SecondOrderWaves<T>::take_columns(int first_mx, int end_mx) {
             const int height = half_height(radius(), mx);
             for (int my = -height; my <= height; ++my) {
                 if (mx == 0 && my == 0) continue;  // the mean stays that of the waves themselves
-                const std::size_t to = first_[static_cast<std::size_t>(mx)] + static_cast<std::size_t>(my + height);
+                const std::size_t to =
+                    first_[static_cast<std::size_t>(mx)] + static_cast<std::size_t>(my + height);
                 modes_[result].re[to] = scale * line.to_re()[wrapped(my, n)];
                 modes_[result].im[to] = -scale * line.to_im()[wrapped(my, n)];
             }

@@ -340,11 +340,12 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     planned["cascades"] = Json::array();
     for (const CascadePlan& cascade : plan.cascades) {
         const auto number_of = static_cast<int>(planned["cascades"].size());
-        Json& row = planned["cascades"].emplace_back(Json{{"size_m", cascade.size_m},
-                                                          {"resolution", cascade.resolution},
-                                                          {"k_lower_rad_per_m", cascade.k_lower},
-                                                          {"k_upper_rad_per_m", number(cascade.k_upper)},
-                                                          {"modes", lattice_modes(cascade.amplitude_radius())}});
+        Json& row =
+            planned["cascades"].emplace_back(Json{{"size_m", cascade.size_m},
+                                                  {"resolution", cascade.resolution},
+                                                  {"k_lower_rad_per_m", cascade.k_lower},
+                                                  {"k_upper_rad_per_m", number(cascade.k_upper)},
+                                                  {"modes", lattice_modes(cascade.amplitude_radius())}});
         const auto& asked = plan.from->scene.waves.cascades;
         if (!asked.empty() && asked[static_cast<std::size_t>(number_of)].choppiness)
             row["choppiness"] = *asked[static_cast<std::size_t>(number_of)].choppiness;

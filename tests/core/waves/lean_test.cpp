@@ -13,8 +13,9 @@ using namespace test;
 
 // Of one cascade, over its whole tile; waves travel along +x for the most part.
 struct Fronts {
-    double slope_skewness = 0.0;  // E[η_x³]/E[η_x²]^{3/2} over places: below 0 where fronts are the steeper side
-    double on_front = 0.0;        // of the places with the smallest J, the share whose water falls towards +x
+    double slope_skewness =
+        0.0;  // E[η_x³]/E[η_x²]^{3/2} over places: below 0 where fronts are the steeper side
+    double on_front = 0.0;  // of the places with the smallest J, the share whose water falls towards +x
     double jacobian_deviation = 0.0;
 };
 

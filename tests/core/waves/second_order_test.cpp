@@ -26,8 +26,8 @@ Scene small_sea(double depth_m = std::numeric_limits<double>::infinity()) {
 
 template <class T>
 SecondOrderWaves<T> pairs_at(const std::shared_ptr<const Sea<T>>& sea, double t_s) {
-    SecondOrderWaves<T> pairs(
-        sea, 0, LineTransform<T>(sea->plan().cascades.front().second_order->resolution));
+    SecondOrderWaves<T> pairs(sea, 0,
+                              LineTransform<T>(sea->plan().cascades.front().second_order->resolution));
     pairs.set(t_s);
     return pairs;
 }
@@ -59,8 +59,8 @@ std::vector<Travelling> travelling(const Sea<double>& sea, int radius) {
             if (mx == 0 && my == 0) continue;
             const std::size_t at = cascade.middle(mx) + my;
             const double k = step * std::hypot(mx, my), theta = std::atan2(my, mx);
-            waves.push_back({mx, my, k, theta,
-                             2.0 * Complex(cascade.forward_re[at], cascade.forward_im[at])});
+            waves.push_back(
+                {mx, my, k, theta, 2.0 * Complex(cascade.forward_re[at], cascade.forward_im[at])});
             if (mx > 0)
                 waves.push_back({-mx, -my, k, theta + kPi,
                                  2.0 * Complex(cascade.backward_re[at], -cascade.backward_im[at])});
@@ -76,7 +76,8 @@ struct Compared {
 
 Compared compare(double depth_m) {
     const Scene scene = small_sea(depth_m);
-    const auto sea = std::make_shared<const Sea<double>>(make_plan(scene, {unfiltered(products(Displacement, Velocity))}));
+    const auto sea =
+        std::make_shared<const Sea<double>>(make_plan(scene, {unfiltered(products(Displacement, Velocity))}));
     const SecondOrderPlan& plan = *sea->plan().cascades.front().second_order;
     const auto pairs = pairs_at(sea, 0.0);
     const std::vector<Travelling> waves = travelling(*sea, plan.radius);
@@ -91,9 +92,10 @@ Compared compare(double depth_m) {
     for (const Travelling& i : waves)
         for (const Travelling& j : waves) {
             const double cosine = std::cos(i.theta - j.theta), root = std::sqrt(i.k * j.k);
-            const double slow = plan.shallow > 0.0 ? std::sqrt(shallow_wavenumber(i.k, depth_m) *
-                                                               shallow_wavenumber(j.k, depth_m))
-                                                   : 0.0;
+            const double slow =
+                plan.shallow > 0.0
+                    ? std::sqrt(shallow_wavenumber(i.k, depth_m) * shallow_wavenumber(j.k, depth_m))
+                    : 0.0;
             const PairKernels kernels = pair_kernels(i.k, i.theta, j.k, j.theta, depth_m);
             const Complex minus = 0.5 * i.a * std::conj(j.a), plus = 0.5 * i.a * j.a;
             add(product, i.mx - j.mx, i.my - j.my, plan.difference * root * (1.0 + cosine) * minus);
@@ -136,7 +138,8 @@ TEST(Pairs, HaveTheirHeightsRate) {
     const auto sea = std::make_shared<const Sea<double>>(
         make_plan(small_sea(25.0), {unfiltered(products(Displacement, Velocity))}));
     const double step_s = 1e-3;
-    const auto before = pairs_at(sea, 7.0 - step_s), at = pairs_at(sea, 7.0), after = pairs_at(sea, 7.0 + step_s);
+    const auto before = pairs_at(sea, 7.0 - step_s), at = pairs_at(sea, 7.0),
+               after = pairs_at(sea, 7.0 + step_s);
     double largest = 0.0, error = 0.0;
     for (int mx = 0; mx < at.radius(); ++mx)
         for (int my = -half_height(at.radius(), mx); my <= half_height(at.radius(), mx); ++my) {
@@ -153,7 +156,8 @@ TEST(Pairs, AreTheSameAtEveryResolution) {
     Scene scene;
     scene.sea.wind_speed_mps = 20.0;
     const auto of = [&](double footprint_m) {
-        return std::make_shared<const Sea<float>>(make_plan(scene, {filtered(products(Displacement), footprint_m)}));
+        return std::make_shared<const Sea<float>>(
+            make_plan(scene, {filtered(products(Displacement), footprint_m)}));
     };
     const auto fine = of(0.5), coarse = of(20.0);
     const auto a = pairs_at(fine, 3.0), b = pairs_at(coarse, 3.0);
@@ -247,8 +251,7 @@ Skewness skewness_over_places(double wind_mps, Tiling tiling) {
             auto frame = frame_of<float>(scene, plan);
             for (int i = 0; i < 4; ++i) {
                 frame.set(97.0 * i);
-                const Moments of =
-                    over_places(sample(frame, 0, points).vectors(Displacement), n, size_m / n);
+                const Moments of = over_places(sample(frame, 0, points).vectors(Displacement), n, size_m / n);
                 to.push_back(of.skewness / std::pow(of.variance, 1.5));
             }
         }
@@ -266,8 +269,8 @@ TEST(Pairs, MakeHeightsOverAPlaceAsSkewAsTheSecondOrderSays) {
         EXPECT_GT(skewness.law, 0.12);
         EXPECT_LT(skewness.law, 0.3);
         EXPECT_NEAR(skewness.found.mean - skewness.first_order, skewness.law, 0.2 * skewness.law)
-            << wind_mps << " m/s: " << skewness.found.mean << " ± " << skewness.found.standard_error << " and "
-            << skewness.first_order;
+            << wind_mps << " m/s: " << skewness.found.mean << " ± " << skewness.found.standard_error
+            << " and " << skewness.first_order;
     }
 }
 

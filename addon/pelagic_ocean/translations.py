@@ -26,6 +26,7 @@ GERMAN = {
     "Spreading": "Richtungsverteilung", "Directionality": "Richtungsbündelung", "Gust strength": "Böenstärke",
     "Gust size": "Böengröße", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
     "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",
+    "Lean": "Vorneigung", "Second order": "Zweite Ordnung",
     "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen",
     "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe",

@@ -44,7 +44,7 @@ def ends(key):
 
 
 # Names and abbreviations, which German writes as they are.
-SAME = {"JONSWAP", "TMA", "FFT", "USDA", "USDC", "Elfouhaily", "Phillips", "Hasselmann", "Omega 2", "Monahan 1980", "Monahan 1986",
+SAME = {"JONSWAP", "TMA", "FFT", "USDA", "USDC", "Elfouhaily", "Phillips", "Hasselmann", "Omega 2", "Monahan 1980", "Monahan 1986", "Andreas 1998",
         "Callaghan 2008", "Planet", "Chlorophyll", "Voxel", "Pelagic", "Presets", "Level Set"}
 with checking("each label, operator and sentence has German words, with the same numbers in them; Blender says them while it is on"):
     def names(rna):

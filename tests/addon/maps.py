@@ -33,6 +33,8 @@ frames = [3, 3]
 wind_speed_mps = 16.0
 [waves]
 cascades = [ {{ size_m = 120.0, resolution = {SIZE} }}, {{ size_m = 41.0, resolution = {SIZE} }} ]
+[effects]
+whitecap_amount = 5.0
 [surface]
 size_m = 90.0
 [output]

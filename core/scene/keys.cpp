@@ -463,7 +463,7 @@ void add_camera(Built& out) {
              .range = limits::kFStop,
              .soft = SoftRange{0.0, 22.0},
              .accepted = "0, or 0.5 … 1000",
-             .key_parts = kView}),
+             .key_parts = key_parts(KeyPart::Light)}),
         row<&Camera::focus_distance_m>(
             {.name = "focus_distance_m",
              .help =
@@ -471,7 +471,7 @@ void add_camera(Built& out) {
              .unit = "m",
              .range = limits::kFocus_m,
              .soft = SoftRange{0.5, 1000.0, true},
-             .key_parts = kView}),
+             .key_parts = key_parts(KeyPart::Light)}),
         row<&Camera::resolution>({.name = "resolution",
                                   .help = "of the picture",
                                   .unit = "pixels",

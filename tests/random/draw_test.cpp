@@ -144,7 +144,8 @@ void expect_drawn(const Key& key) {
 
 TEST(RandomScene, DrawsEveryKeyOverItsRange) {
     for (const Key& key : keys())
-        if (key.path != "camera.file") expect_drawn(key);  // which a host makes camera.keys of: those are drawn
+        if (key.path != "camera.file")
+            expect_drawn(key);  // which a host makes camera.keys of: those are drawn
 }
 
 TEST(RandomScene, SameSeedSameShot) {

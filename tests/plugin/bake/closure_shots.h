@@ -247,6 +247,7 @@ inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseSh
     if (path == "shot.frames")
         return {frames(first, last - 1), frames(first, last + 2), frames(first + 1, last),
                 frames(first - 1, last), frames(first + 1, last + 1)};
+    if (path == "camera.f_stop") return {2.8};
     if (path == "shot.fps") return {25.0};
     if (path == "shot.loop_s") return {2.0, 4.0};
     if (path == "sea.wind_speed_mps") return {7.0, 0.0};
@@ -292,6 +293,7 @@ inline std::vector<Edit> edits_of(const BaseShot& base) {
         const auto add = [&](Scene changed, const std::string& what) {
             if (validate(changed).empty()) edits.push_back({key.path, what, std::move(changed)});
         };
+        if (key.path == "camera.file") continue;  // a host makes camera.keys of it
         if (key.path == kCageFile) {
             if (!base.scene.surface.cage) continue;
             Scene changed = base.scene;

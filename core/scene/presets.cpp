@@ -60,6 +60,7 @@ void add_framing(Preset& preset, const Framing& framing) {
     add(preset, "camera.position_m", std::vector<double>{0.0, -60.0, framing.height_m});
     add(preset, "camera.look_at_m", std::vector<double>{0.0, 0.0, framing.aim_m});
     add(preset, "camera.fov_deg", framing.fov_deg);
+    add(preset, "camera.glare", 0.03);  // a clean lens: a sun in the picture glows
 }
 
 Preset beaufort(int number) {

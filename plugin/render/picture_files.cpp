@@ -212,20 +212,24 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
     return file;
 }
 
+std::vector<glm::vec3> glaring_light(const Camera& camera, const Picture& picture, int frame) {
+    std::vector<glm::vec3> light;
+    if (!(camera.glare > 0.0)) return light;
+    light.resize(picture.layers.size());
+    std::transform(picture.layers.begin(), picture.layers.end(), light.begin(), radiance_of);
+    add_glare(light, picture.resolution,
+              {.share = camera.glare,
+               .pixel_tangent = 2.0 * view_at(camera, frame).tan_half_width / picture.resolution.x});
+    return light;
+}
+
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
     const bool has_alpha = !picture.alpha.empty();
     const std::size_t components = has_alpha ? 4 : 3;
     std::vector<std::uint8_t> bytes(picture.layers.size() * components);
     const Camera& camera = context.scene.camera;
     const glm::mat3 balance = white_balance(camera.white_balance_k);
-    std::vector<glm::vec3> glaring;
-    if (camera.glare > 0.0) {
-        glaring.resize(picture.layers.size());
-        std::transform(picture.layers.begin(), picture.layers.end(), glaring.begin(), radiance_of);
-        add_glare(glaring, picture.resolution,
-                  {.share = camera.glare,
-                   .pixel_tangent = 2.0 * view_at(camera, frame).tan_half_width / picture.resolution.x});
-    }
+    const std::vector<glm::vec3> glaring = glaring_light(camera, picture, frame);
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         for (std::size_t x = 0; x < width; ++x) {

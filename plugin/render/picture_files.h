@@ -1,7 +1,9 @@
 // Pictures as the bytes of files: HDR with its layers, and as a screen shows it.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 #include "pelagic/scene.h"
 #include "plugin/render/render.h"
@@ -54,5 +56,8 @@ class PictureFingerprint {
 // alpha of the light divided by it, as the format wants.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame);
+
+// A picture's light with the lens' glare, in linear Rec. 709; empty where it has none.
+std::vector<glm::vec3> glaring_light(const Camera& camera, const Picture& picture, int frame);
 
 }  // namespace pelagic

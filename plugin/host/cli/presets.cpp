@@ -22,6 +22,7 @@
 #include "plugin/host/cli/verb.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
+#include "plugin/render/picture_files.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::cli {
@@ -80,11 +81,13 @@ int draw_sheet(const std::filesystem::path& file) {
         Picture picture;
         renderer.render(kTime, picture);
         const float exposure = shot_exposure(scene, renderer.sky());
+        const std::vector<glm::vec3> glaring = glaring_light(scene.camera, picture, kTime);
         const glm::ivec2 corner = glm::ivec2(i % kAcross, i / kAcross) * (kSize + kGap);
         for (int y = 0; y < kSize.y; ++y)
             for (int x = 0; x < kSize.x; ++x) {
+                const std::size_t at = static_cast<std::size_t>(y) * kSize.x + x;
                 const auto shown = display_bytes(
-                    radiance_of(picture.layers[static_cast<std::size_t>(y) * kSize.x + x]), exposure, {x, y});
+                    glaring.empty() ? radiance_of(picture.layers[at]) : glaring[at], exposure, {x, y});
                 std::copy(
                     shown.begin(), shown.end(),
                     bytes.begin() + 3 * (static_cast<std::ptrdiff_t>(corner.y + y) * size.x + corner.x + x));

@@ -40,6 +40,13 @@ const T* from(const Buffer<T>& buffer, std::size_t at) {
     return buffer.empty() ? nullptr : buffer.data() + at;
 }
 
+// Whether somebody asks for a horizontal field of a cascade whose displacement runs ahead.
+bool leans(const Plan& plan, int cascade) {
+    return plan.lean_rad > 0.0 &&
+           std::any_of(plan.cascades[cascade].grids.begin(), plan.cascades[cascade].grids.end(),
+                       [](const Grid& grid) { return (grid.fields & horizontal_fields()).any(); });
+}
+
 // Calls work(item) for each item, one item per task, and returns the sum of the results.
 template <class Item, class Work>
 long sum_of_each(const std::vector<Item>& items, Work&& work) {
@@ -185,7 +192,7 @@ void Frame<T>::advance(const Block& block, Scratch& at) const {
     const Cascade<T>& cascade = sea_->cascades()[block.cascade];
     const std::size_t first = cascade.columns[block.first_mx];
     const Plan& plan = sea_->plan();
-    const bool has_rates = plan.cascades[block.cascade].moves() || plan.lean_rad > 0.0;
+    const bool has_rates = plan.cascades[block.cascade].moves() || leans(plan, block.cascade);
     kernels_.advance({.forward_re = cascade.forward_re.data() + first,
                       .forward_im = cascade.forward_im.data() + first,
                       .backward_re = cascade.backward_re.data() + first,
@@ -257,8 +264,8 @@ long Frame<T>::transform_columns(const Block& block) {
     advance(block, at);
     const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
     if (has_pairs) add_second_order(block, at);
-    const bool leans = plan.lean_rad > 0.0;
-    if (leans) lean(block, at);
+    const bool is_leaning = leans(plan, block.cascade);
+    if (is_leaning) lean(block, at);
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
     long lines = 0;
     for (std::size_t g = 0; g < planned.grids.size(); ++g) {
@@ -289,9 +296,9 @@ long Frame<T>::transform_columns(const Block& block) {
         for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
             if (!grid.fields[f]) continue;
             // The horizontal displacement has no second order: where points stand at rest is chosen so.
-            const Heights& heights = has_pairs && vertical_fields()[f] ? at.vertical
-                                     : leans && horizontal_fields()[f] ? at.leaning
-                                                                       : at.waves;
+            const Heights& heights = has_pairs && vertical_fields()[f]      ? at.vertical
+                                     : is_leaning && horizontal_fields()[f] ? at.leaning
+                                                                            : at.waves;
             for (int column = 0; column < columns; ++column) {
                 const int mx = block.first_mx + column;
                 const std::size_t m = middle(column);

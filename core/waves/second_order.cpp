@@ -120,15 +120,15 @@ void SecondOrderWaves<T>::sum_columns(int first_mx, int end_mx, double time_s) {
             const std::size_t i = static_cast<std::size_t>(my + height);
             const double k = step * std::hypot(mx, my);
             const T omega = static_cast<T>(kTwoPi * cascade.cycles_per_s[at + i]);
-            const T root = static_cast<T>(std::sqrt(k)), east = static_cast<T>(step * mx / k),
-                    north = static_cast<T>(step * my / k);
+            const T root = static_cast<T>(std::sqrt(k)), east = root * static_cast<T>(step * mx / k),
+                    north = root * static_cast<T>(step * my / k);
+            const T slow = plan().shallow > 0.0
+                               ? static_cast<T>(std::sqrt(shallow_wavenumber(k, plan().depth_m)))
+                               : T(0);
             const T turned_re = -rate_im[i] / omega, turned_im = rate_re[i] / omega;
             const auto put = [&](std::vector<Line<T>>& to, int row, T re, T im, T sign) {
                 const int j = wrapped(row, n);
-                const T weights[]{root, sign * east * root, sign * north * root,
-                                  plan().shallow > 0.0
-                                      ? static_cast<T>(std::sqrt(shallow_wavenumber(k, plan().depth_m)))
-                                      : T(0)};
+                const T weights[]{root, sign * east, sign * north, slow};
                 for (int sum = 0; sum < of_heights; ++sum) {
                     to[sum].re()[j] = weights[sum] * re;
                     to[sum].im()[j] = weights[sum] * im;

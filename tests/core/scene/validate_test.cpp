@@ -137,6 +137,27 @@ TEST(Validate, HardCasesAreGood) {
     expect_good([](Scene& s) { s.water.type = WaterType::Turbid; });
 }
 
+// A lens of 50 mm, 36 mm wide, can't be sharp within 50 mm; one that sees nearly nothing is no lens.
+TEST(Validate, Lens) {
+    const auto lens = [](double f_stop, double focus_m) {
+        return [=](Scene& s) {
+            s.camera.focal_length_mm = 50.0;
+            s.camera.f_stop = f_stop;
+            s.camera.focus_distance_m = focus_m;
+        };
+    };
+    expect_good(lens(2.8, 5.0));
+    expect_good(lens(0.0, 0.04));
+    expect_refused(lens(0.2, 5.0), {"camera.f_stop", "0.2", "0.5 … 1000"});
+    expect_refused(lens(2.8, 0.04), {"camera.focus_distance_m", "0.04", "more than that"});
+    expect_refused(
+        [](Scene& s) {
+            s.camera.focal_length_mm = 2000.0;
+            s.camera.sensor_width_mm = 0.2;
+        },
+        {"camera.focal_length_mm", "2000", "an angle of view of"});
+}
+
 TEST(Validate, Depth) {
     expect_refused([](Scene& s) { s.sea.depth_m = 0.0; }, {"sea.depth_m", "0", "or inf"});
     expect_refused([](Scene& s) { s.sea.depth_m = -kInfinity; }, {"sea.depth_m", "-inf", "or inf"});

@@ -24,9 +24,9 @@ MARK = "pelagic_floor"  # on the object under clear water
 FLOOR_M, FLOOR_DEPTH_M = 40e3, 500.0
 
 
-def add_depths(tree, part, coverage, mirror, foam, white, before_air):
-    """Adds what connect() shows: mirror, white: shaders, of the reflected light and of foam; foam: the share of it that the
-    eye sees, coverage: that which is there; before_air: puts the air before a shader."""
+def add_depths(tree, part, foam, mirror, white, before_air):
+    """Adds what connect() shows. foam: add_foam()'s; mirror, white: shaders, of the reflected light and of foam; before_air: puts
+    the air before a shader."""
     def named(name, kind, inputs=()):
         node = tree.node(kind, inputs)
         node.name = node.label = name
@@ -37,12 +37,13 @@ def add_depths(tree, part, coverage, mirror, foam, white, before_air):
     out = tree.vector(1.0, 1.0, 1.0) * ((1.0 - part["Fresnel"]) * WATER_INDEX**-2)
     bent = tree.add("ShaderNodeBsdfRefraction", {"Color": out, "Roughness": 0.0, "IOR": WATER_INDEX,
                                                  "Normal": part["Normal"]}, distribution=compat.sharp_refraction())
-    seen = before_air(tree.add("ShaderNodeMixShader", {0: foam, 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: bent}), 2: white}))
+    seen = before_air(tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: bent}),
+                                                         2: white}))
 
     # Towards lamp and sky it is as a level surface for the light that comes in, and for rays that happen to find the sky, too,
     # or Cycles would count it twice.
     cosine = tree.math("ABSOLUTE", tree.value(geometry, "Incoming").parts()[2])
-    let_in = (1.0 - add_fresnel(tree, cosine)) * (1.0 - coverage)
+    let_in = (1.0 - add_fresnel(tree, cosine)) * (1.0 - foam["Hidden"])
     straight = tree.add("ShaderNodeBsdfTransparent", {"Color": tree.vector(1.0, 1.0, 1.0) * let_in})
     from_below = tree.value(geometry, "Backfacing") * (1.0 - tree.value(path, "Is Camera Ray"))
     named(SURFACE, "ShaderNodeMixShader", {0: tree.value(path, "Is Shadow Ray").at_least(from_below), 1: seen, 2: straight})

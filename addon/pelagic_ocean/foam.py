@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where foam is in a material: the places where a pattern has its largest values, so many that they are the coverage. The
 pattern stands at rest positions, so foam moves with the water. With distance it fades to its mean.
-The core's own pattern (foam_structure.glsl) is another one, of the same kind and with the same means. As there, foam is dense
-where waves break now, and thin in what they left."""
+The core's own pattern (foam_structure.glsl) is another one, of the same kind and with the same means. As there, foam hides the water
+where waves break now, and is thin in what they left."""
 
 from .facets import along_wind
 
-DENSE = 0.4  # the dense part of foam, the mean over its lifetime: foam.glsl
+OPACITY = 0.4  # the share of its area that foam hides, the mean over its lifetime: foam.glsl
 # Measured over squares of 400 m, in three versions of Blender: of what isn't lace in foam_pattern(), mean and variance; of the distance
 # to the nearest of a Voronoi texture's points, in cells, mean and deviation; and the whole's distribution's logit as A z + B z³.
 PATCHES, PATCHES_VARIANCE = 1.3500, 0.0222
@@ -16,13 +16,14 @@ LACE = 0.26  # how much of the pattern lace is, where it is old
 SIZES = 5  # of holes, each twice the one before, from 1/8 m
 
 
-def add_foam(tree, coverage, active, age_s, dense_active, dense_left, structure, streaks, size, detail_distance_m, wind_angle):
-    """Adds the group. active: the coverage of what breaks now; dense_active, dense_left: the dense part of that, and of what is
-    left of earlier breaking. structure: 0 shows smooth coverage, 1 the pattern. Foam: the share of it that the eye sees;
-    Density: of what is there, 0 … 1."""
-    return tree.call("Pelagic Foam", _foam, {"Coverage": coverage, "Active": active, "Age": age_s, "Dense Active": dense_active,
-                                             "Dense Left": dense_left, "Structure": structure, "Streaks": streaks, "Size": size,
-                                             "Detail Distance": detail_distance_m, "Wind Angle": wind_angle})
+def add_foam(tree, coverage, active, age_s, fresh, old, structure, streaks, size, detail_distance_m, wind_angle):
+    """Adds the group. active: the coverage of what breaks now; fresh, old: (opacity, colour) of that, and of what is left of earlier
+    breaking. structure: 0 shows smooth coverage, 1 the pattern. Foam: the share that foam hides here; Color: what that reflects;
+    Hidden: the share that it hides round about, without a pattern."""
+    return tree.call("Pelagic Foam", _foam, {"Coverage": coverage, "Active": active, "Age": age_s, "Fresh Opacity": fresh[0],
+                                             "Old Opacity": old[0], "Fresh Color": fresh[1], "Old Color": old[1], "Structure": structure,
+                                             "Streaks": streaks, "Size": size, "Detail Distance": detail_distance_m,
+                                             "Wind Angle": wind_angle})
 
 
 def _foam(tree, asked):
@@ -36,18 +37,16 @@ def _foam(tree, asked):
     beyond = rank - (1.0 - coverage)
     mask = tree.map_range(beyond, -room, room)
     fresh = (asked["Active"] / coverage).clamped()
-    dense_part = tree.mix(fresh, asked["Dense Left"], asked["Dense Active"]).at_least(1e-3)
-    # Dense in its middle, bubbles over water at its edge: ∫ x^(1/d − 1) dx = d.
-    density = tree.math("POWER", (beyond / coverage).clamped(), 1.0 / dense_part - 1.0)
+    opacity = tree.mix(fresh, asked["Old Opacity"], asked["Fresh Opacity"]).at_least(1e-3)
+    # Thickest in its middle, bubbles over water at its edge: ∫ x^(1/d − 1) dx = d.
+    thickness = tree.math("POWER", (beyond / coverage).clamped(), 1.0 / opacity - 1.0)
 
     away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
     detail = asked["Structure"] / (1.0 + away * away)
-    # Dense foam fades as foam does. (If density faded by itself, where it is 0 between the foam would count: half way at a
-    # coverage of a half an eighth of the dense foam would be lost.)
-    dense = tree.mix(detail, dense_part * coverage, mask * density)
-    mask = tree.mix(detail, coverage, mask)
-    seen = asked["Coverage"].above(0.0) * mask  # nothing where there is none
-    return {"Foam": seen, "Density": dense / mask.at_least(1e-6)}
+    there = asked["Coverage"].above(0.0)  # nothing where there is none
+    hidden = there * opacity * coverage
+    return {"Foam": tree.mix(detail, hidden, there * mask * thickness), "Hidden": hidden,
+            "Color": tree.mix(fresh * asked["Fresh Opacity"] / opacity, asked["Old Color"], asked["Fresh Color"])}
 
 
 def foam_pattern(tree, place, age_s, streaks):

@@ -7,13 +7,13 @@ import bpy
 
 from . import compat, depths
 from .facets import WATER_INDEX, add_facets, transformed
-from .foam import DENSE, add_foam
+from .foam import OPACITY, add_foam
 from .light import extinction_per_m, sky_of
 from .module import pelagic
 from .nodes import Tree
 
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
-VERSION = 4
+VERSION = 5
 AIR, AIR_SKY = "Air Extinction", "Air Sky"  # nodes
 JUST_ABOVE = 0.006  # the horizon: half a row of the sky's picture
 
@@ -37,6 +37,8 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
         _set(material, "Foam Structure", scene.effects.foam_structure)
         _set(material, "Foam Streaks", scene.effects.foam_streaks)
+        _set(material, "Foam Color", (scene.effects.foam_fresh_albedo,) * 3 + (1.0,))
+        _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
@@ -104,12 +106,13 @@ def new_material():
         return tree.value(node, 0)
 
     water = labelled("ShaderNodeRGB", "Water Color", (0.0, 0.03, 0.05, 1.0))
-    white_foam = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
+    fresh_color = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
+    old_color = labelled("ShaderNodeRGB", "Residual Foam Color", (0.55, 0.55, 0.55, 1.0))
     wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
     structure = labelled("ShaderNodeValue", "Foam Structure", 1.0)
     streaks = labelled("ShaderNodeValue", "Foam Streaks", 0.5)
-    dense_active = labelled("ShaderNodeValue", "Active Foam Density", DENSE)
-    dense_left = labelled("ShaderNodeValue", "Residual Foam Density", DENSE)
+    fresh_opacity = labelled("ShaderNodeValue", "Active Foam Density", OPACITY)
+    old_opacity = labelled("ShaderNodeValue", "Residual Foam Density", OPACITY)
     crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
     wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
     clock = tree.node("ShaderNodeCombineXYZ")
@@ -118,8 +121,8 @@ def new_material():
 
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     coverage = tree.attribute("whitecap_coverage", "Fac")
-    foam = add_foam(tree, coverage, tree.attribute("foam_active", "Fac"), tree.attribute("foam_age", "Fac"), dense_active,
-                    dense_left, structure, streaks, size=1.0, detail_distance_m=400.0, wind_angle=wind)
+    foam = add_foam(tree, coverage, tree.attribute("foam_active", "Fac"), tree.attribute("foam_age", "Fac"),
+                    (fresh_opacity, fresh_color), (old_opacity, old_color), structure, streaks, size=1.0, detail_distance_m=400.0, wind_angle=wind)
 
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
                                                     "Anisotropy": 0.0, "Normal": part["Normal"]},
@@ -135,9 +138,7 @@ def new_material():
     thin = tree.map_range(height / wave_height, 0.3, 1.0) * crest_light
     lit = water * (tree.vector(1.5, 1.2, 1.0) * thin + (1.0, 1.0, 1.0))
     body = tree.add("ShaderNodeBsdfDiffuse", {"Color": lit * (1.0 - part["Fresnel"]), "Normal": upwards})
-    under_foam = water * WATER_INDEX**2  # bubbles are in the water: what they scatter needn't leave it through its surface
-    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, white_foam),
-                                                "Normal": part["Foam Normal"]})
+    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": foam["Color"], "Normal": part["Foam Normal"]})
 
     before_air = _add_air(tree)
 
@@ -149,7 +150,7 @@ def new_material():
     if not compat.eevee_mirrors_in_facets():
         show(tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"], "Anisotropy": 0.0},
                       distribution="BECKMANN"), target="EEVEE")
-    depths.add_depths(tree, part, coverage, mirror, foam["Foam"], white, before_air)
+    depths.add_depths(tree, part, foam, mirror, white, before_air)
     return material
 
 

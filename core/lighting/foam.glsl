@@ -8,21 +8,19 @@ vec3 foam_variance(vec3 variance) {
     return variance + vec3(kFoamSlopeVariance, kFoamSlopeVariance, 0.0f);
 }
 
-// The reflectance of covered area. Dense foam is white, 0.55. Averaged over its lifetime foam has 0.4 of that
-// (0.22, Koepke 1984, consistent with Monahan's coverage), since most of it is thin: bubbles over water,
-// which show the water's colour brightened. `dense`, the part that is dense, must not depend on a pixel's coverage: means over
-// larger pixels would differ, and foam would darken with distance (foam_structure.glsl says what it is).
-const float kDenseFoam = 0.4f;
-
-vec3 foam_reflectance(vec3 water_reflectance, float dense) {
-    return vec3(0.55f * dense) + (1.0f - dense) * water_reflectance;
-}
+// Dense foam reflects 0.55 (Whitlock, Bartlett and Gurganus 1982). Averaged over its lifetime foam has 0.4 of that (0.22, Koepke 1984,
+// ± 0.11, consistent with Monahan's coverage), since most of it is thin: bubbles so far apart that between them the water mirrors
+// and shines as it does without. So foam is opaque in that part of its area, its opacity, and the rest is water. Opacity must not
+// depend on a pixel's coverage: means over larger pixels would differ, and foam would darken with distance (foam_structure.glsl
+// says what it is).
+const float kWhiteFoam = 0.55f;
+const float kFoamOpacity = 0.4f;
 
 // Diffuse facets with Gaussian slopes. Sunlight falls on the facets that the eye sees (their mean slope leans
 // towards the eye) as far as no wave shades them; skylight falls on their mean tilt. slope: of the foam's own relief, where a pixel
 // resolves it, rising towards the sun.
 vec3 foam_radiance(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float sun_angular_radius,
-                   vec3 sky_irradiance, vec3 reflectance, float slope) {
+                   vec3 sky_irradiance, float reflectance, float slope) {
     vec3 variance = foam_variance(frame.variance);
     vec3 v = into_frame(frame, to_eye);
     vec3 l = into_frame(frame, to_sun);

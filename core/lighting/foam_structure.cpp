@@ -28,7 +28,8 @@ FoamPattern foam_pattern(const FoamLook& look, glm::dvec2 origin_m) {
         pattern.rest[i] = static_cast<float>(cells - whole);
     }
     pattern.axes = glm::vec4(wind, per_m.x, per_m.y);
-    pattern.look = glm::vec4(look.structure, look.streaks, look.dense_active, look.dense_left);
+    pattern.look = glm::vec4(look.structure, look.streaks, look.fresh_opacity, look.old_opacity);
+    pattern.white = glm::vec2(look.fresh_albedo, look.old_albedo);
     return pattern;
 }
 

@@ -15,23 +15,22 @@ struct FoamPattern {
     vec3 cell;  // the largest cell that the origin of the points is in: along the wind, along it in streaks, across; whole, modulo 65536
     vec3 rest;  // 0 … 1, where in it
     vec4 axes;  // the wind's direction; cells per metre along it, and the same in streaks
-    vec4 look;  // structure; streaks; the share of dense foam where waves break, and in what they leave
+    vec4 look;  // structure; streaks; the opacity of foam where waves break, and of what they leave
+    vec2 white;  // what these reflect where they are opaque
 };
 
-// What a pixel shows of foam: its share of the pixel, and what part of that is dense.
+// What a pixel shows of foam: the share of the pixel that it hides, and what that reflects.
 struct SeenFoam {
-    float share;
-    float dense;
+    float opacity;
+    float white;
     float slope;  // of its relief, rising towards the sun
 };
 
 const float kFoamGrain = 0.03f;    // the part of the pattern's variance that is never resolved, which softens edges
-const float kThinFoam = 0.15f;     // dense foam in what looks thin
 const float kFaintFoam = 1.0e-3f;  // less coverage than this begins to lose its pattern, which nobody would see
 
-// Coverage without a pattern, of all ages.
-SeenFoam plain_foam(float coverage) {
-    return SeenFoam(coverage, kDenseFoam, 0.0f);
+SeenFoam no_foam() {
+    return SeenFoam(0.0f, kWhiteFoam, 0.0f);
 }
 
 // The z that a normal variable exceeds with the chance p, 0 < p ≤ 0.5; p's relative error is 6e-6. Fitted in √(−2 ln p), which z
@@ -225,14 +224,20 @@ float foam_above(FoamNoise noise, float coverage) {
     return normal_below((noise.shown - foam_quantile(coverage)) * inversesqrt(1.0f - noise.variance));
 }
 
-// What a pixel sees of a pattern whose foam has that dense part. Dense foam lies in the middle of the pattern's foam, thin foam
-// at its edges: the mean of both stays.
-SeenFoam foam_seen_in(FoamNoise noise, float coverage, float dense) {
-    float share = foam_above(noise, coverage);
-    float cores = clamp((dense - kThinFoam) / (1.0f - kThinFoam), 0.0f, 1.0f);
-    float edge = min(kThinFoam, dense);
-    float core = min(foam_above(noise, cores * coverage), share);
-    return SeenFoam(share, share > 0.0f ? (core + edge * (share - core)) / share : dense, 0.0f);
+// What a pixel shows of a pattern whose foam has that mean opacity d. It is thickest where the pattern is highest: of the place that
+// the share u of the foam is higher than, the opacity is (1 − u)^(1/d − 1), whose mean is d, and which ends without an edge.
+// It is a sum of steps at the middles of equal parts of 0 … 1, so that its mean is d for whatever a pixel resolves.
+float foam_opacity_in(FoamNoise noise, float coverage, float mean) {
+    const int kSteps = 4;
+    float power = mean / max(1.0f - mean, 1.0e-3f);
+    float sum = 0.0f;
+    float parts = 0.0f;
+    for (int i = 0; i < kSteps; ++i) {
+        float part = 1.0f - pow((float(i) + 0.5f) / float(kSteps), power);
+        sum += foam_above(noise, part * coverage);
+        parts += part;
+    }
+    return parts > 0.0f ? clamp(mean * sum / parts, 0.0f, 1.0f) : 0.0f;
 }
 
 // Dense foam is as thick as its pattern is high: this much for a deviation. Its facets are as steep as their own roughness has it
@@ -245,17 +250,20 @@ const float kSteepestRelief = 0.6f;
 SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverage, float breaking, float age_s, vec3 sun) {
     float c = clamp(coverage, 0.0f, 1.0f);
     float fresh = clamp(breaking / max(c, 1.0e-12f), 0.0f, 1.0f);
-    float dense = pattern.look.w + fresh * (pattern.look.z - pattern.look.w);
+    float opacity_fresh = fresh * pattern.look.z;
+    float opacity_old = (1.0f - fresh) * pattern.look.w;
+    float mean = opacity_fresh + opacity_old;
+    float white = mean > 0.0f ? (opacity_fresh * pattern.white.x + opacity_old * pattern.white.y) / mean : kWhiteFoam;
     float strength = pattern.look.x * smoothstep(0.1f * kFaintFoam, kFaintFoam, c);
-    if (!(strength > 0.0f)) return SeenFoam(c, dense, 0.0f);
+    if (!(strength > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
     float footprint_m = foam_footprint(pixel_m);
     float since_s = (1.0f - fresh) * age_s;
     FoamNoise noise = foam_noise(pattern, rest_m, footprint_m, since_s);
-    if (!(noise.variance > 0.0f)) return SeenFoam(c, dense, 0.0f);
-    SeenFoam seen = foam_seen_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, dense);
+    if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
+    SeenFoam seen = SeenFoam(foam_opacity_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, mean), white, 0.0f);
     // Where pixels are too large for the smaller half of the pattern its slopes are lost.
     float relief_m = kFoamRelief_m * strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.03f, 0.12f, footprint_m));
-    if (relief_m * seen.share * seen.dense > 1.0e-4f) {
+    if (relief_m * seen.opacity > 1.0e-4f) {
         float step_m = max(footprint_m, 0.02f);
         vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);
         FoamNoise ahead = foam_noise(pattern, rest_m + step_m * to_sun, footprint_m, since_s);

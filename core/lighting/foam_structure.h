@@ -15,15 +15,17 @@ struct FoamLook {
     double structure = 0.0;           // 0: smooth coverage … 1: lace
     double streaks = 0.0;             // 0 … 1, along the wind
     double wind_direction_deg = 0.0;  // blowing towards, counter-clockwise from +x
-    // The part of the foam that is dense where waves break, and in what they leave; the mean over a law's foam is
-    // Koepke's 0.4.
-    float dense_active = 0.4f, dense_left = 0.4f;
+    // Of foam where waves break, and of what they leave: the share of its area that it hides (the mean over a law's foam is
+    // Koepke's 0.4), and what that reflects.
+    float fresh_opacity = 0.4f, old_opacity = 0.4f;
+    float fresh_albedo = 0.55f, old_albedo = 0.55f;
 };
 
 // foam_structure.glsl has the members.
 struct FoamPattern {
     glm::vec3 cell{0.0f}, rest{0.0f};
     glm::vec4 axes{1.0f, 0.0f, 0.0f, 0.0f}, look{0.0f, 0.0f, 0.4f, 0.4f};
+    glm::vec2 white{0.55f, 0.55f};
 };
 
 // For points at rest relative to that origin, which may be anywhere that a double can tell millimetres. The pattern stays where

@@ -64,14 +64,15 @@ struct Shading {
     // clang-format on
 };
 
-SeaAlbedo albedo(const WaterBody& water) {
+SeaAlbedo albedo(const WaterBody& body) {
     const SkyMap none;
     Shading<FresnelFit::Exact, SkyQuality::One> shading(none);
     // Of irradiance π the radiance is the albedo.
-    return {
-        .water = shading.water_radiance({0.0f, 0.0f, 1.0f}, vec3(0.0f), vec3(shading.kPi), water.reflectance),
-        .foam = shading.foam_reflectance(water.reflectance, shading.kDenseFoam),
-        .water_index = shading.kWaterIndex};
+    const glm::vec3 water =
+        shading.water_radiance({0.0f, 0.0f, 1.0f}, vec3(0.0f), vec3(shading.kPi), body.reflectance);
+    return {.water = water,
+            .foam = glm::mix(water, vec3(shading.kWhiteFoam), shading.kFoamOpacity),
+            .water_index = shading.kWaterIndex};
 }
 
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
@@ -88,10 +89,10 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
                                             by_place ? air->by_place : 0.0f};
     const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
                                            sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
-    const typename Variant::FoamPattern pattern{foam.cell, foam.rest, foam.axes, foam.look};
+    const typename Variant::FoamPattern pattern{foam.cell, foam.rest, foam.axes, foam.look, foam.white};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
-        typename Variant::SeenFoam seen = shading.plain_foam(0.0f);
+        typename Variant::SeenFoam seen = shading.no_foam();
         if (choice.whitecaps)
             seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s,
                                      sky.sun_direction);

@@ -58,7 +58,7 @@ SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance,
     SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, seen, light);
     if (kSky && is_by_place) {
         SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
-        float clear = kWhitecaps ? 1.0f - clamp(seen.share, 0.0f, 1.0f) : 1.0f;
+        float clear = kWhitecaps ? 1.0f - seen.opacity : 1.0f;
         terms.sky = terms.sky * share +
                     more * (clear * shown_of_uniform_sky(into_frame(frame, to_eye), frame.variance) / kPi);
     }

@@ -18,7 +18,7 @@ struct SeaTerms {
 };
 
 // to_eye, normal: unit vectors, world axes; the normal may face away. slope_variance: (σxx, σyy, σxy) of the
-// unresolved waves, world axes. Each term is weighted by its share of the pixel (W for foam, 1 − W for the others);
+// unresolved waves, world axes. Each term is weighted by its share of the pixel (what opaque foam hides, and the rest for the others);
 // their sum is the radiance.
 SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeaLight light) {
     SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
@@ -27,11 +27,9 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam se
     float clear = 1.0f;
     if (kWhitecaps) {
         // Waves hide foam as they hide the water between: its share of what is seen is its share of the sea.
-        float foam = clamp(seen.share, 0.0f, 1.0f);
-        clear = 1.0f - foam;
-        terms.foam = foam * foam_radiance(to_eye, light.sun_direction, frame, light.sun_radiance,
-                                          light.sun_angular_radius, light.sky_irradiance,
-                                          foam_reflectance(light.water_reflectance, seen.dense), seen.slope);
+        clear = 1.0f - seen.opacity;
+        terms.foam = seen.opacity * foam_radiance(to_eye, light.sun_direction, frame, light.sun_radiance,
+                                                  light.sun_angular_radius, light.sky_irradiance, seen.white, seen.slope);
     }
     if (kSky) terms.sky = clear * sky_reflection(to_eye, frame);
     if (!kSun && !kWater) return terms;

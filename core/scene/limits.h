@@ -105,6 +105,8 @@ inline constexpr Range kVisibility_km{0.1, 1000.0};
 inline constexpr Range kSkyGain{0.0, 1e6};
 inline constexpr Range kFoamStructure{0.0, 1.0};
 inline constexpr Range kFoamStreaks{0.0, 1.0};
+inline constexpr Range kFoamAlbedo{0.0, 1.0};
+inline constexpr Range kFoamOpacity{0.0, 1.0};
 inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest air that there is to haze
 inline constexpr Range kChlorophyll_mg_m3{0.01, 100.0};  // from the clearest gyres to a bloom
 inline constexpr Range kMapResolution{1, 8192};

@@ -128,7 +128,13 @@ WaterBody make_water(const Scene& scene) {
 
 std::string light_content(const Scene& scene) {
     Scene light = scene;
-    light.effects.foam_structure = light.effects.foam_streaks = 0.0;
+    const Effects usual;
+    light.effects.foam_structure = usual.foam_structure;
+    light.effects.foam_streaks = usual.foam_streaks;
+    light.effects.foam_fresh_albedo = usual.foam_fresh_albedo;
+    light.effects.foam_old_albedo = usual.foam_old_albedo;
+    light.effects.foam_fresh_opacity = usual.foam_fresh_opacity;
+    light.effects.foam_old_opacity = usual.foam_old_opacity;
     return canonical(light, key_parts(KeyPart::Light, KeyPart::Water));
 }
 
@@ -138,16 +144,26 @@ double active_foam(const Scene& scene, double residual_coverage) {
 }
 
 FoamLook make_foam(const Scene& scene, double active) {
-    FoamLook look{.structure = scene.effects.foam_structure,
-                  .streaks = scene.effects.foam_streaks,
-                  .wind_direction_deg = scene.sea.wind_direction_deg};
-    if (!(active < 1.0)) return look;
-    constexpr double kLeft =
-        0.4;  // density of the foam left, relative to foam that breaks, before the latter is limited to white
-    const auto mean = static_cast<double>(look.dense_active);
-    const double breaking = std::min(1.0, mean / (active + (1.0 - active) * kLeft));
-    look.dense_active = static_cast<float>(breaking);
-    look.dense_left = static_cast<float>((mean - active * breaking) / (1.0 - active));
+    const Effects& effects = scene.effects;
+    FoamLook look{.structure = effects.foam_structure,
+                  .streaks = effects.foam_streaks,
+                  .wind_direction_deg = scene.sea.wind_direction_deg,
+                  .fresh_albedo = static_cast<float>(effects.foam_fresh_albedo),
+                  .old_albedo = static_cast<float>(effects.foam_old_albedo)};
+    constexpr double kMean = 0.4;  // of all ages: Koepke 1984
+    // Koepke's patches lose reflectance while they grow; how foam that still breaks compares with what is left isn't told apart
+    // there. This makes what breaks as white as dense foam wherever a tenth of the foam does.
+    constexpr double kOldOverFresh = 0.4;
+    const double left = 1.0 - active;
+    double fresh = effects.foam_fresh_opacity, old = effects.foam_old_opacity;
+    if (fresh == 0.0)
+        fresh = old == 0.0   ? kMean / (active + left * kOldOverFresh)
+                : active > 0 ? (kMean - left * old) / active
+                             : kMean;
+    fresh = std::clamp(fresh, 0.0, 1.0);
+    if (old == 0.0) old = left > 0.0 ? std::clamp((kMean - active * fresh) / left, 0.0, 1.0) : fresh;
+    look.fresh_opacity = static_cast<float>(fresh);
+    look.old_opacity = static_cast<float>(old);
     return look;
 }
 

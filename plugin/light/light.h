@@ -40,9 +40,9 @@ std::string light_content(const Scene& scene);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without
 // persistent foam.
 double active_foam(const Scene& scene, double residual_coverage);
-// How the foam of a shot looks. active: that share; the rest is what earlier breaking left. Foam is white while it
-// breaks, and what it leaves is thin (Darles et al. 2007: less with its age). All of the law's foam together has
-// Koepke's mean: in lighting by shares of area, whatever a pixel's size.
+// How the foam of a shot looks. active: that share; the rest is what earlier breaking left. Where the shot doesn't say
+// otherwise foam hides the water while it breaks, and what it leaves is thin (Darles et al. 2007: less with its age); all of
+// the law's foam together has Koepke's opacity: in lighting by shares of area, whatever a pixel's size.
 FoamLook make_foam(const Scene& scene, double active = 1.0);
 
 }  // namespace pelagic

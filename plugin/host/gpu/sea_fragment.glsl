@@ -20,10 +20,10 @@ void main() {
     EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
     vec3 up = vec3(vertical.x, vertical.y, vertical.z);
     vec3 to_eye = levelled(-pixel_ray(), up);
-    SeenFoam foam = plain_foam(0.0);
+    SeenFoam foam = no_foam();
     if (kWhitecaps)
-        foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look), rest_m,
-                         pixel, all.coverage, all.breaking, all.age_s, sun_direction);
+        foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white),
+                         rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
                         answer.slope_variance, foam,

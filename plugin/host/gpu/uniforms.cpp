@@ -55,7 +55,8 @@ std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {
     return {vector("foam_pattern_cell", pattern.cell),
             vector("foam_pattern_rest", pattern.rest),
             {"foam_pattern_axes", 4, pattern.axes},
-            {"foam_pattern_look", 4, pattern.look}};
+            {"foam_pattern_look", 4, pattern.look},
+            {"foam_pattern_white", 2, glm::vec4(pattern.white, 0.0f, 0.0f)}};
 }
 
 std::vector<Uniform> air_uniforms(const Air& air) {

@@ -144,7 +144,7 @@ PythonSea build_sea(const SeaOrder& order, Watch& watch) {
 std::pair<float, float> dense_foam(const PythonSea& self) {
     const Scene& scene = self.plan().from->scene;
     const FoamLook look = make_foam(scene, active_foam(scene, self.sea->residual_coverage()));
-    return {look.dense_active, look.dense_left};
+    return {look.fresh_opacity, look.old_opacity};
 }
 
 const std::string kSeaDoc =
@@ -216,9 +216,9 @@ void add_sea(py::module_& module) {
             "never is.")
         .def_property_readonly(
             "dense_foam", &dense_foam,
-            "(active, left): the part of its foam that is dense, of reflectance 0.55, where waves break now, "
-            "and in what they left; the rest is bubbles over water. The mean over a law's foam is 0.4, and "
-            "both are where foam doesn't live (Koepke 1984; Darles et al. 2007).")
+            "(active, left): the share of its area that foam hides, where waves break now, and in what they left; the "
+            "rest is bubbles over water. effects.foam_fresh_opacity and foam_old_opacity, or such that the mean over a "
+            "law's foam is 0.4, as both are where foam doesn't live (Koepke 1984).")
         .def_property_readonly(
             "products",
             [](const PythonSea& self) {

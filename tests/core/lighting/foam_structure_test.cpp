@@ -20,7 +20,7 @@ using optics::Optics;
 Optics shading;
 
 Optics::FoamPattern glsl(const FoamPattern& pattern) {
-    return {pattern.cell, pattern.rest, pattern.axes, pattern.look};
+    return {pattern.cell, pattern.rest, pattern.axes, pattern.look, pattern.white};
 }
 Optics::FoamPattern pattern_of(double structure, double streaks, double wind_deg = 20.0,
                                glm::dvec2 origin_m = {}) {
@@ -30,10 +30,11 @@ Optics::FoamPattern pattern_of(double structure, double streaks, double wind_deg
 
 const glm::vec3 kSun(0.36f, 0.48f, 0.8f);
 constexpr std::array kCoverages{0.01f, 0.03f, 0.1f, 0.3f, 0.5f, 0.7f, 0.9f};
+constexpr std::array kOpacities{0.12f, 0.4f, 1.0f};
 constexpr std::array kFootprints_m{1e-3f, 0.02f, 0.06f, 0.15f, 0.4f, 1.0f, 2.5f, 8.0f, 1e3f};
 constexpr std::array kAges_s{0.0f, 0.7f, 2.0f, 5.0f, 20.0f};
 
-// Over independent places; of all foam, and of the dense part of it.
+// Over independent places, for any opacity.
 TEST(FoamStructure, HasTheCoverageAsItsMean) {
     constexpr int kPlaces = 6000;
     std::mt19937 random(5);
@@ -42,26 +43,28 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
         for (const float age_s : kAges_s) {
             const auto pattern = pattern_of(1.0, static_cast<double>(streaks));
             for (const float footprint_m : kFootprints_m) {
-                std::array<double, kCoverages.size()> sum{}, dense{};
+                std::array<std::array<double, kOpacities.size()>, kCoverages.size()> sums{};
                 for (int i = 0; i < kPlaces; ++i) {
                     const auto noise =
                         shading.foam_noise(pattern, {place(random), place(random)}, footprint_m, age_s);
-                    for (std::size_t c = 0; c < kCoverages.size(); ++c) {
-                        const auto seen = shading.foam_seen_in(noise, kCoverages[c], 0.4f);
-                        ASSERT_GE(seen.share, 0.0f);
-                        ASSERT_LE(seen.share, 1.0f);
-                        sum[c] += static_cast<double>(seen.share);
-                        dense[c] += static_cast<double>(seen.share * seen.dense);
+                    for (std::size_t c = 0; c < kCoverages.size(); ++c)
+                        for (std::size_t d = 0; d < kOpacities.size(); ++d) {
+                            const float seen = shading.foam_opacity_in(noise, kCoverages[c], kOpacities[d]);
+                            ASSERT_GE(seen, 0.0f);
+                            ASSERT_LE(seen, 1.0f);
+                            sums[c][d] += static_cast<double>(seen);
+                        }
+                }
+                for (std::size_t c = 0; c < kCoverages.size(); ++c)
+                    for (std::size_t d = 0; d < kOpacities.size(); ++d) {
+                        // No wider spread about the mean than that of foam that is opaque or isn't there.
+                        const auto covered = static_cast<double>(kCoverages[c]);
+                        const double expected = covered * static_cast<double>(kOpacities[d]);
+                        const double noise = std::sqrt(expected * (1.0 - expected) / kPlaces);
+                        EXPECT_NEAR(sums[c][d] / kPlaces, expected, 4.5 * noise + 0.01 * expected)
+                            << "footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks
+                            << ", opacity " << kOpacities[d];
                     }
-                }
-                for (std::size_t c = 0; c < kCoverages.size(); ++c) {
-                    const auto expected = static_cast<double>(kCoverages[c]);
-                    const double noise = std::sqrt(expected * (1.0 - expected) / kPlaces);
-                    EXPECT_NEAR(sum[c] / kPlaces, expected, 4.5 * noise + 0.01 * expected)
-                        << "footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks;
-                    EXPECT_NEAR(dense[c] / kPlaces, 0.4 * expected, 4.5 * 0.6 * noise + 0.01 * expected)
-                        << "footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks;
-                }
             }
         }
 }
@@ -72,8 +75,8 @@ TEST(FoamStructure, FadesToTheCoverage) {
     for (const float coverage : {0.0f, 1e-5f, 0.01f, 0.4f, 0.97f, 1.0f}) {
         const auto seen = shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage,
                                             1.0f, 0.0f, kSun);
-        EXPECT_EQ(seen.share, coverage);
-        EXPECT_EQ(seen.dense, 0.4f);
+        EXPECT_EQ(seen.opacity, coverage * 0.4f);
+        EXPECT_EQ(seen.white, 0.55f);
     }
 }
 
@@ -86,23 +89,36 @@ TEST(FoamStructure, OffIsSmoothCoverage) {
         const float coverage = unit(random);
         const auto seen = shading.seen_foam(pattern, {unit(random), unit(random)},
                                             glm::vec3(1e-3f, 0.0f, 0.0f), coverage, 1.0f, 3.0f, kSun);
-        EXPECT_EQ(seen.share, coverage);
-        EXPECT_EQ(seen.dense, 0.4f);
+        EXPECT_EQ(seen.opacity, coverage * 0.4f);
+        EXPECT_EQ(seen.white, 0.55f);
     }
+}
+
+// Fresh foam and old foam are mixed as they hide the water, so that one place's light is the mean of its parts'.
+TEST(FoamStructure, MixesFreshAndOldByWhatTheyHide) {
+    const auto pattern = glsl(foam_pattern({.fresh_opacity = 0.9f, .old_opacity = 0.2f, .fresh_albedo = 0.8f, .old_albedo = 0.3f}, {}));
+    for (const float fresh : {0.0f, 0.02f, 0.15f, 0.3f}) {
+        const auto seen = shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(1.0f, 0.0f, 0.0f), 0.3f, fresh, 2.0f, kSun);
+        EXPECT_NEAR(seen.opacity, 0.9f * fresh + 0.2f * (0.3f - fresh), 1e-6f);
+        EXPECT_NEAR(seen.opacity * seen.white, 0.9f * fresh * 0.8f + 0.2f * (0.3f - fresh) * 0.3f, 1e-6f);
+    }
+    const auto none = glsl(foam_pattern({.structure = 1.0, .fresh_opacity = 0.0f, .old_opacity = 0.0f}, {}));
+    EXPECT_EQ(shading.seen_foam(none, {}, glm::vec3(0.01f, 0.0f, 0.0f), 0.3f, 0.1f, 2.0f, kSun).opacity, 0.0f);
 }
 
 // Near, the pattern is there: neighbouring places differ, most are foam or none, and coverage is exceeded by what it should be.
 TEST(FoamStructure, IsThere) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> place(-500.0f, 500.0f);
-    const auto pattern = pattern_of(1.0, 0.5);
+    const auto pattern = glsl(
+        foam_pattern({.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0, .fresh_opacity = 1.0f}, {}));
     int decided = 0;
     constexpr int kPlaces = 2000;
     for (int i = 0; i < kPlaces; ++i) {
         const float share = shading
                                 .seen_foam(pattern, {place(random), place(random)},
                                            glm::vec3(0.01f, 0.0f, 0.0f), 0.4f, 1.0f, 0.0f, kSun)
-                                .share;
+                                .opacity;
         decided += share < 0.1f || share > 0.9f;
     }
     EXPECT_GT(decided, kPlaces * 6 / 10);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <tuple>
 
+#include "core/lighting/lighting.h"
 #include "tests/core/lighting/optics.h"
 
 namespace pelagic::optics {
@@ -56,7 +58,7 @@ TEST(Foam, SingleIsDouble) {
         const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
         const double expected = foam(normalize(dvec3(v)), normalize(dvec3(l)), dvec3(s));
         const vec3 found =
-            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), vec3(1.0f), 0.0f);
+            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), 1.0f, 0.0f);
         ASSERT_NEAR(found.x, expected, 1e-4 * expected) << i;
     }
 }
@@ -80,7 +82,7 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
                                  q = std::sqrt(1.0 - z * z);
                     const vec3 l(dvec3(q * std::cos(a), q * std::sin(a), z));
                     const vec3 found = optics.foam_radiance(v, l, frame, vec3(1.0f), float(kFoamRadius),
-                                                            vec3(0.0f), vec3(1.0f), 0.0f);
+                                                            vec3(0.0f), 1.0f, 0.0f);
                     sum += static_cast<double>(found.x) /
                            (oracle::kPi * kFoamRadius * kFoamRadius);  // per solid angle of the sun
                 }
@@ -93,10 +95,30 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
 // Koepke's 0.22 over black water, and bluish over blue water, which shows through thin foam.
 TEST(Foam, IsKoepkesAndShowsTheWater) {
     Optics optics;
-    EXPECT_NEAR(optics.foam_reflectance(vec3(0.0f), 0.4f).x, 0.22f, 1e-6f);
-    const vec3 foam = optics.foam_reflectance(vec3(0.0f, 0.01f, 0.05f), 0.4f);
-    EXPECT_NEAR(foam.x, 0.22f, 1e-6f);
-    EXPECT_NEAR(foam.z, 0.22f + 0.6f * 0.05f, 1e-6f);
+    EXPECT_NEAR(optics.kFoamOpacity * optics.kWhiteFoam, 0.22f, 1e-6f);
+    const SeaAlbedo black = sea_albedo({.reflectance = vec3(0.0f)}), blue = sea_albedo({.reflectance = vec3(0.0f, 0.01f, 0.05f)});
+    EXPECT_NEAR(black.foam.x, 0.22f, 1e-6f);
+    EXPECT_NEAR(blue.foam.z, 0.22f + 0.6f * blue.water.z, 1e-6f);
+    EXPECT_GT(blue.water.z, 0.01f);
+}
+
+// Between bubbles the water mirrors the sun and the sky as it does without them, and shines: foam that hides nothing changes nothing.
+TEST(Foam, HidesWhatItsOpacitySays) {
+    Optics optics;
+    Inputs inputs(33);
+    const Optics::SeaLight light{normalize(vec3(0.5f, 0.0f, 0.3f)), vec3(1e4f), float(kFoamRadius), vec3(0.7f), vec3(1.0f), vec3(0.02f)};
+    for (int i = 0; i < 1000; ++i) {
+        const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.1, 0.9);
+        const vec3 up(0.0f, 0.0f, 1.0f);
+        const auto terms = [&](float opacity) { return optics.sea_radiance(v, up, s, {opacity, 0.55f, 0.0f}, light); };
+        const auto none = terms(0.0f), some = terms(0.25f), all = terms(1.0f);
+        EXPECT_EQ(none.foam, vec3(0.0f));
+        for (const auto& [clear, left, white] : {std::tuple{none.sun, some.sun, some.foam}, {none.sea, some.sea, some.foam}}) {
+            EXPECT_NEAR(left.x, 0.75f * clear.x, 1e-5f * clear.x);
+            EXPECT_NEAR(white.x, 0.25f * all.foam.x, 1e-5f * all.foam.x);
+        }
+        EXPECT_EQ(all.sun + all.sea, vec3(0.0f));
+    }
 }
 
 // L = R E_d/(π n²), where E_d is the light that enters, including what the surface's underside reflects.

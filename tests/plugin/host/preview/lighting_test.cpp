@@ -118,15 +118,16 @@ struct Functions {
     PELAGIC_BOTH(foam, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(foam_radiance(vv, ll, f, vec3(1e4f, 9e3f, 8e3f), 0.00465f,
                                            vec3(10.0f, 12.0f, 15.0f),
-                                           foam_reflectance(vec3(0.01f, 0.03f, 0.05f), ww), 0.4f - aa),
+                                           ww, 0.4f - aa),
                              0.0f);)
     PELAGIC_BOTH(foam_structure,
                  FoamPattern p = FoamPattern(vec3(65535.0f, 3.0f, 65535.0f), vec3(0.9f, 0.2f, 0.99f),
-                                             vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f));
+                                             vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f),
+                                             vec2(0.6f, 0.4f));
                  SeenFoam seen = seen_foam(p, 40.0f * vec2(vv.x, nn.y), vec3(0.1f * cc, 0.2f * cc, 0.0f), ww,
                                            bb, aa, ll);
                  FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 0.1f * cc, 10.0f * bb);
-                 return vec4(seen.share, seen.share* seen.dense, noise.shown, noise.variance + seen.slope);)
+                 return vec4(seen.opacity, seen.opacity* seen.white, noise.shown, noise.variance + seen.slope);)
     PELAGIC_BOTH(whole_sea,
                  SeaTerms t = sea_radiance(vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),
                                            SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f,

@@ -6,21 +6,28 @@ where waves break now, and is thin in what they left."""
 
 from .facets import along_wind
 
+PICTURE = "Foam Picture"  # the node of an artist's pattern
+
 OPACITY = 0.4  # the share of its area that foam hides, the mean over its lifetime: foam.glsl
 # Measured over squares of 400 m, in three versions of Blender: of what isn't lace in foam_pattern(), mean and variance; of the distance
 # to the nearest of a Voronoi texture's points, in cells, mean and deviation; and the whole's distribution's logit as A z + B z³.
 PATCHES, PATCHES_VARIANCE = 1.3500, 0.0222
 HOLES, HOLES_DEVIATION = 0.4295, 0.1897
 A, B = 1.57, 0.0755
+CLOUDS_DEVIATION = 0.118  # of a noise without detail, over squares of 2 km
 LACE = 0.26  # how much of the pattern lace is, where it is old
 SIZES = 5  # of holes, each twice the one before, from 1/8 m
 
 
-def add_foam(tree, coverage, active, age_s, fresh, old, structure, streaks, size, detail_distance_m, wind_angle):
-    """Adds the group. active: the coverage of what breaks now; fresh, old: (opacity, colour) of that, and of what is left of earlier
+def add_foam(tree, coverage, active, age_s, fresh, old, structure, streaks, picture_m, size, detail_distance_m, wind_angle):
+    """Adds the group, and a picture for an artist's pattern, picture_m wide, 0: the own one. active: the coverage of what breaks now; fresh, old: (opacity, colour) of that, and of what is left of earlier
     breaking. structure: 0 shows smooth coverage, 1 the pattern. Foam: the share that foam hides here; Color: what that reflects;
     Hidden: the share that it hides round about, without a pattern."""
-    return tree.call("Pelagic Foam", _foam, {"Coverage": coverage, "Active": active, "Age": age_s, "Fresh Opacity": fresh[0],
+    tile = along_wind(tree, wind_angle) * (1.0 / picture_m.at_least(1e-3))
+    picture = tree.node("ShaderNodeTexImage", {"Vector": tile})
+    picture.name = picture.label = PICTURE
+    return tree.call("Pelagic Foam", _foam, {"Picture": tree.value(picture, "Color").parts()[0], "Is Picture": picture_m.above(0.0),
+                                             "Coverage": coverage, "Active": active, "Age": age_s, "Fresh Opacity": fresh[0],
                                              "Old Opacity": old[0], "Fresh Color": fresh[1], "Old Color": old[1], "Structure": structure,
                                              "Streaks": streaks, "Size": size, "Detail Distance": detail_distance_m,
                                              "Wind Angle": wind_angle})
@@ -29,7 +36,10 @@ def add_foam(tree, coverage, active, age_s, fresh, old, structure, streaks, size
 def _foam(tree, asked):
     coverage = asked["Coverage"].at_least(1e-6).at_most(1 - 1e-6)
     place = along_wind(tree, asked["Wind Angle"]) * (1.0 / asked["Size"].at_least(1e-3))
-    z = foam_pattern(tree, place, asked["Age"], asked["Streaks"])
+    # A picture's tiles differ, as in foam_image_noise().
+    clouds = (tree.add("ShaderNodeTexNoise", {"Vector": place, "Scale": 1.0 / 32.0, "Detail": 0.0}) - 0.5) / CLOUDS_DEVIATION
+    picture = 0.85**0.5 * asked["Picture"] + 0.15**0.5 * clouds
+    z = tree.mix(asked["Is Picture"], foam_pattern(tree, place, asked["Age"], asked["Streaks"]), picture)
     logit = z * (A + B * z * z)
     rank = 1.0 / (1.0 + (-logit.at_least(-60.0)).exp())  # the share of the sea where the pattern is lower
     # Foam is where rank > 1 − coverage, with an edge as soft as there is room for: its mean stays.

@@ -186,6 +186,7 @@ class Drawing:
                     self._compiled[text] = compat.shader(*text)
                 self._shaders[name] = self._compiled[text]
             self._textures["sky_map"] = _texture(self.light.sky_map)
+            self._textures["foam_image"] = _texture(self.light.foam_image)
         if time_s != self._time_s:
             self.sea.set(time_s)
             for name, pixels in self.sea.textures.items():
@@ -233,7 +234,7 @@ class Drawing:
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()
         shader.uniform_block("SeaTables", tables)
-        _set(shader, {**self.sea.uniforms, **light, **self.sea.foam(scene, grid.origin_m), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
+        _set(shader, {**self.sea.uniforms, **light, **self.sea.foam(scene, grid.origin_m, self.light), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
                       "curvature_per_m": grid.curvature_per_m})
         textures = dict(self._textures)
         if self.sea.has_living_foam:

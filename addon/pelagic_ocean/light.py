@@ -191,14 +191,18 @@ def _disc(tree, asked):
 
 
 def _sky_image(image, sky):
-    radiance = sky.image(SKY_WIDTH)
-    height, width, _ = radiance.shape
+    return packed_image("Pelagic Sky", sky.image(SKY_WIDTH), image)
+
+
+def packed_image(name, picture, image=None, is_data=False):
+    """An image, made again from a picture, float32 (height, width, 3), rows from the top."""
+    height, width, _ = picture.shape
     if image is None or tuple(image.size) != (width, height):
-        image = bpy.data.images.new("Pelagic Sky", width, height, float_buffer=True, is_data=False)
-    file = openexr(radiance)
+        image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=is_data)
+    file = openexr(picture)
     image.pack(data=file, data_len=len(file))
     image.source = "FILE"  # the packed one
-    image.buffers_free()  # of the sky before
+    image.buffers_free()  # of the picture before
     image.update_tag()
     return image
 

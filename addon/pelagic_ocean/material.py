@@ -7,8 +7,8 @@ import bpy
 
 from . import compat, depths
 from .facets import WATER_INDEX, add_facets, transformed
-from .foam import OPACITY, add_foam
-from .light import extinction_per_m, sky_of
+from .foam import OPACITY, PICTURE, add_foam
+from .light import extinction_per_m, packed_image, sky_of
 from .module import pelagic
 from .nodes import Tree
 
@@ -39,6 +39,7 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _set(material, "Foam Streaks", scene.effects.foam_streaks)
         _set(material, "Foam Color", (scene.effects.foam_fresh_albedo,) * 3 + (1.0,))
         _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
+        _show_picture(material, scene)
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
@@ -49,6 +50,17 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
             for name, part in zip(("Active Foam Density", "Residual Foam Density"), dense_foam):
                 _set(material, name, part)
     return material
+
+
+def _show_picture(material, scene):
+    """The artist's pattern of foam, by rank a normal variable."""
+    node = _changed(material, PICTURE, (scene.effects.foam_pattern, scene.effects.foam_pattern_m))
+    if node is None or "Foam Picture Size" not in material.node_tree.nodes:
+        return
+    picture = pelagic.foam_picture(scene)
+    if picture is not None:
+        node.image = packed_image("Pelagic Foam", picture.repeat(3, axis=2), node.image, is_data=True)
+    material.node_tree.nodes["Foam Picture Size"].outputs[0].default_value = scene.effects.foam_pattern_m if picture is not None else 0.0
 
 
 def _changed(material, name, value):
@@ -111,6 +123,7 @@ def new_material():
     wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
     structure = labelled("ShaderNodeValue", "Foam Structure", 1.0)
     streaks = labelled("ShaderNodeValue", "Foam Streaks", 0.5)
+    picture_m = labelled("ShaderNodeValue", "Foam Picture Size", 0.0)
     fresh_opacity = labelled("ShaderNodeValue", "Active Foam Density", OPACITY)
     old_opacity = labelled("ShaderNodeValue", "Residual Foam Density", OPACITY)
     crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
@@ -122,7 +135,7 @@ def new_material():
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     coverage = tree.attribute("whitecap_coverage", "Fac")
     foam = add_foam(tree, coverage, tree.attribute("foam_active", "Fac"), tree.attribute("foam_age", "Fac"),
-                    (fresh_opacity, fresh_color), (old_opacity, old_color), structure, streaks, size=1.0, detail_distance_m=400.0, wind_angle=wind)
+                    (fresh_opacity, fresh_color), (old_opacity, old_color), structure, streaks, picture_m, size=1.0, detail_distance_m=400.0, wind_angle=wind)
 
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
                                                     "Anisotropy": 0.0, "Normal": part["Normal"]},

@@ -34,7 +34,7 @@ GERMAN = {
     "Visibility": "Sichtweite", "Type": "Wasserart", "Whitecaps": "Schaumkronen", "Whitecap law": "Schaumkronengesetz",
     "Sea warmer than air": "See wärmer als Luft", "Whitecap amount": "Menge der Schaumkronen", "Breaking from": "Brecher ab",
     "Foam decay": "Schaumabbau", "Foam drift": "Schaumdrift", "Foam structure": "Schaumstruktur", "Foam streaks": "Schaumstreifen",
-    "Foam fresh albedo": "Albedo frischen Schaums", "Foam old albedo": "Albedo alten Schaums",
+    "Foam pattern": "Schaummuster", "Foam fresh albedo": "Albedo frischen Schaums", "Foam old albedo": "Albedo alten Schaums",
     "Foam fresh opacity": "Deckkraft frischen Schaums", "Foam old opacity": "Deckkraft alten Schaums",
     "Spray": "Gischt", "Spray law": "Gischtgesetz", "Spray gain": "Gischtverstärkung", "Level": "Stufe", "Max error": "Größter Fehler", "Frame": "Einzelbild",
     "Mesh": "Netz", "Attributes": "Attribute", "Maps": "Karten", "Map resolution": "Kartenauflösung",

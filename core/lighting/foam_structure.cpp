@@ -30,6 +30,11 @@ FoamPattern foam_pattern(const FoamLook& look, glm::dvec2 origin_m) {
     pattern.axes = glm::vec4(wind, per_m.x, per_m.y);
     pattern.look = glm::vec4(look.structure, look.streaks, look.fresh_opacity, look.old_opacity);
     pattern.white = glm::vec2(look.fresh_albedo, look.old_albedo);
+    if (look.image) {
+        pattern.picture = look.image.get();
+        const auto in_tile = [&](double at) { return at / look.image_m - std::floor(at / look.image_m); };
+        pattern.image = glm::vec4(static_cast<double>(look.image->side), 1.0 / look.image_m, in_tile(along), in_tile(across));
+    }
     return pattern;
 }
 

@@ -10,6 +10,9 @@
 //
 // Layers are fixed to the water at rest, on grids of integer cells whose sizes are halves of one another. Age moves weight
 // from one to the next. kFoamCell_m (foam_structure.h) is the largest cell's size across the wind.
+//
+// The includer defines, besides:
+//   float foam_image_texel(int x, int y)    of the artist's picture, where there is one
 
 struct FoamPattern {
     vec3 cell;  // the largest cell that the origin of the points is in: along the wind, along it in streaks, across; whole, modulo 65536
@@ -17,6 +20,9 @@ struct FoamPattern {
     vec4 axes;  // the wind's direction; cells per metre along it, and the same in streaks
     vec4 look;  // structure; streaks; the opacity of foam where waves break, and of what they leave
     vec2 white;  // what these reflect where they are opaque
+    // The artist's picture (foam_image.h): texels a side, 0: none; tiles per metre; where in a tile the origin is, along the wind and
+    // across it.
+    vec4 image;
 };
 
 // What a pixel shows of foam: the share of the pixel that it hides, and what that reflects.
@@ -138,6 +144,42 @@ struct FoamNoise {
     float variance;  // of what is resolved
 };
 
+// A level of the artist's picture at a place in its tile, between its texels.
+float foam_image_at(int side, vec2 place, int level) {
+    int texels = side >> level;
+    vec2 at = place * float(texels) - 0.5f;
+    vec2 low = floor(at);
+    vec2 t = at - low;
+    int row = 2 * side - 2 * texels;
+    int x0 = int(low.x) & (texels - 1);
+    int x1 = (x0 + 1) & (texels - 1);
+    int y0 = int(low.y) & (texels - 1);
+    int y1 = row + ((y0 + 1) & (texels - 1));
+    y0 += row;
+    return mix(mix(foam_image_texel(x0, y0), foam_image_texel(x1, y0), t.x), mix(foam_image_texel(x0, y1), foam_image_texel(x1, y1), t.x),
+               t.y);
+}
+
+// The artist's picture. clouds: of variance 1, some tiles large, so that no two tiles show the same foam.
+FoamNoise foam_image_noise(FoamPattern pattern, float along, float across, float footprint_m, float clouds) {
+    const float kClouds = 0.15f;
+    int side = int(pattern.image.x);
+    vec2 place = vec2(pattern.image.z, pattern.image.w) + pattern.image.y * vec2(along, across);
+    place -= floor(place);
+    float most = log2(pattern.image.x);
+    float finest = clamp(log2(max(footprint_m * pattern.image.y * pattern.image.x, 1.0f)), 0.0f, most);
+    int level = min(int(finest), int(most + 0.5f) - 1);
+    float t = finest - float(level);
+    // What a coarser level shows is a part of what the finer one does: of their blend the variance is that part's, and of the rest's
+    // the finer one's share, squared.
+    float shown = mix(foam_image_at(side, place, level), foam_image_at(side, place, level + 1), t);
+    float variance =
+        mix(foam_image_texel(level + 1, 2 * side - 1), foam_image_texel(level, 2 * side - 1), (1.0f - t) * (1.0f - t));
+    float through = foam_weight(float(kFoamCell_m), footprint_m);
+    float picture = 1.0f - kFoamGrain - kClouds;
+    return FoamNoise(sqrt(picture) * shown + sqrt(kClouds) * through * clouds, picture * variance + kClouds * through * through);
+}
+
 // rest_m: relative to the origin that the pattern was made for. footprint_m: on the water at rest.
 FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float age_s) {
     float along = pattern.axes.x * rest_m.x + pattern.axes.y * rest_m.y;
@@ -149,6 +191,9 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     cell -= 65536.0f * floor(cell / 65536.0f);
     vec2 cells = vec2(cell.x, cell.z);
     vec2 rest = vec2(place.x, place.z);
+
+    if (pattern.image.x > 0.0f)
+        return foam_image_noise(pattern, along, across, footprint_m, foam_clouds(foam_cell(cells, rest, 0, vec2(0.0f), false), 70u));
 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);

@@ -4,6 +4,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
+
+#include "core/lighting/foam_image.h"
 
 namespace pelagic {
 
@@ -12,6 +15,8 @@ inline constexpr int kFoamCell_m = 32;
 
 // What a shot asks for.
 struct FoamLook {
+    std::shared_ptr<const FoamImage> image{};  // the artist's pattern, in place of the own one
+    double image_m = 10.0;                     // the side of it
     double structure = 0.0;           // 0: smooth coverage … 1: lace
     double streaks = 0.0;             // 0 … 1, along the wind
     double wind_direction_deg = 0.0;  // blowing towards, counter-clockwise from +x
@@ -26,6 +31,8 @@ struct FoamPattern {
     glm::vec3 cell{0.0f}, rest{0.0f};
     glm::vec4 axes{1.0f, 0.0f, 0.0f, 0.0f}, look{0.0f, 0.0f, 0.4f, 0.4f};
     glm::vec2 white{0.55f, 0.55f};
+    glm::vec4 image{0.0f};
+    const FoamImage* picture = nullptr;  // the look's
 };
 
 // For points at rest relative to that origin, which may be anywhere that a double can tell millimetres. The pattern stays where

@@ -18,9 +18,11 @@ using namespace glm;
 // seven times as long to compile.
 template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 struct Shading {
-    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = {})
+    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = {},
+                     const FoamImage* of_foam = nullptr)
         : map(sky_map),
           seen_air(of_air),
+          foam_image(of_foam),
           kSkyMapSize(static_cast<float>(sky_map.size())),
           kSun(choice.sun),
           kSky(choice.sky),
@@ -38,10 +40,15 @@ struct Shading {
                                                                          : 0;
     const SkyMap& map;
     const Air* seen_air;
+    const FoamImage* foam_image;
     const float kSkyMapSize;
     const bool kSun, kSky, kWater, kWhitecaps, kSecondReflection, kMeshMasking;
 
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
+    float foam_image_texel(int x, int y) const {
+        return foam_image->texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(foam_image->side) +
+                                  static_cast<std::size_t>(x)];
+    }
     vec4 air_texel(int column, int row) const {
         return seen_air
             ->texels[static_cast<std::size_t>(row) * Air::kWidth + static_cast<std::size_t>(column)];
@@ -84,12 +91,13 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
                  const FoamPattern& foam) {
     using Variant = Shading<kFresnel, kSkyQuality>;
     const bool by_place = air && air->by_place > 0.0f;
-    Variant shading(sky.map, air, choice);
+    Variant shading(sky.map, air, choice, foam.picture);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
     const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
                                            sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
-    const typename Variant::FoamPattern pattern{foam.cell, foam.rest, foam.axes, foam.look, foam.white};
+    const typename Variant::FoamPattern pattern{foam.cell, foam.rest, foam.axes, foam.look, foam.white,
+                                               foam.image};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         typename Variant::SeenFoam seen = shading.no_foam();

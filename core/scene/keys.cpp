@@ -629,6 +629,19 @@ void add_effects_and_quality(Built& out) {
                                      .help = "how far that lace is drawn out along the wind",
                                      .range = limits::kFoamStreaks,
                                      .key_parts = key_parts(KeyPart::Water)}),
+        row<&Effects::foam_pattern>(
+            {.name = "foam_pattern",
+             .help = "what foam looks like near: lace, or a picture that tiles, brightest where foam is thickest, the wind blowing "
+                     "to its right; its mean is the same",
+             .accepted = "\"lace\", or the path of an .exr, square, with a side of 16, 32 ... 4096 pixels, from the shot file's "
+                         "folder",
+             .key_parts = key_parts(KeyPart::Water)}),
+        row<&Effects::foam_pattern_m>({.name = "foam_pattern_m",
+                                       .help = "the side of that picture on the water",
+                                       .unit = "m",
+                                       .range = limits::kFoamPattern_m,
+                                       .soft = SoftRange{2.0, 50.0, true},
+                                       .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_fresh_albedo>(
             {.name = "foam_fresh_albedo",
              .help = "what foam reflects where waves break, as far as it hides the water; 0.55 is measured (Whitlock 1982)",

@@ -105,6 +105,7 @@ inline constexpr Range kVisibility_km{0.1, 1000.0};
 inline constexpr Range kSkyGain{0.0, 1e6};
 inline constexpr Range kFoamStructure{0.0, 1.0};
 inline constexpr Range kFoamStreaks{0.0, 1.0};
+inline constexpr Range kFoamPattern_m{0.1, 1e3};
 inline constexpr Range kFoamAlbedo{0.0, 1.0};
 inline constexpr Range kFoamOpacity{0.0, 1.0};
 inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest air that there is to haze

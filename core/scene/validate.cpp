@@ -480,13 +480,27 @@ void check_cage(SceneChecker& check, const Surface& surface) {
     }
 }
 
+bool is_exr(std::string_view path) {
+    constexpr std::string_view kExr = ".exr";
+    return path.size() > kExr.size() &&
+           std::equal(kExr.begin(), kExr.end(), path.end() - static_cast<std::ptrdiff_t>(kExr.size()),
+                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
+void check_foam_pattern(SceneChecker& check, const Effects& effects) {
+    const Effects usual;
+    if (effects.foam_pattern == usual.foam_pattern) {
+        if (effects.foam_pattern_m != usual.foam_pattern_m && check.is_good("effects.foam_pattern_m"))
+            check.refuse({"effects.foam_pattern_m", number_text(effects.foam_pattern_m),
+                          "is the size of a picture of foam, and effects.foam_pattern is \"lace\"",
+                          number_text(usual.foam_pattern_m) + ", or effects.foam_pattern = \"PATH.exr\""});
+    } else if (!is_exr(effects.foam_pattern)) {
+        check.refuse({"effects.foam_pattern", quoted_text(effects.foam_pattern), "is neither \"lace\" nor a picture",
+                      "\"lace\", or the path of a picture that tiles, an .exr"});
+    }
+}
+
 void check_light(SceneChecker& check, const Light& light) {
-    const auto is_exr = [](std::string_view path) {
-        constexpr std::string_view kExr = ".exr";
-        return path.size() > kExr.size() &&
-               std::equal(kExr.begin(), kExr.end(), path.end() - static_cast<std::ptrdiff_t>(kExr.size()),
-                          [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-    };
     if (light.sky != Light{}.sky && !is_exr(light.sky)) {
         check.refuse({"light.sky", quoted_text(light.sky), "is neither a sky's name nor a picture",
                       "\"daylight\", or the path of a lat-long picture, an .exr"});
@@ -585,6 +599,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_near_far(check, scene);
     check_planet(check, scene);
     check_cage(check, scene.surface);
+    check_foam_pattern(check, scene.effects);
     check_light(check, scene.light);
     check_output(check, scene.effects, scene.output);
     check_scheme(check, scene.output, scene.surface);

@@ -34,7 +34,7 @@ void SweepPicture::run() {
 PictureBytes SweepPicture::encoded() const {
     const int frame = frames_[(runs_ - 1) % frames_.size()];
     const PictureFingerprint fingerprint(
-        {.scene = scene_, .options = options_, .sky_content = sky_content(scene_)});
+        {.scene = scene_, .options = options_, .picture_content = picture_content(scene_)});
     const PictureContext context{.scene = scene_,
                                  .options = options_,
                                  .sky = renderer_->sky(),

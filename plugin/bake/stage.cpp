@@ -141,7 +141,7 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::string last_source;
     static std::shared_ptr<const StageLight> last;
-    const std::string source = canonical(scene, key_parts(KeyPart::Light)) + sky_content(scene);
+    const std::string source = canonical(scene, key_parts(KeyPart::Light)) + picture_content(scene);
     {
         const std::lock_guard lock(mutex);
         if (last && last_source == source) return last;

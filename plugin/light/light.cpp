@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/lighting/air.h"
@@ -44,6 +46,38 @@ bool is_in_kcd_m2(const Scene& scene) {
 // `problem` may have names from the file in it.
 Problem sky_problem(const Scene& scene, const std::string& problem, const std::string& accepted) {
     return {"light.sky", quoted_text(scene.light.sky), line_text(problem), accepted};
+}
+Problem foam_problem(const Scene& scene, const std::string& problem) {
+    return {"effects.foam_pattern", quoted_text(scene.effects.foam_pattern), line_text(problem),
+            "a picture in OpenEXR, square, with a side of 16, 32 ... 4096 pixels, not all of one brightness"};
+}
+
+bool has_foam_picture(const Scene& scene) {
+    return scene.effects.foam_pattern != Effects{}.foam_pattern;
+}
+
+std::vector<Problem> check_foam_picture(const Scene& scene) {
+    if (!has_foam_picture(scene)) return {};
+    try {
+        const exr::RgbFile file(scene.effects.foam_pattern);
+        if (file.width() != file.height())
+            return {foam_problem(scene, "has " + std::to_string(file.width()) + " x " +
+                                            std::to_string(file.height()) + " pixels")};
+        check_foam_image_side(file.width());
+        return {};
+    } catch (const exr::ReadError& error) {
+        return {foam_problem(scene, error.problem())};
+    } catch (const std::invalid_argument& error) {
+        return {foam_problem(scene, error.what())};
+    }
+}
+
+void add_bytes(Fingerprint& hash, const std::string& path, const Problem& unreadable) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string piece(std::size_t{1} << 20, '\0');
+    while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
+        hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
+    if (!stream.eof()) throw std::invalid_argument(text_of(unreadable));
 }
 
 }  // namespace
@@ -86,28 +120,32 @@ std::vector<Problem> check_sky(const Scene& scene) {
 
 std::vector<Problem> check_scene(const Scene& scene) {
     std::vector<Problem> problems = check_sky(scene);
+    for (Problem& problem : check_foam_picture(scene)) problems.push_back(std::move(problem));
     if (!validate(scene).empty()) return problems;
     for (Problem& problem : impossible_waves(scene.sea)) problems.push_back(std::move(problem));
     return problems;
 }
 
-std::string sky_content(const Scene& scene) {
-    if (scene.light.sky == Light{}.sky) return {};
-    for (const Problem& problem : check_sky(scene)) throw std::invalid_argument(text_of(problem));
-    std::ifstream stream(scene.light.sky, std::ios::binary);
-    Fingerprint hash;
-    std::string piece(std::size_t{1} << 20, '\0');
-    while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
-        hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
-    if (!stream.eof())
-        throw std::invalid_argument(
-            text_of(sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR")));
-    return hash.text();
+std::string picture_content(const Scene& scene) {
+    std::vector<Problem> problems = check_sky(scene);
+    for (Problem& problem : check_foam_picture(scene)) problems.push_back(std::move(problem));
+    for (const Problem& problem : problems) throw std::invalid_argument(text_of(problem));
+    std::string content;
+    const auto add = [&](const std::string& path, const Problem& unreadable) {
+        Fingerprint hash;
+        add_bytes(hash, path, unreadable);
+        content += hash.text();
+    };
+    if (scene.light.sky != Light{}.sky)
+        add(scene.light.sky, sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR"));
+    if (has_foam_picture(scene)) add(scene.effects.foam_pattern, foam_problem(scene, "can't be read"));
+    return content;
 }
 
 Scene portable(Scene scene) {
-    if (scene.light.sky != Light{}.sky)
-        scene.light.sky = std::filesystem::path(scene.light.sky).filename().string();
+    const auto name = [](std::string& path) { path = std::filesystem::path(path).filename().string(); };
+    if (scene.light.sky != Light{}.sky) name(scene.light.sky);
+    if (has_foam_picture(scene)) name(scene.effects.foam_pattern);
     return scene;
 }
 
@@ -131,6 +169,7 @@ std::string light_content(const Scene& scene) {
     const Effects usual;
     light.effects.foam_structure = usual.foam_structure;
     light.effects.foam_streaks = usual.foam_streaks;
+    light.effects.foam_pattern_m = usual.foam_pattern_m;
     light.effects.foam_fresh_albedo = usual.foam_fresh_albedo;
     light.effects.foam_old_albedo = usual.foam_old_albedo;
     light.effects.foam_fresh_opacity = usual.foam_fresh_opacity;
@@ -143,9 +182,30 @@ double active_foam(const Scene& scene, double residual_coverage) {
     return law > 0.0 ? std::clamp(1.0 - residual_coverage / law, 0.0, 1.0) : 1.0;
 }
 
-FoamLook make_foam(const Scene& scene, double active) {
+std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene) {
+    if (!has_foam_picture(scene)) return nullptr;
+    for (const Problem& problem : check_foam_picture(scene)) throw std::invalid_argument(text_of(problem));
+    try {
+        const exr::RgbPixels picture = exr::read_rgb(scene.effects.foam_pattern);
+        std::vector<float> brightness;
+        brightness.reserve(picture.pixels.size());
+        for (int row = picture.height; row-- > 0;) {  // from the bottom
+            const auto* const first = picture.pixels.data() + static_cast<std::ptrdiff_t>(row) * picture.width;
+            for (int i = 0; i < picture.width; ++i) brightness.push_back(first[i][0] + first[i][1] + first[i][2]);
+        }
+        return std::make_shared<const FoamImage>(make_foam_image(picture.width, brightness));
+    } catch (const exr::ReadError& error) {
+        throw std::invalid_argument(text_of(foam_problem(scene, error.problem())));
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(text_of(foam_problem(scene, error.what())));
+    }
+}
+
+FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {
     const Effects& effects = scene.effects;
-    FoamLook look{.structure = effects.foam_structure,
+    FoamLook look{.image = std::move(picture),
+                  .image_m = effects.foam_pattern_m,
+                  .structure = effects.foam_structure,
                   .streaks = effects.foam_streaks,
                   .wind_direction_deg = scene.sea.wind_direction_deg,
                   .fresh_albedo = static_cast<float>(effects.foam_fresh_albedo),

@@ -1,6 +1,7 @@
 // The light of a shot, and its water, as every room that lights the sea takes them.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,10 @@ std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
 // Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);
-// What make_sky() reads besides the scene, as text for fingerprints: a hash of the picture's bytes; empty for
-// daylight. Throws std::invalid_argument for a file that can't be read.
-std::string sky_content(const Scene& scene);
-// The scene as files describe it, wherever they are made: the picture by its name without its folder.
+// What make_sky() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
+// without any. Throws std::invalid_argument for a file that can't be read.
+std::string picture_content(const Scene& scene);
+// The scene as files describe it, wherever they are made: pictures by their names without their folders.
 Scene portable(Scene scene);
 // The unit of the sky's radiance, as files say it.
 std::string radiance_unit(const Scene& scene);
@@ -34,15 +35,18 @@ std::string radiance_unit(const Scene& scene);
 std::vector<exr::Attribute> radiance_attributes(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
-// The keys on which the light depends, as text: while it stays the same, sky and water do. How foam looks is no part
-// of it.
+// The keys on which the light depends, as text: while it stays the same, sky, water and make_foam_picture() do. How foam looks
+// beside that is no part of it.
 std::string light_content(const Scene& scene);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without
 // persistent foam.
 double active_foam(const Scene& scene, double residual_coverage);
-// How the foam of a shot looks. active: that share; the rest is what earlier breaking left. Where the shot doesn't say
+// The picture that effects.foam_pattern is the path of, or null. Throws std::invalid_argument, naming the key and the file, for one
+// that can't be read or isn't one of foam.
+std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene);
+// How the foam of a shot looks. picture: make_foam_picture()'s, null where nobody asks for more than opacities. active: that share; the rest is what earlier breaking left. Where the shot doesn't say
 // otherwise foam hides the water while it breaks, and what it leaves is thin (Darles et al. 2007: less with its age); all of
 // the law's foam together has Koepke's opacity: in lighting by shares of area, whatever a pixel's size.
-FoamLook make_foam(const Scene& scene, double active = 1.0);
+FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active = 1.0);
 
 }  // namespace pelagic

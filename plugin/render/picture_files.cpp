@@ -142,7 +142,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(source.scene.shot.name)  // a picture says its own file's name
         .add(canonical(portable(source.scene), parts_beside_the_view(options_)))
         .add(plan_text(plan, 0))
-        .add(source.sky_content)
+        .add(source.picture_content)
         .add("samples " + std::to_string(options_.samples) + " terms " + digit(lighting.sun) +
              digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + digit(lighting.air) +
              " sky " + digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))

@@ -32,7 +32,7 @@ inline constexpr int kPictureRevision = 11;
 struct PictureSource {
     const Scene& scene;  // its resolution is the picture's
     const RenderOptions& options;
-    std::string sky_content;  // sky_content(scene)
+    std::string picture_content;  // picture_content(scene)
     double exposure_stops = 0.0;
     bool drawn_by_gpu = false;
 };

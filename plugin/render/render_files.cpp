@@ -90,7 +90,7 @@ RunReport render_files(const PictureOrder& order, const RunOptions& options) {
                         check_render(order.scene, order.options);
                         made_of.emplace(PictureSource{.scene = order.scene,
                                                       .options = order.options,
-                                                      .sky_content = sky_content(order.scene),
+                                                      .picture_content = picture_content(order.scene),
                                                       .exposure_stops = order.exposure_stops});
                         for (const char* suffix : {".png", ".exr"})
                             parts.push_back(

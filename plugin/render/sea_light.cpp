@@ -18,11 +18,11 @@ SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, c
     : choice_(choice),
       sky_(std::move(sky)),
       water_(make_water(plan.from->scene)),
-      foam_(make_foam(plan.from->scene)),
+      foam_(make_foam(plan.from->scene, make_foam_picture(plan.from->scene))),
       sea_(std::make_shared<const Sea<T>>(plan, watch)),
       state_(sea_) {
     if (plan.foam)
-        foam_ = make_foam(plan.from->scene, active_foam(plan.from->scene, sea_->residual_coverage()));
+        foam_ = make_foam(plan.from->scene, foam_.image, active_foam(plan.from->scene, sea_->residual_coverage()));
 }
 
 template <class T>

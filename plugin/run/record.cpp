@@ -325,7 +325,7 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                         {"whitecap_law_coverage", law_coverage(scene)}};
     shot["whitecap_threshold"] = number(whitecap_threshold);
     if (plan.gusts) shot["whitecap_threshold_is"] = "without gusts, which move it from place to place";
-    const FoamLook foam = make_foam(scene, active_foam(scene, residual_coverage));
+    const FoamLook foam = make_foam(scene, nullptr, active_foam(scene, residual_coverage));
     shot["dense_foam"] = {{"active", foam.fresh_opacity}, {"left", foam.old_opacity}};
 
     Json& planned = shot["plan"];

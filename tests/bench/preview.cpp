@@ -24,7 +24,7 @@ class Drawn {
           view_(view_at(scene.camera, 1)),
           grid_(projected_grid(view_, projected_grid_options(*prepare(scene)))) {
         options_.lighting = render_options(scene).lighting;
-        options_.foam = make_foam(scene);
+        options_.foam = make_foam(scene, nullptr);
         Frame<float> frame(sea_);
         frame.set(1.0);
         PackedFrame packed(sea_, 0);

@@ -323,7 +323,7 @@ bool same_bits(const std::vector<V>& a, const std::vector<V>& b) {
 const Sky& sky_of(const Scene& scene) {
     static std::string of;
     static Sky sky;
-    const std::string light = light_content(scene) + sky_content(scene);
+    const std::string light = light_content(scene) + picture_content(scene);
     if (of != light) sky = make_sky(scene);
     of = light;
     return sky;

@@ -62,6 +62,7 @@ constexpr double kPictureOfSky = 0.8;
 
 constexpr const char* kCageName = "cage.obj";
 constexpr const char* kSkyName = "sky.exr";
+constexpr const char* kFoamName = "foam.exr";
 constexpr const char* kBuoyName = "99001w2024.txt";
 constexpr const char* kBuoyTime = "2024-10-03T06:00:00Z";
 
@@ -170,6 +171,8 @@ class Draw {
     std::string text(const Key& key) {
         if (key.path == "light.sky")
             return chance(kPictureOfSky) ? kSkyName : std::get<std::string>(key.fallback);
+        if (key.path == "effects.foam_pattern")
+            return chance(0.5) ? kFoamName : std::get<std::string>(key.fallback);
         if (key.path == "shot.name") {
             constexpr std::string_view kLetters =
                 "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -276,6 +279,16 @@ std::string random_sky(Draw& draw) {
     return exr::encode_scanline({}, image);
 }
 
+// A picture of foam, much of it of one brightness.
+std::string random_foam(Draw& draw) {
+    const int side = 1 << draw.integer(4, 6);
+    const double black = draw.uniform(0.0, 0.95), brightness = draw.log_uniform(1e-6, 1e4);
+    std::vector<float> texels;
+    for (int i = 0; i < side * side; ++i)
+        texels.push_back(draw.chance(black) ? 0.0f : static_cast<float>(brightness * draw.uniform(0.0, 1.0)));
+    return exr::encode_scanline({}, {.width = side, .height = side, .channels = {{.name = "Y", .data = texels.data()}}});
+}
+
 // An hour of a buoy that measures a few frequencies, some of them without directions or missing.
 std::map<std::string, std::string> random_buoy(Draw& draw) {
     const int count = draw.integer(2, 12);
@@ -336,6 +349,7 @@ class Drawing {
         if (made_.value(kSpectrumFile))
             for (auto& [name, bytes] : random_buoy(draw_)) made_.files[name] = std::move(bytes);
         if (is("light.sky", std::string(kSkyName))) made_.files[kSkyName] = random_sky(light_);
+        if (is("effects.foam_pattern", std::string(kFoamName))) made_.files[kFoamName] = random_foam(light_);
         return std::move(made_);
     }
 
@@ -384,6 +398,7 @@ class Drawing {
         fit_output();
         if (!is("light.sky", std::string(kSkyName)))
             for (const char* key : {"light.sky_rotation_deg", "light.sky_gain"}) leave_out(key);
+        if (!is("effects.foam_pattern", std::string(kFoamName))) leave_out("effects.foam_pattern_m");
         mend();
     }
 

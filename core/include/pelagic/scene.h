@@ -207,6 +207,8 @@ struct Effects {
     double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
     double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
     double foam_streaks = 0.5;     // 0 … 1, along the wind
+    std::string foam_pattern = "lace";  // or the path of a picture
+    double foam_pattern_m = 10.0;       // the side of that picture, > 0
     // Of foam where waves break and of what they leave: what it reflects where it hides the water (0 … 1), and the share of its
     // area that it hides (0 … 1; 0: such that the mean over the law's foam is 0.4).
     double foam_fresh_albedo = 0.55, foam_old_albedo = 0.55;

@@ -84,7 +84,7 @@ int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArgumen
         .sky = sky,
         .made_of =
             PictureFingerprint(
-                {.scene = scene, .options = options, .sky_content = sky_content(scene), .drawn_by_gpu = true})
+                {.scene = scene, .options = options, .picture_content = picture_content(scene), .drawn_by_gpu = true})
                 .of(frame),
         .exposure = shot_exposure(scene, sky)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)

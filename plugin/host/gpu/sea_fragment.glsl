@@ -22,7 +22,8 @@ void main() {
     vec3 to_eye = levelled(-pixel_ray(), up);
     SeenFoam foam = no_foam();
     if (kWhitecaps)
-        foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white),
+        foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white,
+                                     foam_pattern_image),
                          rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),

@@ -66,7 +66,8 @@ const std::vector<std::string_view>& lighting_files() {
         "core/lighting/level.glsl",  "core/lighting/fresnel.glsl",
         "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
         "core/lighting/sky.glsl",    "core/lighting/water.glsl",
-        "core/lighting/foam.glsl",   "core/lighting/foam_structure.glsl",
+        "core/lighting/foam.glsl",   "plugin/host/gpu/foam_uniforms.glsl",
+        "core/lighting/foam_structure.glsl",
         "core/lighting/sea.glsl"};
     return files;
 }
@@ -163,7 +164,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     lighting_files(),
                     {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
                     spray_files(lighting),
-                    {"core/lighting/place.glsl", "plugin/host/gpu/foam_uniforms.glsl",
+                    {"core/lighting/place.glsl",
                      "plugin/host/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/host/gpu/false_colour.glsl", points_file(options),

@@ -56,7 +56,8 @@ std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {
             vector("foam_pattern_rest", pattern.rest),
             {"foam_pattern_axes", 4, pattern.axes},
             {"foam_pattern_look", 4, pattern.look},
-            {"foam_pattern_white", 2, glm::vec4(pattern.white, 0.0f, 0.0f)}};
+            {"foam_pattern_white", 2, glm::vec4(pattern.white, 0.0f, 0.0f)},
+            {"foam_pattern_image", 4, pattern.image}};
 }
 
 std::vector<Uniform> air_uniforms(const Air& air) {

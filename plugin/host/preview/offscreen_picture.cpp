@@ -226,7 +226,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     renderer.draw(
         view, planned.grid,
         {.lighting = lighting,
-         .foam = make_foam(planned.scene, lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+         .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
+                           lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
          .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)

@@ -28,7 +28,7 @@ namespace pelagic {
 namespace {
 
 // Texture units. SeaTextures has the first ones.
-enum OtherUnit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMapUnit, kDither, kPictures };
+enum OtherUnit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMapUnit, kDither, kFoamImage, kPictures };
 
 constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
@@ -77,6 +77,7 @@ struct SeaRenderer::Implementation {
     void begin_picture(glm::ivec2 size, bool layers);
     void draw_points(const View& view, const ProjectedGrid& grid);
     void end_picture() const;
+    void set_foam_image(const std::shared_ptr<const FoamImage>& image);
     void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
@@ -93,6 +94,9 @@ struct SeaRenderer::Implementation {
     GlTexture air_table;
     std::optional<double> air_height_m;  // of the eye that the table is for
     std::vector<Uniform> air;
+    GlTexture foam_texture;
+    std::shared_ptr<const FoamImage> foam_image;  // that the texture has
+    bool has_foam_texture = false;
     GlTexture spray_map;
     std::vector<Uniform> spray;  // empty: there is none
 
@@ -146,6 +150,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     glUniform1i(program.uniform("air_table"), kAirTable);
     glUniform1i(program.uniform("spray_map"), kSprayMapUnit);
     glUniform1i(program.uniform("dither"), kDither);
+    glUniform1i(program.uniform("foam_image"), kFoamImage);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     // No program reads both kinds.
     for (std::size_t i = 0; i < kPointNames.size(); ++i)
@@ -255,6 +260,20 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     set_uniforms(program, spray);
 }
 
+void SeaRenderer::Implementation::set_foam_image(const std::shared_ptr<const FoamImage>& image) {
+    bind_texture(kFoamImage, foam_texture);
+    if (has_foam_texture && image == foam_image) return;
+    const FoamImage none, &shown = image ? *image : none;
+    if (std::max(shown.side, shown.rows()) > largest_texture)
+        throw PreviewError("effects.foam_pattern is larger than this driver's textures, of " +
+                           std::to_string(largest_texture) + " texels a side, have room for");
+    texels_as_they_are();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, shown.side, shown.rows(), 0, GL_RED, GL_FLOAT, shown.texels.data());
+    foam_image = image;
+    has_foam_texture = true;
+}
+
 void SeaRenderer::Implementation::set_air(double height_m) {
     bind_texture(kAirTable, air_table);
     if (air_height_m == height_m) return;
@@ -337,6 +356,7 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
     set_common(program, view);
     sea.bind(program, grid.origin_m);
     set_uniforms(program, air);
+    set_foam_image(options.foam.image);
     set_uniforms(program, foam_uniforms(foam_pattern(options.foam, grid.origin_m)));
     glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
     for (std::size_t i = 0; i < points.size(); ++i) bind_texture(kPictures + static_cast<int>(i), points[i]);

@@ -195,16 +195,18 @@ std::filesystem::path picture_name(const std::filesystem::path& folder, const st
     }
 }
 
-// Light and water, made in the background like the sea.
+// Light, water and the artist's picture of foam, made in the background like the sea.
 struct LiveSky {
     Sky sky;
     WaterBody water;
+    std::shared_ptr<const FoamImage> foam_picture;
 };
 
 std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
     LiveSky made;
     made.sky = make_sky(scene);
     made.water = make_water(scene);
+    made.foam_picture = make_foam_picture(scene);
     return std::make_shared<const LiveSky>(std::move(made));
 }
 
@@ -521,7 +523,7 @@ class Preview {
         follow_foam(view, grid);
         const Sea<float>& sea = *frame_->build->sea;
         controls_.draw.foam =
-            make_foam(controls_.scene,
+            make_foam(controls_.scene, sky_ ? sky_->foam_picture : nullptr,
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
         if (has_spray_) show_spray();

@@ -62,6 +62,18 @@ py::array image_of(const PythonSky& self, int width) {
     return array_of<float>(std::move(picture.radiance), {picture.height, picture.width});
 }
 
+py::object foam_picture_of(const Scene& scene) {
+    require_valid(scene);
+    const auto picture = beside_others([kept = scene] { return make_foam_picture(kept); });
+    if (!picture) return py::none();
+    std::vector<float> scores;
+    const auto side = static_cast<std::size_t>(picture->side);
+    for (std::size_t row = side; row-- > 0;)
+        scores.insert(scores.end(), picture->texels.begin() + static_cast<std::ptrdiff_t>(row * side),
+                      picture->texels.begin() + static_cast<std::ptrdiff_t>((row + 1) * side));
+    return array_of<float>(std::move(scores), {picture->side, picture->side, 1});
+}
+
 py::object radiance_towards(const PythonSky& self, const py::object& directions, py::object out) {
     Copies copies;
     const auto [towards, count] = readable_vectors(directions, {"directions"}, copies);
@@ -204,6 +216,10 @@ void add_light(py::module_& module) {
         .def_property_readonly(
             "backscatter_per_m", [](const WaterBody& self) { return tuple_of(self.backscatter_per_m); },
             "[1/m], at the same. Isotropic scattering of twice as much sends as much back.");
+    module.def("foam_picture", &foam_picture_of, py::arg("scene"),
+               "float32 (side, side, 1), rows from the top: the picture of effects.foam_pattern by rank, as a variable of normal "
+               "distribution, mean 0, variance 1, largest where foam is thickest; None where there is none. ValueError for a file "
+               "that is no picture of foam.");
     module.def(
         "shade",
         [](const PythonSky& sky, const WaterBody& water, const py::object& to_eye, const py::object& normal,

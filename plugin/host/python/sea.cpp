@@ -143,7 +143,7 @@ PythonSea build_sea(const SeaOrder& order, Watch& watch) {
 
 std::pair<float, float> dense_foam(const PythonSea& self) {
     const Scene& scene = self.plan().from->scene;
-    const FoamLook look = make_foam(scene, active_foam(scene, self.sea->residual_coverage()));
+    const FoamLook look = make_foam(scene, nullptr, active_foam(scene, self.sea->residual_coverage()));
     return {look.fresh_opacity, look.old_opacity};
 }
 

@@ -70,6 +70,7 @@ struct GpuLight {
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
         atlas = sky_atlas(sky.map);
+        foam_picture = make_foam_picture(scene);
     }
     bool serves(const Scene& scene) const { return light_content(scene) == made_from; }
 
@@ -78,6 +79,7 @@ struct GpuLight {
     int map_size = 0;
     std::vector<Uniform> uniforms;
     SkyAtlas atlas;
+    std::shared_ptr<const FoamImage> foam_picture;
     // What was metered last: hosts ask at each redraw, and metering takes tens of milliseconds.
     struct Metered {
         std::string made_from;
@@ -296,10 +298,10 @@ class GpuSea {
         return {std::make_shared<const ProjectedGrid>(std::move(grid)), array_of<float>(std::move(vertices))};
     }
 
-    py::dict foam(const Scene& scene, std::array<double, 2> origin_m) const {
+    py::dict foam(const Scene& scene, std::array<double, 2> origin_m, const GpuLight& light) const {
         const double active =
             has_living_foam() ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
-        return dict_of(foam_uniforms(foam_pattern(make_foam(scene, active), checked_origin(origin_m))));
+        return dict_of(foam_uniforms(foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
     }
 
     bool has_living_foam() const { return packed_.layout()->has_living_foam(); }
@@ -415,6 +417,13 @@ void add_gpu_light(py::module_& module) {
                 return view;
             },
             "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
+        .def_property_readonly(
+            "foam_image",
+            [](const GpuLight& self) {
+                const FoamImage none, &shown = self.foam_picture ? *self.foam_picture : none;
+                return array_of<float>(std::vector(shown.texels), {shown.rows(), shown.side, 1});
+            },
+            "The texture foam_image: float32 (height, width, 1), effects.foam_pattern's picture in all its levels.")
         .def(
             "air", &air_of, py::arg("height_m"),
             "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "
@@ -514,9 +523,9 @@ void add_viewport(py::module_& module) {
             "on time where there are gusts, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
         .def(
-            "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"),
-            "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea serves has it, for a grid's "
-            "origin [m].")
+            "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"), py::arg("light"),
+            "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea and this GpuLight serve has it, "
+            "for a grid's origin [m].")
         .def_property_readonly(
             "has_living_foam", &GpuSea::has_living_foam,
             "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "

@@ -27,7 +27,12 @@ struct Optics {
     float kSkyMapSize = 256.0f;
     bool kSun = true, kSky = true, kWater = true, kWhitecaps = true;
 
+    const FoamImage* foam_image = nullptr;
+
     vec3 sky_lookup(vec2 u, float level) const { return lookup(u, level); }
+    float foam_image_texel(int x, int y) const {
+        return foam_image->texels[static_cast<std::size_t>(y * foam_image->side + x)];
+    }
 
 // clang-format off
 #include "core/lighting/special.glsl"
@@ -41,6 +46,10 @@ struct Optics {
 #include "core/lighting/sea.glsl"
     // clang-format on
 };
+
+inline Optics::FoamPattern glsl(const FoamPattern& p) {
+    return {p.cell, p.rest, p.axes, p.look, p.white, p.image};
+}
 
 // A sea that reflects everything: the white furnace.
 struct Furnace {

@@ -203,6 +203,14 @@ TEST(Validate, FramesSeedAndLoop) {
         s.light.sky_rotation_deg = -200.0;
         s.light.sky_gain = 0.5;
     });
+    expect_refused([](Scene& s) { s.effects.foam_pattern = "bubbles"; },
+                   {"effects.foam_pattern", "bubbles", "\"lace\", or the path"});
+    expect_refused([](Scene& s) { s.effects.foam_pattern_m = 4.0; },
+                   {"effects.foam_pattern_m", "4", "10, or effects.foam_pattern = \"PATH.exr\""});
+    expect_good([](Scene& s) {
+        s.effects.foam_pattern = "lace.EXR";
+        s.effects.foam_pattern_m = 4.0;
+    });
     expect_refused([](Scene& s) { s.shot.loop_s = 1.01; }, {"shot.loop_s", "1.01", "nearest: 1"});
     // Less than a frame isn't no frames: the nearest loop is one frame long.
     expect_refused([](Scene& s) { s.shot.loop_s = 1e-6; }, {"shot.loop_s", "1e-6", "nearest: 0.0416"});

@@ -27,6 +27,7 @@ struct BaseShot {
     Scene scene;
     bool is_picture = false;
     std::vector<std::string> skies{};   // paths of pictures, of which light.sky is one
+    std::vector<std::string> foams{};   // likewise effects.foam_pattern
     std::vector<std::string> tables{};  // of the shot file, whose keys are changed; empty: all
 };
 
@@ -150,15 +151,17 @@ inline BaseShot daylight_shot() {
     return base;
 }
 
-// `skies`: two paths of pictures of skies.
-inline BaseShot sky_shot(std::vector<std::string> skies) {
+// `skies`, `foams`: two paths of pictures each.
+inline BaseShot sky_shot(std::vector<std::string> skies, std::vector<std::string> foams) {
     BaseShot base = daylight_shot();
-    base.name = "pictures under a picture of a sky";
+    base.name = "pictures under a picture of a sky, with a picture of foam";
     descend(base.scene);
     base.scene.shot.last_frame = 3;
     base.scene.camera.resolution = {32, 18};
     base.scene.light.sky = skies.front();
+    base.scene.effects.foam_pattern = foams.front();
     base.skies = std::move(skies);
+    base.foams = std::move(foams);
     base.tables.clear();
     return base;
 }
@@ -276,6 +279,7 @@ inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseSh
         return {value_of(slower, key_of(path)), value_of(between, key_of(path))};
     }
     if (path == "light.sky") return {base.skies.begin(), base.skies.end()};
+    if (path == "effects.foam_pattern") return {base.foams.begin(), base.foams.end()};
     if (path == "quality.max_error") return {0.3, 0.1};
     if (path == "quality.frame_ms") return {1.0, 3.0};
     if (path == "surface.cage_level") return {std::int64_t{1}, std::int64_t{3}, std::string("adaptive")};

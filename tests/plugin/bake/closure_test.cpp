@@ -51,6 +51,16 @@ void write_sky(const fs::path& file, float radiance) {
     files::write_atomically(file, exr::encode_scanline({}, image));
 }
 
+// A picture of foam that tiles.
+void write_foam(const fs::path& file, int step) {
+    constexpr int kSide = 16;
+    std::vector<float> texels;
+    for (int i = 0; i < kSide * kSide; ++i) texels.push_back(static_cast<float>(i * step % 251));
+    const exr::Image image{
+        .width = kSide, .height = kSide, .channels = {{.name = "Y", .data = texels.data(), .type = exr::PixelType::Half}}};
+    files::write_atomically(file, exr::encode_scanline({}, image));
+}
+
 // What a run leaves besides its files.
 struct Made {
     std::map<std::string, std::string> fingerprints;  // of the files that carry one, by path
@@ -60,7 +70,7 @@ struct Made {
 Made render_into(const Scene& scene, const fs::path& folder) {
     const PictureOrder order{.scene = scene, .options = render_options(scene)};
     const PictureFingerprint fingerprint(
-        {.scene = scene, .options = order.options, .sky_content = sky_content(scene)});
+        {.scene = scene, .options = order.options, .picture_content = picture_content(scene)});
     Made made;
     for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame)
         for (const char* extension : {"png", "exr"})
@@ -393,15 +403,22 @@ TEST_F(Closure, OfPicturesUnderAPictureOfASky) {
     const std::string sky = (folder_ / "sky.exr").string(), other = (folder_ / "other.exr").string();
     write_sky(sky, 1.0f);
     write_sky(other, 1.5f);
-    expect_closed(sky_shot({sky, other}));
+    const std::string foam = (folder_ / "foam.exr").string(), lace = (folder_ / "lace.exr").string();
+    write_foam(foam, 167);
+    write_foam(lace, 3);
+    expect_closed(sky_shot({sky, other}, {foam, lace}));
 }
 
 // The same path, and another picture there.
-TEST_F(Closure, APictureOfTheSkyCountsByItsContent) {
+TEST_F(Closure, PicturesCountByTheirContent) {
     is_picture_ = true;
-    const std::string sky = (folder_ / "sky.exr").string();
+    const std::string sky = (folder_ / "sky.exr").string(), foam = (folder_ / "foam.exr").string();
     write_sky(sky, 1.0f);
-    const Scene scene = sky_shot({sky}).scene;
+    write_foam(foam, 167);
+    const Scene scene = sky_shot({sky}, {foam}).scene;
+    const std::string first = picture_content(scene);
+    write_foam(foam, 3);
+    EXPECT_NE(picture_content(scene), first);
     const fs::path again = folder_ / "again", fresh = folder_ / "fresh";
     make(scene, again);
     const std::string file = picture_file(scene.shot, scene.shot.first_frame, "exr");
@@ -419,7 +436,7 @@ TEST(ClosureEdits, ChangeEveryKeyThatHasAnotherValue) {
     std::set<std::string> changed;
     for (const BaseShot& base : {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), grid_shot(),
                                  near_far_shot(), automatic_shot(), buoy_shot(), cage_shot(),
-                                 adaptive_cage_shot(), daylight_shot(), sky_shot({"one.exr", "two.exr"})})
+                                 adaptive_cage_shot(), daylight_shot(), sky_shot({"one.exr", "two.exr"}, {"three.exr", "four.exr"})})
         for (const Edit& edit : edits_of(base)) changed.insert(edit.key);
     for (const Key& key : keys()) {
         const bool has_one_value = key.type == KeyType::Word && key.choices.size() < 2;

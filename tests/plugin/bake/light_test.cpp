@@ -527,7 +527,7 @@ TEST_F(StageLightTest, APipeInTheSkysPlaceIsNotWaitedFor) {
     ASSERT_EQ(mkfifo(scene.light.sky.c_str(), 0600), 0);
     EXPECT_EQ(check_sky(scene).size(), 1u);
     EXPECT_THROW(make_sky(scene), std::invalid_argument);
-    EXPECT_THROW(sky_content(scene), std::invalid_argument);
+    EXPECT_THROW(picture_content(scene), std::invalid_argument);
     EXPECT_THROW(baked(scene), std::invalid_argument);
 }
 

@@ -260,14 +260,16 @@ TEST(PictureFiles, ShowEveryDamage) {
     std::filesystem::remove_all(folder);
 }
 
-// Files say which sky picture they show, wherever it lies.
-TEST(PictureFiles, AreOfASkyPictureWhateverItsFolder) {
+// Files say which pictures of sky and foam they show, wherever these lie.
+TEST(PictureFiles, AreOfAPictureWhateverItsFolder) {
     Scene here, there;
+    here.effects.foam_pattern = "foam/lace.exr";
+    there.effects.foam_pattern = "/mnt/foam/lace.exr";
     here.light.sky = "skies/noon.exr";
     there.light.sky = "/mnt/skies/noon.exr";
     const RenderOptions options;
     const auto of = [&](const Scene& scene, const char* content) {
-        return PictureFingerprint({.scene = scene, .options = options, .sky_content = content}).of(1);
+        return PictureFingerprint({.scene = scene, .options = options, .picture_content = content}).of(1);
     };
     EXPECT_EQ(of(here, "one"), of(there, "one"));
     EXPECT_NE(of(here, "one"), of(here, "another"));
@@ -365,7 +367,7 @@ TEST(PictureFiles, AreOfTheirShutterAlphaAndLayers) {
     const auto of = [&](const auto& change) {
         RenderOptions options;
         change(options);
-        return PictureFingerprint({.scene = scene, .options = options, .sky_content = ""}).of(1);
+        return PictureFingerprint({.scene = scene, .options = options, .picture_content = ""}).of(1);
     };
     std::vector<std::string> all{
         of([](RenderOptions&) {}), of([](RenderOptions& o) { o.shutter_frames = 0.5; }),

@@ -239,7 +239,7 @@ TEST(RenderedSpray, MakesOtherPicturesAndIsInTheirFingerprint) {
     const auto made_of = [](const Scene& scene) {
         return PictureFingerprint({.scene = scene,
                                    .options = spray_options(scene),
-                                   .sky_content = "",
+                                   .picture_content = "",
                                    .exposure_stops = 0.0})
             .of(1);
     };

@@ -27,7 +27,9 @@ std::string shot_with(const Key& key, const std::string& value) {
     // Waves of any height need a wind that makes them long.
     const bool is_height = key.path == "sea.significant_height_m";
     const bool of_picture = key.path == "light.sky_rotation_deg" || key.path == "light.sky_gain";
-    return std::string(of_picture ? "light.sky = \"sky.exr\"\n" : "") +
+    const bool of_foam = key.path == "effects.foam_pattern_m";
+    return std::string(of_foam ? "effects.foam_pattern = \"sky.exr\"\n" : "") +
+           std::string(of_picture ? "light.sky = \"sky.exr\"\n" : "") +
            std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
            (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
            '\n';
@@ -132,7 +134,9 @@ class RandomValues {
                 return entries;
             }
             case KeyType::Text:
-                return std::string(key.path == "light.sky" ? "daylight" : "A-1_b");
+                return std::string(key.path == "light.sky"              ? "daylight"
+                                   : key.path == "effects.foam_pattern" ? "lace"
+                                                                        : "A-1_b");
             case KeyType::DataFile:
             case KeyType::DataTime:
                 break;
@@ -169,8 +173,8 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
         EXPECT_EQ(shot_text(read), text);
     }
     for (const Key& key : keys()) {
-        // A sky's picture is no file here, and what turns and scales one is refused without it.
-        const bool can_change = key.set && !key.path.starts_with("light.sky");
+        // A picture is no file here, and what turns and scales one is refused without it.
+        const bool can_change = key.set && !key.path.starts_with("light.sky") && !key.path.starts_with("effects.foam_pattern");
         EXPECT_EQ(changed.contains(key.path), can_change) << key.path;
     }
 }

@@ -39,6 +39,12 @@ SkyMap test_map() {
     return SkyMap(kSize, std::move(texels));
 }
 
+FoamImage test_picture() {
+    std::vector<float> brightness;
+    for (int i = 0; i < 256; ++i) brightness.push_back(static_cast<float>(i * 167 % 256));
+    return make_foam_image(16, brightness);
+}
+
 namespace both {
 
 using namespace glm;
@@ -56,11 +62,15 @@ struct Functions {
                           kSecondReflection = true, kMeshMasking = true;
     static constexpr int kSkyLookups = kLookups;
 
-    explicit Functions(const SkyMap& sky_map)
-        : map(sky_map), kSkyMapSize(static_cast<float>(sky_map.size())) {}
+    Functions(const SkyMap& sky_map, const FoamImage& picture)
+        : map(sky_map), foam_image(picture), kSkyMapSize(static_cast<float>(sky_map.size())) {}
     const SkyMap& map;
+    const FoamImage& foam_image;
     const float kSkyMapSize;
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
+    float foam_image_texel(int x, int y) const {
+        return foam_image.texels[static_cast<std::size_t>(y * foam_image.side + x)];
+    }
 
     // to_eye, normal, to_sun; slope variance of the unresolved waves
     vec3 vv{0.0f}, nn{0.0f}, ll{0.0f}, ss{0.0f};
@@ -123,11 +133,17 @@ struct Functions {
     PELAGIC_BOTH(foam_structure,
                  FoamPattern p = FoamPattern(vec3(65535.0f, 3.0f, 65535.0f), vec3(0.9f, 0.2f, 0.99f),
                                              vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f),
-                                             vec2(0.6f, 0.4f));
+                                             vec2(0.6f, 0.4f), vec4(0.0f));
                  SeenFoam seen = seen_foam(p, 40.0f * vec2(vv.x, nn.y), vec3(0.1f * cc, 0.2f * cc, 0.0f), ww,
                                            bb, aa, ll);
                  FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 0.1f * cc, 10.0f * bb);
                  return vec4(seen.opacity, seen.opacity* seen.white, noise.shown, noise.variance + seen.slope);)
+    PELAGIC_BOTH(foam_picture,
+                 FoamPattern p = FoamPattern(vec3(65535.0f, 3.0f, 65535.0f), vec3(0.9f, 0.2f, 0.99f),
+                                             vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f),
+                                             vec2(0.6f, 0.4f), vec4(16.0f, 0.11f, 0.3f, 0.99f));
+                 FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 10.0f * cc, 0.0f);
+                 return vec4(foam_opacity_in(noise, ww, bb), noise.shown, noise.variance, 0.0f);)
     PELAGIC_BOTH(whole_sea,
                  SeaTerms t = sea_radiance(vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),
                                            SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f,
@@ -182,7 +198,7 @@ template <class Of>
 class OnBoth {
   public:
     explicit OnBoth(int lookups, bool exact)
-        : map_(test_map()), functions_(map_), given_(inputs()), choice_{} {
+        : map_(test_map()), picture_(test_picture()), functions_(map_, picture_), given_(inputs()), choice_{} {
         choice_.sky_quality = lookups == 1   ? SkyQuality::One
                               : lookups == 9 ? SkyQuality::Nine
                                              : SkyQuality::Integral;
@@ -211,6 +227,13 @@ class OnBoth {
         const GlTexture texture;
         upload_map(texture);
         glUniform1i(program.uniform("sky_map"), 3);
+        const GlTexture picture;
+        glActiveTexture(GL_TEXTURE4);
+        glBindTexture(GL_TEXTURE_2D, picture.name());
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, picture_.side, picture_.rows(), 0, GL_RED, GL_FLOAT,
+                     picture_.texels.data());
+        glUniform1i(program.uniform("foam_image"), 4);
         const auto answers = gpu::run(program, std::span(given_).first(count * kTexels), kTexels);
         std::vector<float> errors;
         Errors of;
@@ -275,6 +298,7 @@ class OnBoth {
     }
 
     SkyMap map_;
+    FoamImage picture_;
     Of functions_;
     std::vector<glm::vec4> given_;
     LightingChoice choice_;
@@ -292,7 +316,8 @@ constexpr float kContracted = 3e-4f, kLookedUp = 4e-3f, kEdge = 4e-3f;
 
 TEST(LightingOnTheGpu, IsCPlusPluses) {
     const SkyMap map = test_map();
-    both::Functions<9, true> of(map);
+    const FoamImage picture = test_picture();
+    both::Functions<9, true> of(map, picture);
     OnBoth<both::Functions<9, true>> on(9, true);
     EXPECT_LE(PELAGIC_COMPARE(on, special, 1e-6f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, fresnel, 1e-3f).worst, kBound);
@@ -307,6 +332,8 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     EXPECT_LE(PELAGIC_COMPARE(on, foam, 1e-2f).worst, kBound);
     // A hole's middle is a kink, which makes more of the last digits.
     EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
+    // Between texels a place's last digit counts as many times as there are texels.
+    EXPECT_LE(PELAGIC_COMPARE(on, foam_picture, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));
     // Bright colours go through Oklab and back, which makes more of the last digits: at most a fortieth of a byte's step.
     EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-1f).worst, 1e-3f);
@@ -315,7 +342,8 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
 
 TEST(LightingOnTheGpu, OfOneLookupAndThePapersFresnelIsCPlusPluses) {
     const SkyMap map = test_map();
-    both::Functions<1, false> of(map);
+    const FoamImage picture = test_picture();
+    both::Functions<1, false> of(map, picture);
     OnBoth<both::Functions<1, false>> on(1, false);
     EXPECT_LE(PELAGIC_COMPARE(on, sky, 1e-2f).worst, bound(kLookedUp));
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));

@@ -143,7 +143,7 @@ TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
     packed.pack(frame);
     renderer.upload(packed);
     const DrawOptions options{.lighting = render_options(scene).lighting,
-                              .foam = make_foam(scene, active_foam(scene, sea->residual_coverage())),
+                              .foam = make_foam(scene, make_foam_picture(scene), active_foam(scene, sea->residual_coverage())),
                               .layers = true};
     const auto drawn = [&] {
         renderer.draw(view_at(scene.camera, 5), planned.grid, options);

@@ -132,10 +132,10 @@ class Seas(unittest.TestCase):
     def test_how_foam_looks_needs_no_other_sea_and_no_other_sky(self):
         scene = small_scene()
         sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)
-        before = sea.foam(scene, (0.0, 0.0))
+        before = sea.foam(scene, (0.0, 0.0), light)
         scene.effects.foam_structure, scene.effects.foam_streaks = 0.25, 0.75
         self.assertTrue(sea.serves(scene) and light.serves(scene))
-        self.assertNotEqual(sea.foam(scene, (0.0, 0.0)), before)
+        self.assertNotEqual(sea.foam(scene, (0.0, 0.0), light), before)
 
 
 class LivingFoam(unittest.TestCase):

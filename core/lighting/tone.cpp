@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "core/base/random.h"
+#include "core/lighting/primaries.h"
 
 namespace pelagic {
 namespace tone {
@@ -29,10 +30,14 @@ glm::vec3 dither(glm::ivec2 pixel) {
 }
 
 std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, glm::ivec2 pixel) {
-    const glm::vec3 shown = 255.0f * display_colour(radiance, exposure) + dither(pixel);
+    return dithered_bytes(display_colour(radiance, exposure), pixel);
+}
+
+std::array<std::uint8_t, 3> dithered_bytes(glm::vec3 display, glm::ivec2 pixel) {
+    const glm::vec3 shown = 255.0f * display + dither(pixel);
     std::array<std::uint8_t, 3> bytes{};
     for (int c = 0; c < 3; ++c)
-        bytes[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::min(shown[c], 255.0f));
+        bytes[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::clamp(shown[c], 0.0f, 255.0f));
     return bytes;
 }
 
@@ -53,15 +58,13 @@ glm::dvec3 planckian_xyz(double kelvin) {
 }  // namespace
 
 glm::mat3 white_balance(double kelvin) {
-    // Written by rows. IEC 61966-2-1, and Lam 1985 as in CIECAM97s.
+    // Written by rows: IEC 61966-2-1.
     const glm::dmat3 xyz_of_rgb = glm::transpose(glm::dmat3(0.4123907993, 0.3575843394, 0.1804807884,
                                                             0.2126390059, 0.7151686788, 0.0721923154,
-                                                            0.0193308187, 0.1191947798, 0.9505321522)),
-                     bradford = glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367,
-                                                          0.0389, -0.0685, 1.0296));
-    const glm::dmat3 cones_of_rgb = bradford * xyz_of_rgb;
+                                                            0.0193308187, 0.1191947798, 0.9505321522));
+    const glm::dmat3 cones_of_rgb = bradford() * xyz_of_rgb;
     constexpr double kNeutral = 6500.0;
-    const glm::dvec3 gain = bradford * planckian_xyz(kNeutral) / (bradford * planckian_xyz(kelvin)) - 1.0;
+    const glm::dvec3 gain = bradford() * planckian_xyz(kNeutral) / (bradford() * planckian_xyz(kelvin)) - 1.0;
     glm::dmat3 change(0.0);
     for (int i = 0; i < 3; ++i) change[i][i] = gain[i];
     return glm::mat3(glm::dmat3(1.0) + glm::inverse(cones_of_rgb) * change * cones_of_rgb);

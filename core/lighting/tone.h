@@ -16,6 +16,8 @@ glm::vec3 display_colour(glm::vec3 radiance, float exposure);
 // the steps. The random numbers belong to the pixel, and are the same in every frame and picture; black and white
 // stay what they are.
 std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, glm::ivec2 pixel);
+// Of a display value that is there already.
+std::array<std::uint8_t, 3> dithered_bytes(glm::vec3 display, glm::ivec2 pixel);
 
 // Those random numbers, 0 … 1 (1 excluded), one for each component.
 glm::vec3 dither(glm::ivec2 pixel);

@@ -1,6 +1,7 @@
 #include "plugin/light/light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 
 #include "core/base/constants.h"
 #include "core/lighting/air.h"
+#include "core/lighting/primaries.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -35,9 +37,10 @@ WaterKind kind_of(WaterType type) {
     throw std::invalid_argument("water of no type");
 }
 
-// ITU-R BT.709, whose white is D65.
-constexpr exr::Chromaticities kRec709{
-    .red = {0.64f, 0.33f}, .green = {0.30f, 0.60f}, .blue = {0.15f, 0.06f}, .white = {0.3127f, 0.3290f}};
+exr::Chromaticities chromaticities(const Primaries& of) {
+    const auto xy = [](glm::dvec2 c) { return std::array{static_cast<float>(c.x), static_cast<float>(c.y)}; };
+    return {.red = xy(of.red), .green = xy(of.green), .blue = xy(of.blue), .white = xy(of.white)};
+}
 
 bool is_in_kcd_m2(const Scene& scene) {
     return scene.light.sky == Light{}.sky;
@@ -149,12 +152,16 @@ Scene portable(Scene scene) {
     return scene;
 }
 
-std::string radiance_unit(const Scene& scene) {
-    return is_in_kcd_m2(scene) ? "kcd/m2, linear Rec. 709" : "the sky picture's own, linear";
+std::string radiance_unit(const Scene& scene, bool acescg) {
+    const std::string primaries = acescg ? "ACEScg" : "linear Rec. 709";
+    return is_in_kcd_m2(scene) ? "kcd/m2, " + primaries
+           : acescg            ? "the sky picture's own, " + primaries
+                               : "the sky picture's own, linear";
 }
 
-std::vector<exr::Attribute> radiance_attributes(const Scene& scene) {
-    std::vector<exr::Attribute> attributes{{"unit", radiance_unit(scene)}, {"chromaticities", kRec709}};
+std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg) {
+    std::vector<exr::Attribute> attributes{{"unit", radiance_unit(scene, acescg)},
+                                           {"chromaticities", chromaticities(acescg ? kAcesCg : kRec709)}};
     if (is_in_kcd_m2(scene)) attributes.push_back({"whiteLuminance", 1000.0f});  // [cd/m²]
     return attributes;
 }

@@ -29,10 +29,10 @@ std::string picture_content(const Scene& scene);
 // The scene as files describe it, wherever they are made: pictures by their names without their folders.
 Scene portable(Scene scene);
 // The unit of the sky's radiance, as files say it.
-std::string radiance_unit(const Scene& scene);
+std::string radiance_unit(const Scene& scene, bool acescg = false);
 // What each EXR of the sky's radiance says of it: that unit, the primaries, and where it is known, in OpenEXR's own way,
 // the luminance of (1, 1, 1).
-std::vector<exr::Attribute> radiance_attributes(const Scene& scene);
+std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg = false);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
 // The keys on which the light depends, as text: while it stays the same, sky, water and make_foam_picture() do. How foam looks

@@ -10,6 +10,7 @@
 
 #include "core/base/instruction_set.h"
 #include "core/lighting/air.h"
+#include "core/lighting/primaries.h"
 #include "core/lighting/tone.h"
 #include "core/plan/effects.h"
 #include "core/plan/fingerprint.h"
@@ -113,7 +114,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
     if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
-    for (exr::Attribute& attribute : radiance_attributes(scene)) attributes.push_back(std::move(attribute));
+    for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg)) attributes.push_back(std::move(attribute));
     for (const PictureLayerRow& row : kPictureLayers)
         if (!row.light && context.options.layers[index(row.layer)])
             attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
@@ -147,6 +148,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
              digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + digit(lighting.air) +
              " sky " + digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
         .add("exposure " + number_text(source.exposure_stops))
+        .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
              " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));
     for (const View& view : metered_views(source.scene))
@@ -167,7 +169,16 @@ std::string PictureFingerprint::of(int frame) const {
     return hash.text();
 }
 
-std::string encode_exr(const PictureContext& context, const Picture& picture, int frame) {
+std::string encode_exr(const PictureContext& context, const Picture& rendered, int frame) {
+    Picture converted;
+    if (context.colours.acescg) {
+        converted = rendered;
+        const glm::mat3 to_acescg(conversion(kRec709, kAcesCg));
+        for (SeaRadiance& layers : converted.layers)
+            for (const PictureLayerRow& row : kPictureLayers)
+                if (row.light) layers.*row.light = to_acescg * (layers.*row.light);
+    }
+    const Picture& picture = context.colours.acescg ? converted : rendered;
     const auto width = static_cast<std::ptrdiff_t>(picture.resolution.x);
     const std::ptrdiff_t height = picture.resolution.y;
     std::vector<glm::vec3> sum(picture.layers.size());
@@ -232,16 +243,26 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
     const std::vector<glm::vec3> glaring = glaring_light(camera, picture, frame);
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
+        std::vector<glm::vec3> lights(width);
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = width * row + x;
             const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
             const glm::vec3 light = glaring.empty() ? radiance_of(picture.layers[i]) : glaring[i];
-            const glm::vec3 radiance = light / (alpha > 0.0f ? alpha : 1.0f);
-            const auto shown =
-                display_bytes(balance * radiance, context.exposure, {static_cast<int>(x), row});
+            lights[x] = balance * (light / (alpha > 0.0f ? alpha : 1.0f));
+        }
+        if (context.colours.show) {
+            for (glm::vec3& light : lights) light *= context.exposure;
+            context.colours.show(lights);
+        }
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t i = width * row + x;
+            const glm::ivec2 pixel(static_cast<int>(x), row);
+            const auto shown = context.colours.show ? dithered_bytes(lights[x], pixel)
+                                                    : display_bytes(lights[x], context.exposure, pixel);
             std::copy(shown.begin(), shown.end(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
-            if (has_alpha) bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * alpha));
+            if (has_alpha)
+                bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * picture.alpha[i]));
         }
     });
     return png::encode(

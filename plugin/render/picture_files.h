@@ -1,7 +1,9 @@
 // Pictures as the bytes of files: HDR with its layers, and as a screen shows it.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,12 +15,23 @@ namespace pelagic {
 // NAME.0012.exr: of the shot's name and a frame.
 std::string picture_file(const Shot& shot, int frame, const char* extension);
 
+// The colours of the files: PNGs by a studio's display transform, and EXRs of other primaries.
+struct PictureColours {
+    // From linear Rec. 709, exposed, to display values, in place; null: display_bytes(). Any thread.
+    std::function<void(std::span<glm::vec3>)> show{};
+    std::string shown_by{};  // what that depends on, for fingerprints
+    bool acescg = false;
+};
+
+inline const PictureColours kOwnColours{};
+
 struct PictureContext {
     const Scene& scene;
     const RenderOptions& options;
     const Sky& sky;
     std::string made_of;   // PictureFingerprint::of(the frame)
     float exposure;        // shot_exposure() (plugin/light/exposure.h)
+    const PictureColours& colours = kOwnColours;
     std::string chosen{};  // RunOptions::chosen (plugin/run/run.h), in the EXR's header
 };
 
@@ -35,6 +48,7 @@ struct PictureSource {
     std::string picture_content;  // picture_content(scene)
     double exposure_stops = 0.0;
     bool drawn_by_gpu = false;
+    const PictureColours& colours = kOwnColours;
 };
 class PictureFingerprint {
   public:
@@ -52,8 +66,9 @@ class PictureFingerprint {
 // the sky's units; halves where no value that the light can give is beyond their range, floats for the others. The
 // header says the colours' primaries, the luminance of (1, 1, 1) where it is known, what each layer holds, and what
 // the picture was made of, and has a checksum of the whole file. The light's layers add up to R, G, B.
-// PNG: display_bytes() of the whole at the context's exposure; with
-// alpha of the light divided by it, as the format wants.
+// With PictureColours::acescg all light is that of ACEScg's primaries.
+// PNG: display_bytes() of the whole at the context's exposure, or what PictureColours::show makes of it; with alpha of the light
+// divided by it, as the format wants.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame);
 

@@ -55,6 +55,7 @@ class Pictures final : public Sequence {
                                      .sky = renderer_.sky(),
                                      .made_of = made_of_.of(slot.frame),
                                      .exposure = exposure_,
+                                     .colours = order_.colours,
                                      .chosen = chosen_};
         if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);
         if (slot.wants(1)) slot.files[1] = encode_exr(context, slot.picture, slot.frame);
@@ -91,7 +92,8 @@ RunReport render_files(const PictureOrder& order, const RunOptions& options) {
                         made_of.emplace(PictureSource{.scene = order.scene,
                                                       .options = order.options,
                                                       .picture_content = picture_content(order.scene),
-                                                      .exposure_stops = order.exposure_stops});
+                                                      .exposure_stops = order.exposure_stops,
+                                                      .colours = order.colours});
                         for (const char* suffix : {".png", ".exr"})
                             parts.push_back(
                                 {{shot.name + '.', suffix}, [&](int frame) { return made_of->of(frame); }});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pelagic/scene.h"
+#include "plugin/render/picture_files.h"
 #include "plugin/render/render.h"
 #include "plugin/run/run.h"
 
@@ -15,6 +16,7 @@ struct PictureOrder {
     Scene scene;  // its resolution is the pictures'
     RenderOptions options;
     double exposure_stops = 0.0;  // -kMostStops … kMostStops
+    PictureColours colours{};
 };
 
 // Throws as run() and check_render(), and NotEnoughMemory before anything is written.

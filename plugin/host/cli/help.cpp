@@ -81,6 +81,8 @@ const char* const kRenderFooter =
     "  pelagic render storm.toml --frames 12 --terms sun only the glitter\n"
     "  pelagic render storm.toml --shutter 0.5 --samples 4 --alpha --layers all\n"
     "                                                    for compositing\n"
+    "  pelagic render storm.toml --ocio env --primaries acescg\n"
+    "                                                    in a studio's colours\n"
     "\n"
     "The PNG's exposure is metered from the light and the sea in view, once for the whole shot\n"
     "(at the camera's keys), so that a turning camera keeps its brightness.\n"
@@ -131,6 +133,17 @@ const char* const kAlpha =
 const char* const kLayers =
     "The layers of the EXR beside R, G, B, separated by commas; or all, or none. See below.\n"
     "Default: sun,sky,sea,foam,air";
+
+const char* const kOcio =
+    "The OpenColorIO configuration by which the PNG shows the light, in place of our own curve: the\n"
+    "path of a config.ocio, or env for the one that the variable OCIO names";
+const char* const kOcioDisplay = "Its display. Default: its own";
+const char* const kOcioView = "Its view. Default: the display's own";
+const char* const kOcioSpace =
+    "What it calls linear Rec. 709. Default: by its role aces_interchange, or a usual name";
+const char* const kPrimaries =
+    "The colours of the EXR's light: rec709 or acescg.\n"
+    "Default: rec709";
 
 const char* const kTrustPictures =
     "Don't read the pictures that are there in full: those with the right beginning and end\n"

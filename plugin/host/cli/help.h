@@ -31,6 +31,11 @@ extern const char* const kTerms;
 extern const char* const kShutter;
 extern const char* const kAlpha;
 extern const char* const kLayers;
+extern const char* const kOcio;
+extern const char* const kOcioDisplay;
+extern const char* const kOcioView;
+extern const char* const kOcioSpace;
+extern const char* const kPrimaries;
 extern const char* const kTrustPictures;
 
 extern const char* const kPreview;

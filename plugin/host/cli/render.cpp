@@ -4,19 +4,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "core/lighting/primaries.h"
 #include "core/plan/effects.h"
 #include "core/plan/prepared_scene.h"
 #include "core/plan/spray.h"
 #include "core/scene/text.h"
+#include "plugin/format/ocio/ocio.h"
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
@@ -36,7 +40,7 @@ struct RenderArguments : RunArguments {
     std::optional<int> samples;
     double exposure_stops = 0.0, shutter_frames = 0.0;
     bool alpha = false;
-    std::string size;
+    std::string size, ocio, display, view, space, primaries = "rec709";
 };
 
 // "sun,sea": those alone.
@@ -70,6 +74,38 @@ SkyQuality parse_sky_quality(const std::string& text) {
     throw WrongUsage("sky quality \"" + text + "\"; accepted: one, nine, integral");
 }
 
+PictureColours colours_of(const RenderArguments& arguments) {
+    PictureColours colours;
+    if (arguments.primaries != "rec709" && arguments.primaries != "acescg")
+        throw WrongUsage("primaries \"" + arguments.primaries + "\"; accepted: rec709, acescg");
+    colours.acescg = arguments.primaries == "acescg";
+    if (arguments.ocio.empty()) {
+        for (const auto& [option, value] : {std::pair("--ocio-display", arguments.display),
+                                            {"--ocio-view", arguments.view}, {"--ocio-space", arguments.space}})
+            if (!value.empty()) throw WrongUsage(std::string(option) + " without --ocio; accepted: both");
+        return colours;
+    }
+    std::string config = arguments.ocio;
+    if (config == "env") {
+        const char* const named = std::getenv("OCIO");
+        if (!named || !*named)
+            throw WrongUsage("--ocio env: the variable OCIO names no configuration; accepted: the path of a config.ocio");
+        config = named;
+    }
+    try {
+        const auto view = ocio::make_view({.config = config,
+                                           .display = arguments.display,
+                                           .view = arguments.view,
+                                           .space = arguments.space,
+                                           .aces_of_rec709 = glm::mat3(conversion(kRec709, kAces2065))});
+        colours.show = [view](std::span<glm::vec3> lights) { view->apply(lights); };
+        colours.shown_by = view->name() + ' ' + view->content();
+    } catch (const std::invalid_argument& error) {
+        throw WrongUsage("--ocio \"" + config + "\" " + error.what());
+    }
+    return colours;
+}
+
 PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
     PictureOrder order{.scene = load_shot(arguments.shot, check_scene), .options = {}};
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) order.scene.camera.resolution = size;
@@ -93,6 +129,7 @@ PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
                          number_text(-kMostStops) + " to " + number_text(kMostStops));
     order.exposure_stops = arguments.exposure_stops;
+    order.colours = colours_of(arguments);
     return order;
 }
 
@@ -168,6 +205,11 @@ Verb add_render(CLI::App& program) {
     command->add_option("--shutter", arguments->shutter_frames, help::kShutter)->type_name("FRAMES");
     command->add_flag("--alpha", arguments->alpha, help::kAlpha);
     command->add_option("--layers", arguments->layers, help::kLayers)->type_name("LAYERS");
+    command->add_option("--ocio", arguments->ocio, help::kOcio)->type_name("CONFIG");
+    command->add_option("--ocio-display", arguments->display, help::kOcioDisplay)->type_name("NAME");
+    command->add_option("--ocio-view", arguments->view, help::kOcioView)->type_name("NAME");
+    command->add_option("--ocio-space", arguments->space, help::kOcioSpace)->type_name("NAME");
+    command->add_option("--primaries", arguments->primaries, help::kPrimaries)->type_name("NAME");
     command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
     add_threads(*command, arguments->threads, help::kThreads);
     add_max_memory(*command, arguments->max_memory, help::kMaxMemory);

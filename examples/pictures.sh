@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renders the gallery's pictures from their shots in examples/pictures, on the CPU: the README's five, a sheet of foam near
-# and far, a strip of eight frames a second apart, and a sheet of all presets. Takes some minutes.
+# and far, a strip of eight frames a second apart, and a sheet of all presets, which becomes the add-on's thumbnails. Takes some minutes.
 #   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
@@ -33,4 +33,7 @@ render foam-strip 25-193x24
 sheet 4 foam-strip.jpg "$scratch"/foam-strip.*.png
 "$PELAGIC_ROOT/build/release/pelagic" presets --sheet "$scratch/presets.png"
 sheet 1 presets.jpg "$scratch/presets.png"
+mapfile -t presets < <("$PELAGIC_ROOT/build/release/pelagic" presets | cut -d ' ' -f 1)
+blender -b --factory-startup --python-exit-code 1 --python "$here/preset-thumbnails.py" -- \
+    "$scratch/presets.png" "$PELAGIC_ROOT/addon/pelagic_ocean/thumbnails" "${presets[@]}" >/dev/null
 ls -l "$out"/{presets,noon,low-sun,overcast,storm,spray,from-8-km,foam,foam-strip}.jpg

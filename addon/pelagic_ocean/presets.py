@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Weathers and seas with a name: the core's, and the user's own, which are shot files in Blender's folder for them."""
 
+from pathlib import Path
+
 import bpy
+import bpy.utils.previews
 from bpy.props import StringProperty
 
 from . import compat, ocean
 from .module import pelagic
 from .operators import NeedsOcean
 from .properties import BY_PATH
+
+THUMBNAILS = Path(__file__).parent / "thumbnails"  # examples/preset-thumbnails.py makes them
+
+_icons = None
 
 TABLES = ("sea", "waves", "effects", "light", "water")  # what a preset of the user's keeps
 
@@ -19,6 +26,13 @@ def folder(create=False):
 def own_presets():
     """Name → path."""
     return {path.stem: path for path in sorted(folder().glob("*.toml"))}
+
+
+def icon_of(name):
+    """The icon that shows a preset of the core's."""
+    if name not in _icons:
+        _icons.load(name, str(THUMBNAILS / f"{name}.jpg"), "IMAGE")
+    return _icons[name].icon_id
 
 
 def _with_tables_of(other, scene):
@@ -125,9 +139,12 @@ class PELAGIC_MT_presets(bpy.types.Menu):
         layout = self.layout
         for title, group in (("Wind", "beaufort"), ("Seas", "sea")):
             layout.label(text=title)
+            grid = layout.grid_flow(row_major=True, columns=5, even_columns=True, align=True)
             for preset in pelagic.presets():
                 if preset["group"] == group:
-                    layout.operator(PELAGIC_OT_preset_apply.bl_idname, text=preset["label"]).name = preset["name"]
+                    cell = grid.column(align=True)
+                    cell.template_icon(icon_value=icon_of(preset["name"]), scale=5.0)
+                    cell.operator(PELAGIC_OT_preset_apply.bl_idname, text=preset["label"]).name = preset["name"]
             layout.separator()
         own = own_presets()
         if own:
@@ -153,10 +170,15 @@ CLASSES = (PELAGIC_OT_preset_apply, PELAGIC_OT_preset_save, PELAGIC_OT_preset_de
 
 
 def register():
+    global _icons
+    _icons = bpy.utils.previews.new()
     for made in CLASSES:
         bpy.utils.register_class(made)
 
 
 def unregister():
+    global _icons
+    bpy.utils.previews.remove(_icons)
+    _icons = None
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

@@ -42,20 +42,23 @@ def _foam(tree, asked):
     z = tree.mix(asked["Is Picture"], foam_pattern(tree, place, asked["Age"], asked["Streaks"]), picture)
     logit = z * (A + B * z * z)
     rank = 1.0 / (1.0 + (-logit.at_least(-60.0)).exp())  # the share of the sea where the pattern is lower
-    # Foam is where rank > 1 − coverage, with an edge as soft as there is room for: its mean stays.
-    room = 0.5 * coverage * (1.0 - coverage)
-    beyond = rank - (1.0 - coverage)
-    mask = tree.map_range(beyond, -room, room)
+    beyond = rank - (1.0 - coverage)  # foam is where that is above 0
     fresh = (asked["Active"] / coverage).clamped()
     opacity = tree.mix(fresh, asked["Old Opacity"], asked["Fresh Opacity"]).at_least(1e-3)
-    # Thickest in its middle, bubbles over water at its edge: ∫ x^(1/d − 1) dx = d.
-    thickness = tree.math("POWER", (beyond / coverage).clamped(), 1.0 / opacity - 1.0)
+    # Thickest in its middle, bubbles over water at its edge, x^(1/d − 1), whose mean over the foam is d. An opaque one has an edge, which
+    # the mean over ± room softens; its own mean stays.
+    room = 0.15 * coverage * (1.0 - coverage)
+
+    def up_to(place):
+        inside = tree.math("POWER", (place / coverage).clamped(), 1.0 / opacity)
+        return coverage * opacity * inside + (place - coverage).at_least(0.0)
+    thickness = (up_to(beyond + room) - up_to(beyond - room)) / (2.0 * room)
 
     away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
     detail = asked["Structure"] / (1.0 + away * away)
     there = asked["Coverage"].above(0.0)  # nothing where there is none
     hidden = there * opacity * coverage
-    return {"Foam": tree.mix(detail, hidden, there * mask * thickness), "Hidden": hidden,
+    return {"Foam": tree.mix(detail, hidden, there * thickness), "Hidden": hidden,
             "Color": tree.mix(fresh * asked["Fresh Opacity"] / opacity, asked["Old Color"], asked["Fresh Color"])}
 
 

@@ -16,6 +16,8 @@
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/surface/footprint_levels.h"
+#include "plugin/light/light.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -119,6 +121,11 @@ bool shows_open_sea(const Surface& surface) {
     return true;
 }
 
+SeaMesh open_sea(ProjectedGrid grid) {
+    std::vector<std::uint32_t> triangles = projected_grid_triangles({grid.columns, grid.rows});
+    return {.points = std::move(grid), .height_m = {}, .normal = {}, .triangles = std::move(triangles)};
+}
+
 void cut_to_square(double half_side_m, SeaMesh& mesh) {
     for (const int axis : {0, 1})
         for (const double sign : {1.0, -1.0})
@@ -136,7 +143,7 @@ DrawnSea::DrawnSea(const PreparedScene& prepared, bool has_levels)
         cage_ = make_surface(scene, prepared.extent);
         coarse_surface(scene, prepared.extent)->points_at(scene.shot.first_frame, coarse_);
         made_of_ = (has_grid_ ? "cage in the sea " : "cage ") +
-                   canonical(scene, key_parts(KeyPart::Cage));
+                   canonical(portable(scene), key_parts(KeyPart::Cage));
     } else if (!has_grid_) {
         has_grid_ = true;
         half_side_m_ = 0.5 * scene.surface.size_m;
@@ -193,12 +200,14 @@ double DrawnSea::finest_cage_pixel_m(std::span<const SeaView> seen) const {
     return finest_m;
 }
 
-void DrawnSea::lay_out(const SeaView& seen, SeaMesh& mesh) const {
+void DrawnSea::lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double> cell_px) const {
     mesh.height_m.clear();
     mesh.normal.clear();
     if (has_grid_) {
         const ProjectedGridSize before{mesh.points.columns, mesh.points.rows};
-        mesh.points = projected_grid(seen.view, grid_);
+        ProjectedGridOptions options = grid_;
+        options.cell_px = cell_px.value_or(grid_.cell_px);
+        mesh.points = projected_grid(seen.view, options);
         const ProjectedGridSize size{mesh.points.columns, mesh.points.rows};
         if (size != before) mesh.triangles = projected_grid_triangles(size);
     } else {
@@ -252,9 +261,12 @@ void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
     }
 }
 
-bool DrawnSea::has_sea_at(glm::dvec2 place_m) const {
-    if (half_side_m_) return std::max(std::abs(place_m.x), std::abs(place_m.y)) <= *half_side_m_;
-    return has_grid_;
+bool DrawnSea::may_be_under_water(const View& view) const {
+    const glm::dvec2 place_m(view.position_m);
+    const bool has_sea = half_side_m_
+                             ? std::max(std::abs(place_m.x), std::abs(place_m.y)) <= *half_side_m_
+                             : has_grid_;
+    return has_sea && is_among_waves(view, grid_);
 }
 
 std::size_t DrawnSea::surface_bytes(std::size_t points) const {

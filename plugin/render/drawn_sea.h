@@ -32,6 +32,9 @@ struct SeaMesh {
     std::vector<std::uint32_t> triangles;
 };
 
+// The open sea's.
+SeaMesh open_sea(ProjectedGrid grid);
+
 // A view of the camera and the frame whose mesh it sees: a cage may be as fine as that frame's camera sees it.
 struct SeaView {
     View view;
@@ -54,11 +57,12 @@ class DrawnSea {
     Needs needs(std::span<const SeaView> seen) const;
     Needs needs(const SeaView& seen) const { return needs(std::span(&seen, 1)); }
 
-    // The memory of `mesh` is used again. No points and no triangles where there is no sea to be seen.
-    void lay_out(const SeaView& seen, SeaMesh& mesh) const;
+    // The memory of `mesh` is used again. No points and no triangles where there is no sea to be seen. cell_px: of the
+    // projected grid, where that isn't the scene's.
+    void lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double> cell_px = {}) const;
 
-    // Whether waves may be over a camera there: false where nothing but air is.
-    bool has_sea_at(glm::dvec2 place_m) const;
+    // Whether the flat sea's waves may be over that camera: they are nowhere but where the sea is.
+    bool may_be_under_water(const View& view) const;
 
     // What its meshes hold beside their points [bytes], for so many of them.
     std::size_t surface_bytes(std::size_t points) const;

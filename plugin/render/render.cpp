@@ -130,8 +130,7 @@ class RendererOf final : public Impl {
 
   private:
     bool may_be_wet(double frame) const {
-        const View view = view_at(scene_.camera, frame);
-        return drawn_.has_sea_at(glm::dvec2(view.position_m)) && is_among_waves(view, drawn_.grid_options());
+        return drawn_.may_be_under_water(view_at(scene_.camera, frame));
     }
     bool has_data() const { return data_components(options_.layers) > 0; }
     glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }

@@ -105,6 +105,15 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
         return foam_level_blend(foam, foam_footprint_m(grid.pixel_m[i], glm::length(grid.pixel_axis_m[i])))
             .level;
     };
+    // Of points that are those of no grid each has its cell's box.
+    for (std::size_t i = 0; grid.columns == 0 && i < grid.rest_m.size(); ++i) {
+        if (i % 4096 == 0) stop_if(cancel);
+        const double reach_m = std::max(grid.cell_m[i], glm::length(grid.cell_axis_m[i]));
+        const glm::dvec2 at(grid.rest_m[i]);
+        const int finest = level_at(i);
+        for (int level = finest; level <= std::min(finest + 2, FoamPlan::kLevels - 1); ++level)
+            take(level, at - reach_m, at + reach_m);
+    }
     for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
         stop_if(cancel);
         for (std::size_t column = 0; column + 1 < stride; ++column) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -96,6 +97,17 @@ class Cut {
     std::unordered_map<std::uint64_t, std::uint32_t> made_;  // by the ends of the side that is cut
 };
 
+// Of polygons over points that begin at `first`.
+void add_triangles(const Faces& faces, std::uint32_t first, std::vector<std::uint32_t>& triangles) {
+    const std::int32_t* corner = faces.indices.data();
+    for (const std::int32_t corners : faces.counts) {
+        for (std::int32_t i = 2; i < corners; ++i)
+            for (const std::int32_t at : {corner[0], corner[i - 1], corner[i]})
+                triangles.push_back(first + static_cast<std::uint32_t>(at));
+        corner += corners;
+    }
+}
+
 // A cage as finely as it takes to know how near it is.
 std::shared_ptr<const RestSurface> coarse_surface(Scene scene, const Extent& extent) {
     constexpr double kFaces = 65536.0;
@@ -141,7 +153,11 @@ DrawnSea::DrawnSea(const PreparedScene& prepared, bool has_levels)
     const Scene& scene = prepared.scene;
     if (scene.surface.kind == SurfaceKind::Cage) {
         cage_ = make_surface(scene, prepared.extent);
-        coarse_surface(scene, prepared.extent)->points_at(scene.shot.first_frame, coarse_);
+        const auto coarse = coarse_surface(scene, prepared.extent);
+        coarse->points_at(scene.shot.first_frame, coarse_);
+        Faces faces;
+        coarse->faces_at(scene.shot.first_frame, faces);
+        add_triangles(faces, 0, coarse_triangles_);
         made_of_ = (has_grid_ ? "cage in the sea " : "cage ") +
                    canonical(portable(scene), key_parts(KeyPart::Cage));
     } else if (!has_grid_) {
@@ -250,18 +266,10 @@ void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
     if (first == 0) mesh.triangles.clear();
     Faces faces;
     cage_->faces_at(seen.frame, faces);
-    const auto at = [&](std::size_t corner) {
-        return static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(faces.indices[corner]);
-    };
-    std::size_t corner = 0;
-    for (const std::int32_t corners : faces.counts) {
-        for (std::int32_t i = 2; i < corners; ++i)
-            mesh.triangles.insert(mesh.triangles.end(), {at(corner), at(corner + i - 1), at(corner + i)});
-        corner += static_cast<std::size_t>(corners);
-    }
+    add_triangles(faces, static_cast<std::uint32_t>(first), mesh.triangles);
 }
 
-bool DrawnSea::may_be_under_water(const View& view) const {
+bool DrawnSea::may_be_under_waves(const View& view) const {
     const glm::dvec2 place_m(view.position_m);
     const bool has_sea = half_side_m_
                              ? std::max(std::abs(place_m.x), std::abs(place_m.y)) <= *half_side_m_
@@ -269,12 +277,42 @@ bool DrawnSea::may_be_under_water(const View& view) const {
     return has_sea && is_among_waves(view, grid_);
 }
 
+std::optional<double> DrawnSea::cage_above(const View& view) const {
+    const glm::dvec2 eye(glm::dvec2(view.position_m) - coarse_.origin_m);
+    const auto cross = [](glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; };
+    std::optional<double> lowest_m;
+    bool is_met_from_below = false;
+    for (std::size_t t = 0; t + 2 < coarse_triangles_.size(); t += 3) {
+        std::array<glm::dvec2, 3> from{};
+        for (int i = 0; i < 3; ++i) from[i] = coarse_.rest_m[coarse_triangles_[t + i]] - eye;
+        const glm::dvec3 parts(cross(from[1], from[2]), cross(from[2], from[0]), cross(from[0], from[1]));
+        const double twice_area = parts.x + parts.y + parts.z;
+        if (twice_area == 0.0 || glm::any(glm::lessThan(parts * twice_area, glm::dvec3(0.0)))) continue;
+        double height_m = 0.0;
+        for (int i = 0; i < 3; ++i)
+            height_m += parts[i] / twice_area * coarse_.height_m[coarse_triangles_[t + i]];
+        if (!(height_m > view.position_m.z) || (lowest_m && *lowest_m <= height_m)) continue;
+        lowest_m = height_m;
+        is_met_from_below = twice_area > 0.0;
+    }
+    return is_met_from_below ? lowest_m : std::nullopt;
+}
+
+template <class T>
+void DrawnSea::refuse_under_water(const Frame<T>& state, const Scene& scene, double frame) const {
+    const View view = view_at(scene.camera, frame);
+    if (const auto surface_m = cage_above(view)) throw_under_water(scene, frame, *surface_m);
+    if (may_be_under_waves(view)) pelagic::refuse_under_water(state, scene, frame, grid_);
+}
+template void DrawnSea::refuse_under_water(const Frame<float>&, const Scene&, double) const;
+template void DrawnSea::refuse_under_water(const Frame<double>&, const Scene&, double) const;
+
 std::size_t DrawnSea::surface_bytes(std::size_t points) const {
     if (!cage_) return 0;
     const SurfaceBytes bytes = cage_->bytes(points, sizeof(double));
     // And what the mesh has of each point beside those of a grid.
     return bytes.held + bytes.making + points * (2 * sizeof(double) + sizeof(float) + sizeof(glm::vec3)) +
-           coarse_.rest_m.size() * 8 * sizeof(double);
+           coarse_.rest_m.size() * 11 * sizeof(double);
 }
 
 }  // namespace pelagic

@@ -16,6 +16,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rest_surface.h"
 #include "core/surface/view.h"
+#include "core/waves/frame.h"
 #include "pelagic/scene.h"
 
 namespace pelagic {
@@ -62,7 +63,12 @@ class DrawnSea {
     void lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double> cell_px = {}) const;
 
     // Whether the flat sea's waves may be over that camera: they are nowhere but where the sea is.
-    bool may_be_under_water(const View& view) const;
+    bool may_be_under_waves(const View& view) const;
+    // The height [m] of the cage's surface at rest over a camera whose way up meets it from below: it is in the pool.
+    std::optional<double> cage_above(const View& view) const;
+    // As under_water.h has it, for whatever is drawn.
+    template <class T>
+    void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame) const;
 
     // What its meshes hold beside their points [bytes], for so many of them.
     std::size_t surface_bytes(std::size_t points) const;
@@ -78,7 +84,9 @@ class DrawnSea {
     bool has_grid_ = true;
     std::optional<double> half_side_m_;  // of the patch that is all that there is
     std::shared_ptr<const RestSurface> cage_;
-    RestPoints<double> coarse_;  // of the cage: how near an eye comes
+    // Of the cage: how near an eye comes, and whether it is below.
+    RestPoints<double> coarse_;
+    std::vector<std::uint32_t> coarse_triangles_;
     std::string made_of_;
 };
 

@@ -25,7 +25,6 @@
 #include "plugin/render/passes.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
-#include "plugin/render/under_water.h"
 
 namespace pelagic {
 
@@ -121,7 +120,7 @@ class RendererOf final : public Impl {
             for (const PicturePass& pass : passes_of(scene_.camera, frames[i], options_).all) {
                 if (!may_be_wet(pass.frame)) continue;
                 set_time(pass.frame, watch);
-                refuse_under_water(sea_.frame(), scene_, pass.frame, drawn_.grid_options());
+                drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
                 if (watch.progress)
                     watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
                 stop_if(watch.cancel);
@@ -130,7 +129,8 @@ class RendererOf final : public Impl {
 
   private:
     bool may_be_wet(double frame) const {
-        return drawn_.may_be_under_water(view_at(scene_.camera, frame));
+        const View view = view_at(scene_.camera, frame);
+        return drawn_.cage_above(view) || drawn_.may_be_under_waves(view);
     }
     bool has_data() const { return data_components(options_.layers) > 0; }
     glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }
@@ -175,8 +175,7 @@ class RendererOf final : public Impl {
     // Of large pictures each step takes tenths of a second.
     void begin(const PicturePass& pass, const BuildWatch& watch) {
         set_time(pass.frame, watch);
-        if (may_be_wet(pass.frame))
-            refuse_under_water(sea_.frame(), scene_, pass.frame, drawn_.grid_options());
+        drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
         view_ = view_of(scene_.camera, pass);
         // Before all of the lens the air is that before its middle.
         const double height_m = view_at(scene_.camera, pass.frame).position_m.z;

@@ -22,7 +22,6 @@
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/render/spray_map.h"
-#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -211,8 +210,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     Frame<float> state(sea);
     state.set(planned.scene.shot.time_s(planned.frame));
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
-    if (planned.drawn->may_be_under_water(view))
-        refuse_under_water(state, planned.scene, planned.frame, grid);
+    planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     if (lighting.spray) {
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x));
         light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));

@@ -448,7 +448,7 @@ class Preview {
         if (sky_ && metered_wind_mps_ != controls_.scene.sea.wind_speed_mps) meter();
         sea_.ask(controls_.scene);
         const View view = view_now();
-        const bool may_be_wet = frame_ == nullptr || frame_->build->drawn->may_be_under_water(view);
+        const bool may_be_wet = frame_ == nullptr || frame_->build->drawn->may_be_under_waves(view);
         const auto only_if = [&](bool wanted) { return wanted ? std::optional<View>(view) : std::nullopt; };
         has_spray_ = render_options(controls_.scene).lighting.spray;
         sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_));
@@ -459,7 +459,8 @@ class Preview {
         readout_.waited_s = 1e-3 * milliseconds_since(asked_at_);
         readout_.building_sky = skies_.is_busy();
         readout_.message = status.error.empty() ? skies_.error() : status.error;
-        is_under_water_ = sea_.water_over_eye().has_value();
+        is_under_water_ = sea_.water_over_eye().has_value() ||
+                          (frame_ != nullptr && frame_->build->drawn->cage_above(view).has_value());
         if (readout_.message.empty() && is_under_water_)
             readout_.message =
                 "the camera is under water, which can't be drawn: raise it (E), or wait for the wave to pass";

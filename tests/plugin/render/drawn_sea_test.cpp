@@ -327,6 +327,33 @@ TEST(DrawnSea, WhereNoSeaIsACameraMayBeLow) {
     EXPECT_THROW(picture_of(scene), std::invalid_argument);
 }
 
+// A camera below the pool is in it; beside it, or under a lip whose lower side is the first that it meets, it is not.
+TEST(DrawnSea, ACameraInThePoolIsRefused) {
+    Scene scene = pool(calm(small_scene()), kPool);
+    const auto is_refused = [&](const glm::dvec3& from) {
+        scene.camera.position_m = from;
+        scene.camera.look_at_m = from + glm::dvec3(1.0, 0.0, 0.0);
+        const DrawnSea drawn(*prepare(scene), true);
+        EXPECT_EQ(drawn.cage_above(view_at(scene.camera, 1)).has_value(), [&] {
+            try {
+                picture_of(scene);
+                return false;
+            } catch (const std::invalid_argument& error) {
+                EXPECT_NE(std::string(error.what()).find("under water"), std::string::npos);
+                return true;
+            }
+        }());
+        return drawn.cage_above(view_at(scene.camera, 1)).has_value();
+    };
+    EXPECT_TRUE(is_refused({1.0, 1.0, 7.9}));
+    EXPECT_FALSE(is_refused({1.0, 1.0, 8.1}));
+    EXPECT_FALSE(is_refused({7.0, 1.0, 7.9}));
+    std::array<glm::dvec3, 4> lower_side = kPool;
+    std::swap(lower_side[1], lower_side[3]);
+    scene = pool(scene, lower_side);
+    EXPECT_FALSE(is_refused({1.0, 1.0, 7.9}));
+}
+
 // Sides that two triangles share are cut in the same points, and the area is what is left of the square.
 TEST(DrawnSea, ACutLeavesNoGaps) {
     SeaMesh mesh;

@@ -367,9 +367,10 @@ void add_surface(Built& out) {
              .key_parts = key_parts(KeyPart::Cage)}),
         row<&Surface::beyond>(
             {.name = "beyond",
-             .help = "in pictures, what lies round the patch or the cage: the open sea to the horizon, at z = 0, or "
-                     "nothing, so that the sky is behind it; by-kind is the sea for a patch and nothing for a "
-                     "cage. The other kinds reach the horizon themselves. Meshes and maps don't know it",
+             .help =
+                 "in pictures, what lies round the patch or the cage: the open sea to the horizon, at z = 0, or "
+                 "nothing, so that the sky is behind it; by-kind is the sea for a patch and nothing for a "
+                 "cage. The other kinds reach the horizon themselves. Meshes and maps don't know it",
              // What pictures draw is in their fingerprints (plugin/render/drawn_sea.h), where it makes a difference.
              .key_parts = key_parts(KeyPart::Choice)}));
 }

@@ -76,8 +76,7 @@ class Cut {
         if (!is_new) return found->second;
         found->second = static_cast<std::uint32_t>(points_.rest_m.size());
         const double from = points_.rest_m[a][axis_], to = points_.rest_m[b][axis_];
-        const double share =
-            (static_cast<double>(sign_) * static_cast<double>(most_) - from) / (to - from);
+        const double share = (static_cast<double>(sign_) * static_cast<double>(most_) - from) / (to - from);
         const auto mix = [&](auto& values) {
             const auto first = values[a], second = values[b];
             values.push_back(first + (second - first) * static_cast<float>(share));
@@ -158,8 +157,8 @@ DrawnSea::DrawnSea(const PreparedScene& prepared, bool has_levels)
         Faces faces;
         coarse->faces_at(scene.shot.first_frame, faces);
         add_triangles(faces, 0, coarse_triangles_);
-        made_of_ = (has_grid_ ? "cage in the sea " : "cage ") +
-                   canonical(portable(scene), key_parts(KeyPart::Cage));
+        made_of_ =
+            (has_grid_ ? "cage in the sea " : "cage ") + canonical(portable(scene), key_parts(KeyPart::Cage));
     } else if (!has_grid_) {
         has_grid_ = true;
         half_side_m_ = 0.5 * scene.surface.size_m;
@@ -227,7 +226,8 @@ void DrawnSea::lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double>
         const ProjectedGridSize size{mesh.points.columns, mesh.points.rows};
         if (size != before) mesh.triangles = projected_grid_triangles(size);
     } else {
-        mesh.points = {.origin_m = glm::dvec2(seen.view.position_m), .curvature_per_m = grid_.curvature_per_m};
+        mesh.points = {.origin_m = glm::dvec2(seen.view.position_m),
+                       .curvature_per_m = grid_.curvature_per_m};
         mesh.triangles.clear();
     }
     if (half_side_m_) cut_to_square(*half_side_m_, mesh);
@@ -247,22 +247,20 @@ void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
     for (const glm::dvec3& normal : cage.normal) mesh.normal.emplace_back(normal);
     for (auto* numbers : {&to.cell_m, &to.pixel_m}) numbers->resize(count);
     for (auto* places : {&to.rest_m, &to.cell_axis_m, &to.pixel_axis_m}) places->resize(count);
-    const double least_m =
-        grid_.has_levels ? first_level_m(finest_cage_pixel_m(std::span(&seen, 1))) : 0.0;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, cage.rest_m.size(), 1024),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const glm::dvec2 rest_m = cage.origin_m + cage.rest_m[i] - to.origin_m;
-                View above = seen.view;
-                above.position_m.z -= cage.height_m[i];
-                const PixelFootprint<double> pixel = pixel_at_rest(above, grid_, rest_m);
-                to.rest_m[first + i] = glm::vec2(rest_m);
-                to.cell_m[first + i] = static_cast<float>(std::max(cage.cell_m[i], least_m));
-                to.pixel_m[first + i] = static_cast<float>(std::max(pixel.width, least_m));
-                to.pixel_axis_m[first + i] = glm::vec2(pixel.axis_x, pixel.axis_y);
-            }
-        });
+    const double least_m = grid_.has_levels ? first_level_m(finest_cage_pixel_m(std::span(&seen, 1))) : 0.0;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cage.rest_m.size(), 1024),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              const glm::dvec2 rest_m = cage.origin_m + cage.rest_m[i] - to.origin_m;
+                              View above = seen.view;
+                              above.position_m.z -= cage.height_m[i];
+                              const PixelFootprint<double> pixel = pixel_at_rest(above, grid_, rest_m);
+                              to.rest_m[first + i] = glm::vec2(rest_m);
+                              to.cell_m[first + i] = static_cast<float>(std::max(cage.cell_m[i], least_m));
+                              to.pixel_m[first + i] = static_cast<float>(std::max(pixel.width, least_m));
+                              to.pixel_axis_m[first + i] = glm::vec2(pixel.axis_x, pixel.axis_y);
+                          }
+                      });
     if (first == 0) mesh.triangles.clear();
     Faces faces;
     cage_->faces_at(seen.frame, faces);
@@ -271,9 +269,8 @@ void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
 
 bool DrawnSea::may_be_under_waves(const View& view) const {
     const glm::dvec2 place_m(view.position_m);
-    const bool has_sea = half_side_m_
-                             ? std::max(std::abs(place_m.x), std::abs(place_m.y)) <= *half_side_m_
-                             : has_grid_;
+    const bool has_sea =
+        half_side_m_ ? std::max(std::abs(place_m.x), std::abs(place_m.y)) <= *half_side_m_ : has_grid_;
     return has_sea && is_among_waves(view, grid_);
 }
 

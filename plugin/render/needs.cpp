@@ -120,15 +120,16 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the camera's grid of points",
                  points * (kPointBytes<T> + (needs_motion(options.layers) ? 3 * sizeof(T) : 0)),
                  "raise surface.cell_px, or ask for a smaller picture (--size)");
-        if (sampled.surface.kind == SurfaceKind::Cage)
-            need.add("the cage's surface",
-                     DrawnSea(*plan.from, false).surface_bytes(points) + points * 3 * sizeof(T),
-                     "lower surface.cage_level, or raise surface.cell_px");
         const glm::ivec2 samples = sampled.camera.resolution;
         const auto rows =
             static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
-        need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
+        const std::size_t at_hand = rows * static_cast<std::size_t>(samples.x);
+        need.add("the pixels at hand", at_hand * kSampleBytes<T>,
                  "ask for a smaller picture (--size) or fewer --samples");
+        if (sampled.surface.kind == SurfaceKind::Cage)
+            need.add("the cage's surface",
+                     DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
+                     "lower surface.cage_level, or raise surface.cell_px");
     });
     if (options.lighting.spray)
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),

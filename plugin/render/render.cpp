@@ -511,7 +511,7 @@ class RendererOf final : public Impl {
     PicturePass pass_;
     int parts_ = 0, frame_ = 0;
     SeaMesh mesh_;
-    T first_pixel_m_ = T(0);  // the finest level that the frame reads
+    T first_pixel_m_ = T(0);                     // the finest level that the frame reads
     std::vector<glm::vec<2, T>> rest_;           // the mesh's own, in T
     std::vector<glm::vec<3, T>> mesh_variance_;  // (σxx, σyy, σxy) of the slopes that cells don't resolve
     std::vector<T> cell_m_;

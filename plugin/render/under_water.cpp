@@ -27,9 +27,9 @@ void throw_under_water(const Scene& scene, double frame, double surface_m) {
     const auto metres = [](double z_m) { return number_text(std::round(z_m * 1e3) / 1e3) + " m"; };
     throw std::invalid_argument(
         std::string(scene.camera.keys.empty() ? "camera.position_m" : "camera.keys") + ": at frame " +
-        number_text(frame) + " the camera is under water: it is at z = " +
-        metres(view_at(scene.camera, frame).position_m.z) + ", and the surface there at z = " +
-        metres(surface_m) +
+        number_text(frame) +
+        " the camera is under water: it is at z = " + metres(view_at(scene.camera, frame).position_m.z) +
+        ", and the surface there at z = " + metres(surface_m) +
         "; pictures are drawn from above the water only: raise the camera, or leave such "
         "frames out");
 }

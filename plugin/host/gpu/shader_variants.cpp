@@ -77,25 +77,17 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
-                                                     "plugin/host/gpu/prelude.glsl",
-                                                     "core/plan/filter.inl",
-                                                     "core/plan/taps.inl",
-                                                     "core/plan/random_tiling.inl",
-                                                     "core/waves/spline.inl",
-                                                     "core/waves/whitecaps.inl",
-                                                     "core/waves/gusts.inl",
-                                                     "core/evaluate/surface.inl",
-                                                     "core/evaluate/rest_normal.inl",
-                                                     "core/waves/trains.inl",
-                                                     "core/evaluate/unresolved.inl",
-                                                     "core/surface/earth.inl",
-                                                     "core/surface/pixel_footprint.inl",
-                                                     "plugin/host/gpu/places.glsl",
-                                                     "plugin/host/gpu/cascades.glsl",
-                                                     "plugin/host/gpu/trains.glsl",
-                                                     "plugin/host/gpu/gusts.glsl",
-                                                     "plugin/host/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{
+        "core/lighting/special.glsl",  "plugin/host/gpu/prelude.glsl",
+        "core/plan/filter.inl",        "core/plan/taps.inl",
+        "core/plan/random_tiling.inl", "core/waves/spline.inl",
+        "core/waves/whitecaps.inl",    "core/waves/gusts.inl",
+        "core/evaluate/surface.inl",   "core/evaluate/rest_normal.inl",
+        "core/waves/trains.inl",       "core/evaluate/unresolved.inl",
+        "core/surface/earth.inl",      "core/surface/pixel_footprint.inl",
+        "plugin/host/gpu/places.glsl", "plugin/host/gpu/cascades.glsl",
+        "plugin/host/gpu/trains.glsl", "plugin/host/gpu/gusts.glsl",
+        "plugin/host/gpu/query.glsl"};
     return files;
 }
 
@@ -159,23 +151,23 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
-    return {query_constants(layout, coverage, options.is_shaped) + lighting_constants(lighting, sky_map_size) +
-                picture_constants(options) + (lives ? foam_constants() : std::string()),
-            is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
-                                       : joined({query_files(),
-                                                 {shape_file(options.is_shaped, kShapeOfVertex), vertex_file(options)}}),
-            joined({query_files(),
-                    {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-                    lighting_files(),
-                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
-                    spray_files(lighting),
-                    {"core/lighting/place.glsl", "plugin/host/gpu/foam_uniforms.glsl",
-                     "plugin/host/gpu/rays.glsl"},
-                    output_files(options),
-                    {"plugin/host/gpu/false_colour.glsl", points_file(options),
-                     shape_file(options.is_shaped, kShapeOfFragment),
-                     "plugin/host/gpu/sea_fragment.glsl"}})};
+    return {
+        query_constants(layout, coverage, options.is_shaped) + lighting_constants(lighting, sky_map_size) +
+            picture_constants(options) + (lives ? foam_constants() : std::string()),
+        is_lit_afterwards(options)
+            ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
+            : joined({query_files(), {shape_file(options.is_shaped, kShapeOfVertex), vertex_file(options)}}),
+        joined(
+            {query_files(),
+             {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+             {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+             lighting_files(),
+             {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+             spray_files(lighting),
+             {"core/lighting/place.glsl", "plugin/host/gpu/foam_uniforms.glsl", "plugin/host/gpu/rays.glsl"},
+             output_files(options),
+             {"plugin/host/gpu/false_colour.glsl", points_file(options),
+              shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {

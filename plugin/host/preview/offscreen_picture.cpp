@@ -67,8 +67,7 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
 
 // The finest footprint of a pixel that shows the sea, or more than any where none does: the least of all triangles
 // that reach into the picture.
-double finest_pixel_in_view(const View& view, const SeaMesh& mesh,
-                            std::span<const glm::vec3> positions) {
+double finest_pixel_in_view(const View& view, const SeaMesh& mesh, std::span<const glm::vec3> positions) {
     const glm::dmat4 clip_from = view.clip_from(glm::dvec3(mesh.points.origin_m, 0.0), kNear_m);
     constexpr int kPlanes = 5;
     std::vector<std::uint8_t> outside(positions.size());  // of which planes, a bit each

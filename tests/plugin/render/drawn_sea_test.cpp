@@ -48,11 +48,13 @@ Scene pool(Scene scene, const std::array<glm::dvec3, 4>& corners_m) {
     scene.surface.beyond = Beyond::ByKind;
     return scene;
 }
-constexpr std::array<glm::dvec3, 4> kPool{glm::dvec3(-6.0, -5.0, 8.0), {6.0, -5.0, 8.0}, {6.0, 5.0, 8.0},
-                                          {-6.0, 5.0, 8.0}};
+constexpr std::array<glm::dvec3, 4> kPool{
+    glm::dvec3(-6.0, -5.0, 8.0), {6.0, -5.0, 8.0}, {6.0, 5.0, 8.0}, {-6.0, 5.0, 8.0}};
 
 std::array<glm::dvec3, 4> square(double half_m) {
-    return {glm::dvec3(-half_m, -half_m, 0.0), {half_m, -half_m, 0.0}, {half_m, half_m, 0.0},
+    return {glm::dvec3(-half_m, -half_m, 0.0),
+            {half_m, -half_m, 0.0},
+            {half_m, half_m, 0.0},
             {-half_m, half_m, 0.0}};
 }
 
@@ -283,10 +285,10 @@ TEST(DrawnSea, IsFiniteInHardCases) {
     struct Pose {
         glm::dvec3 from, to;
     };
-    const std::array poses{Pose{{10.0, 0.0, 12.0}, {10.0, 0.0, 0.0}},    // above an edge
-                           Pose{{10.0, 10.0, 12.0}, {10.0, 10.0, 0.0}},  // above a corner
+    const std::array poses{Pose{{10.0, 0.0, 12.0}, {10.0, 0.0, 0.0}},     // above an edge
+                           Pose{{10.0, 10.0, 12.0}, {10.0, 10.0, 0.0}},   // above a corner
                            Pose{{0.0, -40.0, 14.0}, {0.0, -90.0, 14.0}},  // with it behind
-                           Pose{{0.0, -40.0, -3.0}, {0.0, 0.0, 0.0}},    // lower, where no sea is
+                           Pose{{0.0, -40.0, -3.0}, {0.0, 0.0, 0.0}},     // lower, where no sea is
                            Pose{{0.0, -400.0, 9.0}, {0.0, 0.0, 0.0}}};
     for (const bool is_pool : {false, true})
         for (const Pose& pose : poses) {

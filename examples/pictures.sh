@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders the gallery's pictures from their shots in examples/pictures, on the CPU: the README's five, a sheet of foam near
+# Renders the gallery's pictures from their shots in examples/pictures, on the CPU: those that the README shows, a sheet of foam near
 # and far, a strip of eight frames a second apart, and a sheet of all presets, which becomes the add-on's thumbnails. Takes some minutes.
 #   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
@@ -23,7 +23,7 @@ sheet() {  # COLUMNS JPEG PICTURE…
 render() {  # SHOT FRAMES
     "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$1.toml" --frames "$2" --samples 2 --out "$scratch"
 }
-for shot in noon low-sun overcast storm spray from-8-km; do
+for shot in noon low-sun overcast storm spray from-8-km patch; do
     render $shot 12
     sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
@@ -36,4 +36,4 @@ sheet 1 presets.jpg "$scratch/presets.png"
 mapfile -t presets < <("$PELAGIC_ROOT/build/release/pelagic" presets | cut -d ' ' -f 1)
 blender -b --factory-startup --python-exit-code 1 --python "$here/preset-thumbnails.py" -- \
     "$scratch/presets.png" "$PELAGIC_ROOT/addon/pelagic_ocean/thumbnails" "${presets[@]}" >/dev/null
-ls -l "$out"/{presets,noon,low-sun,overcast,storm,spray,from-8-km,foam,foam-strip}.jpg
+ls -l "$out"/{presets,noon,low-sun,overcast,storm,spray,from-8-km,patch,foam,foam-strip}.jpg

@@ -81,7 +81,8 @@ def _matters(field, settings):
     kind, sized = settings.surface.kind, settings.output.maps or settings.output.volumes or settings.effects.spray or settings.uv_map
     has_size = kind in ("patch", "near-far")
     return {"surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
-            "surface.earth_curvature": kind in ("projected-grid", "near-far")}.get(field.path, True)
+            "surface.earth_curvature": kind in ("projected-grid", "near-far"),
+            "surface.beyond": False}.get(field.path, True)  # of Pelagic's own pictures; here it is horizon
 
 
 def _draw_tables(layout, settings, tables, title):

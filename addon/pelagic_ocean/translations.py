@@ -29,7 +29,7 @@ GERMAN = {
     "Lean": "Vorneigung", "Second order": "Zweite Ordnung",
     "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen",
     "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
-    "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe",
+    "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
     "Visibility": "Sichtweite", "Type": "Wasserart", "Whitecaps": "Schaumkronen", "Whitecap law": "Schaumkronengesetz",
     "Sea warmer than air": "See wärmer als Luft", "Whitecap amount": "Menge der Schaumkronen", "Breaking from": "Brecher ab",
@@ -42,7 +42,7 @@ GERMAN = {
     # Choices
     "Pierson moskowitz": "Pierson-Moskowitz", "Jonswap 1973": "JONSWAP 1973", "Donelan banner": "Donelan-Banner", "File": "Datei",
     "None": "Keine", "Cosine": "Kosinus", "Trochoid": "Trochoide", "Random": "Zufällig", "Periodic": "Periodisch",
-    "Patch": "Ausschnitt", "Projected grid": "Projiziertes Gitter", "Near far": "Nah bis fern", "Cage": "Käfig", "Ocean": "Ozean",
+    "Patch": "Ausschnitt", "Projected grid": "Projiziertes Gitter", "Near far": "Nah bis fern", "Cage": "Käfig", "By kind": "Je nach Art", "Nothing": "Nichts", "Ocean": "Ozean",
     "Coastal": "Küste", "Turbid": "Trüb", "Draft": "Entwurf", "Preview": "Vorschau", "Final": "Endfassung", "Reference": "Referenz",
     "Custom budget": "Eigenes Budget", "Normal": "Normale", "Velocity": "Geschwindigkeit", "Slope variance": "Neigungsvarianz",
     "Displacement": "Auslenkung", "CatmullClark": "Catmull-Clark", "Level set": "Level-Set",

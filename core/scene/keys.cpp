@@ -330,8 +330,8 @@ void add_surface(Built& out) {
              .help =
                  "what is baked: a square patch, or the projected grid of the camera, or a mesh round the camera that is "
                  "fine below it and goes to the horizon with faces that stay, or the projected grid "
-                 "on a sphere that touches z = 0 at the origin, or the limit surface of a cage. Pictures show the open sea to the horizon, whatever stands here; "
-                 "of a planet, with the camera's z as its height",
+                 "on a sphere that touches z = 0 at the origin, or the limit surface of a cage. Pictures show the open sea to the horizon, "
+                 "of a planet with the camera's z as its height, unless beyond says otherwise; cages as they stand",
              .key_parts = key_parts(KeyPart::Surface, KeyPart::Mesh)}),
         row<&Surface::size_m>(
             {.name = "size_m",
@@ -364,7 +364,15 @@ void add_surface(Built& out) {
              .help = "of a cage: how often each of its edges is halved, or adaptive: as finely as the camera "
                      "sees it, in cells of cell_px",
              .range = limits::kCageLevel,
-             .key_parts = key_parts(KeyPart::Cage)}));
+             .key_parts = key_parts(KeyPart::Cage)}),
+        row<&Surface::beyond>(
+            {.name = "beyond",
+             .help =
+                 "in pictures, what lies round the patch or the cage: the open sea to the horizon, at z = 0, or "
+                 "nothing, so that the sky is behind it; by-kind is the sea for a patch and nothing for a "
+                 "cage. The other kinds reach the horizon themselves. Meshes and maps don't know it",
+             // What pictures draw is in their fingerprints (plugin/render/drawn_sea.h), where it makes a difference.
+             .key_parts = key_parts(KeyPart::Choice)}));
 }
 
 void add_camera(Built& out) {

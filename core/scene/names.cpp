@@ -56,6 +56,11 @@ constexpr std::array kSurfaces = std::to_array<Word<SurfaceKind>>({
     {SurfaceKind::Cage, "cage"},
     {SurfaceKind::Planet, "planet"},
 });
+constexpr std::array kBeyond = std::to_array<Word<Beyond>>({
+    {Beyond::ByKind, "by-kind"},
+    {Beyond::Sea, "sea"},
+    {Beyond::Nothing, "nothing"},
+});
 constexpr std::array kInterpolations = std::to_array<Word<CameraInterpolation>>({
     {CameraInterpolation::Linear, "linear"},
     {CameraInterpolation::Smooth, "smooth"},
@@ -155,6 +160,9 @@ std::span<const Word<Tiling>> words_of(Tiling) {
 }
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind) {
     return kSurfaces;
+}
+std::span<const Word<Beyond>> words_of(Beyond) {
+    return kBeyond;
 }
 std::span<const Word<CameraInterpolation>> words_of(CameraInterpolation) {
     return kInterpolations;

@@ -30,6 +30,7 @@ std::span<const Word<SpreadingKind>> words_of(SpreadingKind);
 std::span<const Word<WaveModel>> words_of(WaveModel);
 std::span<const Word<Tiling>> words_of(Tiling);
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind);
+std::span<const Word<Beyond>> words_of(Beyond);
 std::span<const Word<CameraInterpolation>> words_of(CameraInterpolation);
 std::span<const Word<WaterType>> words_of(WaterType);
 std::span<const Word<QualityLevel>> words_of(QualityLevel);

@@ -23,7 +23,9 @@ void check(pelagic_status status, const pelagic_error& error) {
 }
 
 Plan plan_of(const Scene& scene, const TraceOptions& options, int frame) {
-    Plan plan = picture_plan(scene, std::array{frame}, options.picture);
+    Scene open = scene;
+    open.surface.kind = SurfaceKind::ProjectedGrid;  // rays meet the open sea, whatever pictures show
+    Plan plan = picture_plan(open, std::array{frame}, options.picture);
     if (plan.knobs.double_precision)
         throw std::invalid_argument(
             "quality.level: rays find the sea in single precision; accepted: all but reference");

@@ -12,9 +12,9 @@
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
 #include "core/scene/text.h"
-#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/drawn_sea.h"
 #include "plugin/render/glare.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/render.h"
@@ -26,7 +26,7 @@ RenderOptions render_options(const Scene& scene) {
     const QualityRow& quality = quality_of(scene.quality.level);
     RenderOptions options;
     options.lighting.whitecaps = is_on(Effect::Whitecaps, scene);
-    options.lighting.spray = has_spray(scene);
+    options.lighting.spray = has_spray(scene) && shows_open_sea(scene.surface);
     switch (quality.sky) {
         case SkyLookups::One:
             options.lighting.sky_quality = SkyQuality::One;
@@ -48,15 +48,15 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     if (!options.lighting.spray) row_of(Effect::Spray).turn_off(shown);
     auto prepared = prepare(std::move(shown));
     if (frames.empty()) throw std::invalid_argument("a plan of pictures needs at least one frame");
-    std::vector<View> views;
+    std::vector<SeaView> seen;
     for (const int frame : frames)
         for (const PicturePass& pass : passes_of(scene.camera, frame, options).all)
-            views.push_back(view_of(scene.camera, pass));
-    const ProjectedGridNeeds needs = projected_grid_needs(views, projected_grid_options(*prepared));
+            seen.push_back({view_of(scene.camera, pass), frame});
+    const DrawnSea::Needs needs = DrawnSea(*prepared, false).needs(seen);
     Query query = view_query(*prepared, {.products = {},
                                          .finest_cell_m = needs.finest_cell_m,
                                          .finest_pixel_m = needs.finest_pixel_m,
-                                         .points = points_of(needs.size),
+                                         .points = needs.points,
                                          .filter = options.filter});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
@@ -116,15 +116,20 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     MemoryNeed need;
     add_sea(need, plan, threads);
     with_precision(plan.knobs.double_precision, [&]<class T>(T) {
+        const std::size_t points = plan.queries[0].query.points;
         need.add("the camera's grid of points",
-                 plan.queries[0].query.points *
-                     (kPointBytes<T> + (needs_motion(options.layers) ? 3 * sizeof(T) : 0)),
+                 points * (kPointBytes<T> + (needs_motion(options.layers) ? 3 * sizeof(T) : 0)),
                  "raise surface.cell_px, or ask for a smaller picture (--size)");
         const glm::ivec2 samples = sampled.camera.resolution;
         const auto rows =
             static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
-        need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
+        const std::size_t at_hand = rows * static_cast<std::size_t>(samples.x);
+        need.add("the pixels at hand", at_hand * kSampleBytes<T>,
                  "ask for a smaller picture (--size) or fewer --samples");
+        if (sampled.surface.kind == SurfaceKind::Cage)
+            need.add("the cage's surface",
+                     DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
+                     "lower surface.cage_level, or raise surface.cell_px");
     });
     if (options.lighting.spray)
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),

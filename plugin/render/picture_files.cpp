@@ -23,6 +23,7 @@
 #include "plugin/format/png/png.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
+#include "plugin/render/drawn_sea.h"
 #include "plugin/render/glare.h"
 #include "plugin/render/passes.h"
 #include "plugin/run/part.h"
@@ -151,6 +152,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
              " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));
+    if (const DrawnSea drawn(*plan.from, false); !drawn.made_of().empty()) hash.add(drawn.made_of());
     for (const View& view : metered_views(source.scene))
         hash.add(pose_text(view));  // what the exposure comes from
     source_ = hash.text();

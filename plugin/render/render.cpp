@@ -18,14 +18,13 @@
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/pixel_footprint.h"
-#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/drawn_sea.h"
 #include "plugin/render/motion.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
-#include "plugin/render/under_water.h"
 
 namespace pelagic {
 
@@ -56,9 +55,7 @@ class RendererOf final : public Impl {
         : scene_(plan.from->scene),
           options_(options),
           sea_(plan, options.lighting, std::move(sky), watch),
-          grid_options_(projected_grid_options(*plan.from)) {
-        grid_options_.has_levels = plan.queries[kQuery].query.pixel_m.size() > 1;
-    }
+          drawn_(*plan.from, plan.queries[kQuery].query.pixel_m.size() > 1) {}
 
     const Plan& plan() const override { return sea_.plan(); }
     const Sky& sky() const override { return sea_.sky(); }
@@ -121,9 +118,9 @@ class RendererOf final : public Impl {
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
         for (std::size_t i = 0; i < frames.size(); ++i)
             for (const PicturePass& pass : passes_of(scene_.camera, frames[i], options_).all) {
-                if (!is_among_waves(view_at(scene_.camera, pass.frame), grid_options_)) continue;
+                if (!may_be_wet(pass.frame)) continue;
                 set_time(pass.frame, watch);
-                refuse_under_water(sea_.frame(), scene_, pass.frame, grid_options_);
+                drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
                 if (watch.progress)
                     watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
                 stop_if(watch.cancel);
@@ -131,6 +128,10 @@ class RendererOf final : public Impl {
     }
 
   private:
+    bool may_be_wet(double frame) const {
+        const View view = view_at(scene_.camera, frame);
+        return drawn_.cage_above(view) || drawn_.may_be_under_waves(view);
+    }
     bool has_data() const { return data_components(options_.layers) > 0; }
     glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }
 
@@ -174,29 +175,30 @@ class RendererOf final : public Impl {
     // Of large pictures each step takes tenths of a second.
     void begin(const PicturePass& pass, const BuildWatch& watch) {
         set_time(pass.frame, watch);
-        refuse_under_water(sea_.frame(), scene_, pass.frame, grid_options_);
+        drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
         view_ = view_of(scene_.camera, pass);
         // Before all of the lens the air is that before its middle.
         const double height_m = view_at(scene_.camera, pass.frame).position_m.z;
         if (air_.empty() || height_m != air_height_m_) air_ = sea_.air_before(height_m);
         air_height_m_ = height_m;
         stop_if(watch.cancel);
-        lay_out_grid(watch);
-        spray_ = sea_.spray_before(view_, grid_options_);
+        lay_out_mesh(watch);
+        spray_ = sea_.spray_before(view_, drawn_.grid_options());
         stop_if(watch.cancel);
     }
 
-    void lay_out_grid(const BuildWatch& watch) {
-        grid_ = projected_grid(view_, grid_options_);
+    void lay_out_mesh(const BuildWatch& watch) {
+        const SeaView seen{view_, frame_};
+        drawn_.lay_out(seen, mesh_);
         stop_if(watch.cancel);
-        first_pixel_m_ =
-            grid_options_.has_levels
-                ? static_cast<T>(first_level_m(projected_grid_needs(view_, grid_options_).finest_pixel_m))
-                : T(0);
-        const std::size_t count = grid_.rest_m.size();
-        rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
-        cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
-        cell_axis_m_.assign(grid_.cell_axis_m.begin(), grid_.cell_axis_m.end());
+        const ProjectedGrid& grid = mesh_.points;
+        first_pixel_m_ = drawn_.grid_options().has_levels
+                             ? static_cast<T>(first_level_m(drawn_.needs(seen).finest_pixel_m))
+                             : T(0);
+        const std::size_t count = grid.rest_m.size();
+        rest_.assign(grid.rest_m.begin(), grid.rest_m.end());
+        cell_m_.assign(grid.cell_m.begin(), grid.cell_m.end());
+        cell_axis_m_.assign(grid.cell_axis_m.begin(), grid.cell_axis_m.end());
         position_.resize(count);
         Results<T> results;
         results.set(Product::Position, {position_.data()});
@@ -205,7 +207,7 @@ class RendererOf final : public Impl {
             results.set(Product::Velocity, {velocity_.data()});
         }
         evaluate(sea_.frame(), kQuery,
-                 Points<T>{.origin_m = grid_.origin_m,
+                 Points<T>{.origin_m = grid.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
                            .cell_m = {cell_m_.data()},
@@ -214,13 +216,15 @@ class RendererOf final : public Impl {
         stop_if(watch.cancel);
         find_mesh_variance();
         stop_if(watch.cancel);
+        for (std::size_t i = 0; i < mesh_.height_m.size(); ++i)
+            position_[i].z += static_cast<T>(mesh_.height_m[i]);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         for (glm::vec<3, T>& position : position_)
-            position = glm::vec<3, T>(on_earth(glm::dvec3(position), grid_.curvature_per_m));
+            position = glm::vec<3, T>(on_earth(glm::dvec3(position), grid.curvature_per_m));
         for (std::size_t i = 0; i < velocity_.size(); ++i)
             velocity_[i] = glm::vec<3, T>(
-                from_level(glm::dvec3(velocity_[i]), earth_up(glm::dvec2(rest_[i]), grid_.curvature_per_m)));
-        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
+                from_level(glm::dvec3(velocity_[i]), earth_up(glm::dvec2(rest_[i]), grid.curvature_per_m)));
+        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         // Moves the samples that are taken to the middles of the rasteriser's pixels.
         const glm::dvec2 shift = (static_cast<double>(sampling_.stride - 1) - 2.0 * sampling_.first) /
@@ -230,24 +234,21 @@ class RendererOf final : public Impl {
             clip_[i].x += shift.x * clip_[i].w;
             clip_[i].y -= shift.y * clip_[i].w;
         }
-        const ProjectedGridSize size{grid_.columns, grid_.rows};
         stop_if(watch.cancel);
-        if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
-        triangles_size_ = size;
-        raster_.set(clip_, triangles_, raster_size(), sampling_.is_by_pixel);
+        raster_.set(clip_, mesh_.triangles, raster_size(), sampling_.is_by_pixel);
         stop_if(watch.cancel);
     }
 
     // The slopes that the cells leave unresolved, at rest.
     void find_mesh_variance() {
-        const std::size_t count = grid_.rest_m.size();
+        const std::size_t count = mesh_.points.rest_m.size();
         mesh_variance_.resize(count);
         std::vector<T> width_m = cell_m_;
         for (T& width : width_m) width = std::max(width, first_pixel_m_);
         Results<T> results;
         results.set(Product::SlopeVarianceAtRest, {mesh_variance_.data()});
         evaluate(sea_.frame(), kQuery,
-                 Points<T>{.origin_m = grid_.origin_m,
+                 Points<T>{.origin_m = mesh_.points.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
                            .pixel_m = {width_m.data()},
@@ -334,26 +335,30 @@ class RendererOf final : public Impl {
     void find_places(int first_row) {
         const std::size_t count = batch_.sea.size();
         SeenSea<T>& seen = batch_.seen;
-        seen.origin_m = grid_.origin_m;
+        seen.origin_m = mesh_.points.origin_m;
         seen.resize(count);
-        const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
+        const bool is_flat = mesh_.normal.empty();
+        seen.rest_normal.resize(is_flat ? 0 : count);
+        const glm::dvec3 eye = view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
             const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, batch_.sea[i]));
             glm::dvec2 rest(0.0), pixel_axis_m(0.0);
             glm::dvec3 position(0.0);
             double pixel_m = 0.0;
-            glm::dvec3 mesh_variance(0.0);
+            glm::dvec3 mesh_variance(0.0), normal(0.0);
             for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
+                const std::uint32_t vertex = mesh_.triangles[3 * std::size_t{triangle} + corner];
                 rest += weights[corner] * glm::dvec2(rest_[vertex]);
                 position += weights[corner] * glm::dvec3(position_[vertex]);
-                pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
-                pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
+                pixel_m += weights[corner] * static_cast<double>(mesh_.points.pixel_m[vertex]);
+                pixel_axis_m += weights[corner] * glm::dvec2(mesh_.points.pixel_axis_m[vertex]);
                 mesh_variance += weights[corner] * glm::dvec3(mesh_variance_[vertex]);
+                if (!is_flat) normal += weights[corner] * glm::dvec3(mesh_.normal[vertex]);
             }
+            if (!is_flat) seen.rest_normal[i] = glm::vec<3, T>(normal);
             seen.rest[i] = glm::vec<2, T>(rest);
-            seen.up[i] = glm::vec3(earth_up(rest, grid_.curvature_per_m));
+            seen.up[i] = glm::vec3(earth_up(rest, mesh_.points.curvature_per_m));
             const auto pixel = pixel_on_mesh(
                 triangle, first_row, batch_.sea[i],
                 PixelFootprint<double>{.width = pixel_m, .axis_x = pixel_axis_m.x, .axis_y = pixel_axis_m.y});
@@ -428,7 +433,7 @@ class RendererOf final : public Impl {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         Scene pictured = scene_;
         pictured.camera.resolution = picture.resolution;
-        const Motion motion(pictured, frame, glm::dvec3(grid_.origin_m, 0.0));
+        const Motion motion(pictured, frame, glm::dvec3(mesh_.points.origin_m, 0.0));
         tbb::parallel_for(0, rows / n, [&](int row) {
             const std::size_t to = width * (first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
@@ -467,11 +472,11 @@ class RendererOf final : public Impl {
         const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
         glm::dvec3 position(0.0), velocity(0.0);
         for (int corner = 0; corner < 3; ++corner) {
-            const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
+            const std::uint32_t vertex = mesh_.triangles[3 * std::size_t{triangle} + corner];
             position += weights[corner] * glm::dvec3(position_[vertex]);
             if (!velocity_.empty()) velocity += weights[corner] * glm::dvec3(velocity_[vertex]);
         }
-        const glm::dvec3 origin(grid_.origin_m, 0.0);
+        const glm::dvec3 origin(mesh_.points.origin_m, 0.0);
         set(PictureLayer::Depth, glm::dvec1(glm::dot(view_.forward, position + origin - view_.position_m)));
         set(PictureLayer::Position, position + origin);
         if (needs_motion(options_.layers)) set_motion(motion.of({position, 1.0}, velocity));
@@ -496,7 +501,7 @@ class RendererOf final : public Impl {
     Scene scene_;
     RenderOptions options_;
     SeaLight<T> sea_;
-    ProjectedGridOptions grid_options_;
+    DrawnSea drawn_;
     View view_;
     Air air_;  // before that view's eye
     Spray spray_;
@@ -505,11 +510,9 @@ class RendererOf final : public Impl {
     SamplesOfPass sampling_;
     PicturePass pass_;
     int parts_ = 0, frame_ = 0;
-    ProjectedGrid grid_;
-    T first_pixel_m_ = T(0);  // the finest level that the frame reads
-    ProjectedGridSize triangles_size_;
-    std::vector<std::uint32_t> triangles_;       // vertex indices
-    std::vector<glm::vec<2, T>> rest_;           // the grid's own, in T
+    SeaMesh mesh_;
+    T first_pixel_m_ = T(0);                     // the finest level that the frame reads
+    std::vector<glm::vec<2, T>> rest_;           // the mesh's own, in T
     std::vector<glm::vec<3, T>> mesh_variance_;  // (σxx, σyy, σxy) of the slopes that cells don't resolve
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;

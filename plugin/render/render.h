@@ -1,7 +1,7 @@
 // Pictures from the CPU: the sea of a shot through its camera, lit by core/lighting. The same picture that
 // the preview draws, and the one that it is measured against:
 //
-//   projected grid → evaluate() at its points, filtered by their cells → triangles (raster.h) → in each pixel
+//   projected grid, or a cage (drawn_sea.h) → evaluate() at its points, filtered by their cells → triangles (raster.h) → in each pixel
 //   evaluate() again at the place at rest that the pixel shows, filtered by the pixel → shade_sea()
 //
 // and where there is no sea, the sky (core/lighting/background.glsl).

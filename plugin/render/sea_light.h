@@ -38,6 +38,8 @@ struct SeenSea {
     // Of the slopes that the surface on which places were found lacks, at rest, along the view; 0: it lacks none that the
     // pixel shows.
     std::vector<float> mesh_variance;
+    // Normals of the surface at rest, of any length, as in Points; empty: it is flat everywhere.
+    std::vector<glm::vec<3, T>> rest_normal;
 
     std::size_t size() const { return rest.size(); }
     void resize(std::size_t count) {
@@ -50,11 +52,13 @@ struct SeenSea {
         mesh_variance.assign(count, 0.0f);
     }
     Points<T> points() const {
-        return {.origin_m = origin_m,
-                .count = size(),
-                .rest_m = {rest.data()},
-                .pixel_m = {pixel_m.data()},
-                .pixel_axis_m = {pixel_axis_m.data()}};
+        Points<T> points{.origin_m = origin_m,
+                         .count = size(),
+                         .rest_m = {rest.data()},
+                         .pixel_m = {pixel_m.data()},
+                         .pixel_axis_m = {pixel_axis_m.data()}};
+        if (!rest_normal.empty()) points.rest_normal = {rest_normal.data()};
+        return points;
     }
 };
 

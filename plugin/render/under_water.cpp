@@ -23,19 +23,22 @@ std::optional<double> surface_above_camera(const Frame<T>& frame, const View& vi
     return surface_above(frame, 0, view.position_m, has_levels ? first_level_m(finest_m) : finest_m);
 }
 
-template <class T>
-void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
-                        const ProjectedGridOptions& options) {
-    const View view = view_at(scene.camera, frame);
-    const auto surface_m = surface_above_camera(state, view, options);
-    if (!surface_m) return;
+void throw_under_water(const Scene& scene, double frame, double surface_m) {
     const auto metres = [](double z_m) { return number_text(std::round(z_m * 1e3) / 1e3) + " m"; };
     throw std::invalid_argument(
         std::string(scene.camera.keys.empty() ? "camera.position_m" : "camera.keys") + ": at frame " +
-        number_text(frame) + " the camera is under water: it is at z = " + metres(view.position_m.z) +
-        ", and the surface there at z = " + metres(*surface_m) +
+        number_text(frame) +
+        " the camera is under water: it is at z = " + metres(view_at(scene.camera, frame).position_m.z) +
+        ", and the surface there at z = " + metres(surface_m) +
         "; pictures are drawn from above the water only: raise the camera, or leave such "
         "frames out");
+}
+
+template <class T>
+void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
+                        const ProjectedGridOptions& options) {
+    if (const auto surface_m = surface_above_camera(state, view_at(scene.camera, frame), options))
+        throw_under_water(scene, frame, *surface_m);
 }
 
 template std::optional<double> surface_above_camera(const Frame<float>&, const View&,

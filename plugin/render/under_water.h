@@ -20,8 +20,10 @@ template <class T>
 std::optional<double> surface_above_camera(const Frame<T>& frame, const View& view,
                                            const ProjectedGridOptions& options);
 
-// For the shot's camera at a frame whose time `state` has. Throws std::invalid_argument, which says how deep
-// the camera is.
+// Throws std::invalid_argument, which says how deep the shot's camera is under a surface that is so high [m].
+[[noreturn]] void throw_under_water(const Scene& scene, double frame, double surface_m);
+
+// For the shot's camera at a frame whose time `state` has. Throws as above.
 template <class T>
 void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
                         const ProjectedGridOptions& options);

@@ -22,7 +22,7 @@ class Drawn {
     explicit Drawn(const Scene& scene)
         : sea_(std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}))),
           view_(view_at(scene.camera, 1)),
-          grid_(projected_grid(view_, projected_grid_options(*prepare(scene)))) {
+          mesh_(open_sea(projected_grid(view_, projected_grid_options(*prepare(scene))))) {
         options_.lighting = render_options(scene).lighting;
         options_.foam = make_foam(scene, nullptr);
         Frame<float> frame(sea_);
@@ -33,7 +33,7 @@ class Drawn {
         renderer_.upload(packed);
     }
     void draw() {
-        renderer_.draw(view_, grid_, options_);
+        renderer_.draw(view_, mesh_, options_);
         glFinish();
     }
     std::string device() const { return renderer_.device(); }
@@ -41,7 +41,7 @@ class Drawn {
   private:
     std::shared_ptr<const Sea<float>> sea_;
     View view_;
-    ProjectedGrid grid_;
+    SeaMesh mesh_;
     DrawOptions options_;
     SeaRenderer renderer_;
 };

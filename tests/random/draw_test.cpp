@@ -183,6 +183,10 @@ TEST(RandomScene, MeetsEveryKindOfShot) {
         count("a cage as its camera sees it",
               scene.surface.kind == SurfaceKind::Cage && scene.surface.cage_level.is_adaptive);
         count("a planet", scene.surface.kind == SurfaceKind::Planet);
+        count("a patch in nothing",
+              scene.surface.kind == SurfaceKind::Patch && scene.surface.beyond == Beyond::Nothing);
+        count("a cage in the sea",
+              scene.surface.kind == SurfaceKind::Cage && scene.surface.beyond == Beyond::Sea);
         count("a fitted cage", scene.output.mesh_scheme == MeshScheme::CatmullClark);
         const bool has_trains = scene.waves.model == WaveModel::Trochoid;
         count("trains", has_trains && scene.waves.cascades.empty());

@@ -31,6 +31,7 @@ enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class Tiling { Random, Periodic };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
+enum class Beyond { ByKind, Sea, Nothing };
 enum class CameraInterpolation { Linear, Smooth };
 enum class WaterType { Ocean, Coastal, Turbid };
 enum class QualityLevel { Draft, Preview, Final, Reference };
@@ -148,6 +149,7 @@ struct Surface {
     std::string cage_file;        // where the cage was read, or empty; what a shot depends on is the content
     std::shared_ptr<const Cage> cage;  // with SurfaceKind::Cage
     CageLevel cage_level;
+    Beyond beyond = Beyond::ByKind;  // in pictures: what lies round a patch or a cage
 };
 
 struct CameraKey {

@@ -87,6 +87,7 @@ const char* const kRenderFooter =
     "The PNG's exposure is metered from the light and the sea in view, once for the whole shot\n"
     "(at the camera's keys), so that a turning camera keeps its brightness.\n"
     "A frame doesn't depend on other frames or on the number of threads.\n"
+    "surface.beyond decides whether a patch or a cage lies in the open sea or before nothing but sky.\n"
     "camera.f_stop blurs what isn't in focus by the samples, too. camera.white_balance_k and\n"
     "camera.glare are for the PNG; the EXR holds the light itself.\n"
     "\n"

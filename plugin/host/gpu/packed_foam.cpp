@@ -105,6 +105,23 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
         return foam_level_blend(foam, foam_footprint_m(grid.pixel_m[i], glm::length(grid.pixel_axis_m[i])))
             .level;
     };
+    // Of points that are those of no grid each has its cell's box, and where that is long parts of it, as below.
+    for (std::size_t i = 0; grid.columns == 0 && i < grid.rest_m.size(); ++i) {
+        if (i % 4096 == 0) stop_if(cancel);
+        const glm::dvec2 at(grid.rest_m[i]), axis_m(grid.cell_axis_m[i]);
+        const double width_m = static_cast<double>(grid.cell_m[i]);
+        const int finest = level_at(i);
+        for (int level = finest; level <= std::min(finest + 2, FoamPlan::kLevels - 1); ++level) {
+            const double tile_m = std::ldexp(foam.cell_m * FoamPlan::kTileCells, level);
+            const int parts =
+                static_cast<int>(std::clamp(std::ceil(2.0 * glm::length(axis_m) / tile_m), 1.0, 64.0));
+            for (int part = 0; part < parts; ++part) {
+                const glm::dvec2 a = at + axis_m * (2.0 * part / parts - 1.0),
+                                 b = at + axis_m * (2.0 * (part + 1) / parts - 1.0);
+                take(level, glm::min(a, b) - width_m, glm::max(a, b) + width_m);
+            }
+        }
+    }
     for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
         stop_if(cancel);
         for (std::size_t column = 0; column + 1 < stride; ++column) {

@@ -2,6 +2,9 @@
 
 uniform float whitecap_threshold;
 
+// Of the surface that the sea lies on, with kShaped: the includer sets it.
+vec3 rest_normal = vec3(0.0, 0.0, 1.0);
+
 // Footprints are given as width and long axis [m]. Trains follow them however long they are: (width, stretch) as
 // TrainArgs has it.
 vec3 train_footprint(vec3 given, float finest) {
@@ -49,6 +52,9 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     PixelFields f = sums.fields;
     PixelMoments unresolved = possible_moments(sums.unresolved);
     SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dyx);
+    if (kShaped)
+        n = normal_on(SurfaceNormal(rest_normal.x, rest_normal.y, rest_normal.z), f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy,
+                      f.dyx);
     SlopeVariances carried =
         carried_slopes(SlopeVariances(unresolved.xx, unresolved.yy, unresolved.xy), f.dxx, f.dyy, f.dxy, f.dyx);
     vec4 gradient = apart ? sums.breaking : vec4(f.dxx, f.dyy, f.dxy, f.dyx);

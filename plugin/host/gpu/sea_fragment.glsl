@@ -4,6 +4,7 @@ uniform float curvature_per_m;
 
 void main() {
     read_point();
+    read_shape();
     if (kWireframe) {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), vec3(0.0), 1.0);
         return;

@@ -19,7 +19,9 @@ void main() {
     rest_m = rest_in;
     pixel_m = pixel_in;
     mesh_variance = query_mesh_variance(rest_in, cell_in);
-    EarthPoint at = on_earth(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x, curvature_per_m);
+    write_shape();
+    EarthPoint at = on_earth(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x + shape_height_m(),
+                             curvature_per_m);
     vec3 place = vec3(at.x, at.y, at.z);
     from_eye_m = place - vec3(0.0, 0.0, eye_height_m);
     vec4 clip = clip_from_grid * vec4(place, 1.0);

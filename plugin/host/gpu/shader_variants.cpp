@@ -42,6 +42,11 @@ std::vector<std::string_view> spray_files(const LightingChoice& lighting) {
 const char* vertex_file(const DrawOptions& options) {
     return options.for_host ? "plugin/host/gpu/host_vertex.glsl" : "plugin/host/gpu/sea_vertex.glsl";
 }
+const char* shape_file(bool is_shaped, const char* shaped) {
+    return is_shaped ? shaped : "plugin/host/gpu/shape_flat.glsl";
+}
+constexpr const char *kShapeOfVertex = "plugin/host/gpu/shape_vertex.glsl",
+                     *kShapeOfFragment = "plugin/host/gpu/shape_fragment.glsl";
 const char* points_file(const DrawOptions& options) {
     return is_lit_afterwards(options) ? "plugin/host/gpu/sea_points_texture.glsl"
                                       : "plugin/host/gpu/sea_points_in.glsl";
@@ -73,29 +78,22 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
-                                                     "plugin/host/gpu/prelude.glsl",
-                                                     "core/plan/filter.inl",
-                                                     "core/plan/taps.inl",
-                                                     "core/plan/random_tiling.inl",
-                                                     "core/waves/spline.inl",
-                                                     "core/waves/whitecaps.inl",
-                                                     "core/waves/gusts.inl",
-                                                     "core/evaluate/surface.inl",
-                                                     "core/waves/trains.inl",
-                                                     "core/evaluate/unresolved.inl",
-                                                     "core/surface/earth.inl",
-                                                     "core/surface/pixel_footprint.inl",
-                                                     "plugin/host/gpu/places.glsl",
-                                                     "plugin/host/gpu/cascades.glsl",
-                                                     "plugin/host/gpu/trains.glsl",
-                                                     "plugin/host/gpu/gusts.glsl",
-                                                     "plugin/host/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{
+        "core/lighting/special.glsl",  "plugin/host/gpu/prelude.glsl",
+        "core/plan/filter.inl",        "core/plan/taps.inl",
+        "core/plan/random_tiling.inl", "core/waves/spline.inl",
+        "core/waves/whitecaps.inl",    "core/waves/gusts.inl",
+        "core/evaluate/surface.inl",   "core/evaluate/rest_normal.inl",
+        "core/waves/trains.inl",       "core/evaluate/unresolved.inl",
+        "core/surface/earth.inl",      "core/surface/pixel_footprint.inl",
+        "plugin/host/gpu/places.glsl", "plugin/host/gpu/cascades.glsl",
+        "plugin/host/gpu/trains.glsl", "plugin/host/gpu/gusts.glsl",
+        "plugin/host/gpu/query.glsl"};
     return files;
 }
 
-std::string query_constants(const SeaLayout& layout, bool coverage) {
-    return constant("kCascades", layout.cascades()) +
+std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped) {
+    return constant("kShaped", is_shaped) + constant("kCascades", layout.cascades()) +
            constant("kTileCascades", std::max(layout.cascades(), 1)) +
            constant("kCellLevels", static_cast<int>(layout.cells().footprints_m.size())) +
            constant("kPixelLevels", static_cast<int>(layout.pixels().footprints_m.size())) +
@@ -129,7 +127,7 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
 }
 
 bool is_lit_afterwards(const DrawOptions& options) {
-    return !options.for_host && !options.wireframe;
+    return !options.for_host && !options.wireframe && !options.is_shaped;
 }
 
 ShaderVariant::ShaderVariant(std::string constants, std::vector<std::string_view> vertex,
@@ -154,25 +152,28 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
-    return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
-                picture_constants(options) + (lives ? foam_constants() : std::string()),
-            is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
-                                       : joined({query_files(), {vertex_file(options)}}),
-            joined({query_files(),
-                    {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-                    lighting_files(),
-                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
-                    spray_files(lighting),
-                    {"core/lighting/place.glsl",
-                     "plugin/host/gpu/rays.glsl"},
-                    output_files(options),
-                    {"plugin/host/gpu/false_colour.glsl", points_file(options),
-                     "plugin/host/gpu/sea_fragment.glsl"}})};
+    return {
+        query_constants(layout, coverage, options.is_shaped) + lighting_constants(lighting, sky_map_size) +
+            picture_constants(options) + (lives ? foam_constants() : std::string()),
+        is_lit_afterwards(options)
+            ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
+            : joined({query_files(), {shape_file(options.is_shaped, kShapeOfVertex), vertex_file(options)}}),
+        joined(
+            {query_files(),
+             {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+             {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+             lighting_files(),
+             {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+             spray_files(lighting),
+             {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
+             output_files(options),
+             {"plugin/host/gpu/false_colour.glsl", points_file(options),
+              shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
-ShaderVariant ShaderVariant::of_points(const SeaLayout& layout) {
-    return {query_constants(layout, false), joined({query_files(), {vertex_file({})}}),
+ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {
+    return {query_constants(layout, false, is_shaped),
+            joined({query_files(), {shape_file(is_shaped, kShapeOfVertex), vertex_file({})}}),
             joined({query_files(),
                     {"plugin/host/gpu/rays.glsl", "plugin/host/gpu/sea_points_in.glsl",
                      "plugin/host/gpu/sea_points_fragment.glsl"}})};

@@ -19,7 +19,7 @@ class ShaderVariant {
   public:
     static ShaderVariant of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size);
     // The first of two passes.
-    static ShaderVariant of_points(const SeaLayout& layout);
+    static ShaderVariant of_points(const SeaLayout& layout, bool is_shaped);
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
     static ShaderVariant of_screen(bool layers, bool plain);
 
@@ -41,7 +41,7 @@ class ShaderVariant {
 const std::vector<std::string_view>& lighting_files();
 // The files of the shared formulas and of the query; their constants.
 const std::vector<std::string_view>& query_files();
-std::string query_constants(const SeaLayout& layout, bool coverage);
+std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped = false);
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size);
 
 }  // namespace pelagic

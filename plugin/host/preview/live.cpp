@@ -111,7 +111,8 @@ void LiveSea::compute_frames() {
     std::optional<double> tried_s;
     std::optional<View> tried_eye, tried_spray;
     const auto spray_before = [&](const View& view) {
-        return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->grid, kSprayMap));
+        return std::make_shared<const Spray>(
+            make_spray_map(*frame, view, tried->drawn->grid_options(), kSprayMap));
     };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {
@@ -128,7 +129,7 @@ void LiveSea::compute_frames() {
         if (!wants_frame()) {  // the eye has moved over a sea that stands still
             lock.unlock();
             std::optional<double> water_m;
-            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
             std::shared_ptr<const Spray> spray;
             if (tried_spray) spray = spray_before(*tried_spray);
             lock.lock();
@@ -159,7 +160,7 @@ void LiveSea::compute_frames() {
             slot.packed->pack(*frame);
             slot.transforms_ms = milliseconds(start, transformed);
             slot.packing_ms = milliseconds(transformed, Clock::now());
-            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
             if (tried_spray) spray = spray_before(*tried_spray);
         } catch (...) {
             error = message_of(std::current_exception());

@@ -16,7 +16,6 @@
 
 #include "core/lighting/spray.h"
 #include "core/plan/memory.h"
-#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/sea.h"
 #include "pelagic/scene.h"
@@ -30,7 +29,7 @@ struct LiveBuild {
     Scene scene;  // the scene it was made from
     std::shared_ptr<const Sea<float>> sea;
     int query = 0;  // the picture's query, an index into the plan
-    ProjectedGridOptions grid;
+    std::shared_ptr<const DrawnSea> drawn;
     double build_s = 0.0;  // time that building took
     std::string note;  // what was left out so that it fits, and sea_warnings(), a line each; empty: nothing
 };

@@ -9,10 +9,10 @@
 #include "core/lighting/lighting.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
-#include "core/surface/projected_grid.h"
 #include "core/waves/sea.h"
 #include "pelagic/scene.h"
 #include "plugin/host/preview/sea_renderer.h"
+#include "plugin/render/drawn_sea.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
@@ -37,13 +37,14 @@ struct OffscreenPicture {
     std::string note;    // what the scene asks for and the GPU doesn't do; usually empty
 };
 
-// What a picture needs, known before the sea is built: its grid, and a sea whose levels are as fine as the pixels
+// What a picture needs, known before the sea is built: its mesh, and a sea whose levels are as fine as the pixels
 // that show it. Frames and pictures of other plans give the same picture.
 struct OffscreenPlan {
     Scene scene;  // its resolution is the picture's
     int frame = 1;
     Plan plan;
-    ProjectedGrid grid;
+    SeaMesh mesh;
+    std::shared_ptr<const DrawnSea> drawn;  // which that is of
 };
 
 // The scene at `frame` through its camera, in `size` pixels (0: the camera's resolution). Needs a current context.

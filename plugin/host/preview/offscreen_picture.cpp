@@ -14,7 +14,6 @@
 #include "core/plan/quality.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
-#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/host/gpu/packed_foam.h"
@@ -23,7 +22,6 @@
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/render/spray_map.h"
-#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -45,9 +43,10 @@ void check_size(glm::ivec2 size) {
                        " a side: ask for a smaller one with --size, or use pelagic render");
 }
 
-// Positions of the grid's points, relative to its origin, with the waves that its cells resolve.
+// Positions of the mesh's points, relative to its origin, with the waves that its cells resolve.
 std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea, double time_s,
-                                    const ProjectedGrid& grid) {
+                                    const SeaMesh& mesh) {
+    const ProjectedGrid& grid = mesh.points;
     Frame<float> frame(sea);
     frame.set(time_s);
     std::vector<glm::vec3> positions(grid.rest_m.size());
@@ -60,6 +59,7 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
                            .cell_m = {grid.cell_m.data()},
                            .cell_axis_m = {grid.cell_axis_m.data()}},
              results);
+    for (std::size_t i = 0; i < mesh.height_m.size(); ++i) positions[i].z += mesh.height_m[i];
     for (glm::vec3& position : positions)
         position = glm::vec3(on_earth(glm::dvec3(position), grid.curvature_per_m));
     return positions;
@@ -67,9 +67,8 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
 
 // The finest footprint of a pixel that shows the sea, or more than any where none does: the least of all triangles
 // that reach into the picture.
-double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
-                            std::span<const glm::vec3> positions) {
-    const glm::dmat4 clip_from = view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m);
+double finest_pixel_in_view(const View& view, const SeaMesh& mesh, std::span<const glm::vec3> positions) {
+    const glm::dmat4 clip_from = view.clip_from(glm::dvec3(mesh.points.origin_m, 0.0), kNear_m);
     constexpr int kPlanes = 5;
     std::vector<std::uint8_t> outside(positions.size());  // of which planes, a bit each
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -79,18 +78,12 @@ double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
             outside[i] |= static_cast<std::uint8_t>(beyond[plane] ? 1 << plane : 0);
     }
     double finest_m = std::numeric_limits<double>::infinity();
-    const auto take = [&](std::size_t a, std::size_t b, std::size_t c) {
-        if ((outside[a] & outside[b] & outside[c]) != 0) return;
-        for (const std::size_t corner : {a, b, c})
-            finest_m = std::min(finest_m, static_cast<double>(grid.pixel_m[corner]));
-    };
-    const auto stride = static_cast<std::size_t>(grid.columns) + 1;
-    for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row)
-        for (std::size_t column = 0; column + 1 < stride; ++column) {
-            const std::size_t near_left = row * stride + column, far_left = near_left + stride;
-            take(near_left, near_left + 1, far_left + 1);
-            take(near_left, far_left + 1, far_left);
-        }
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+        const std::span corners = std::span(mesh.triangles).subspan(t, 3);
+        if ((outside[corners[0]] & outside[corners[1]] & outside[corners[2]]) != 0) continue;
+        for (const std::uint32_t corner : corners)
+            finest_m = std::min(finest_m, static_cast<double>(mesh.points.pixel_m[corner]));
+    }
     return finest_m;
 }
 
@@ -133,7 +126,11 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     need.add("the picture",
              static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * (kDrawnBytes + kReadBytes),
              "ask for a smaller picture (--size)");
-    need.add("the camera's grid of points", planned.grid.rest_m.size() * kPointBytes, smaller());
+    const std::size_t points = planned.mesh.points.rest_m.size();
+    need.add("the camera's grid of points", points * kPointBytes, smaller());
+    if (planned.scene.surface.kind == SurfaceKind::Cage)
+        need.add("the cage's surface", planned.drawn->surface_bytes(points) + points * sizeof(glm::vec4),
+                 "lower surface.cage_level, or raise surface.cell_px");
     if (render_options(planned.scene).lighting.spray)
         need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
                  "set effects.spray to false");
@@ -142,7 +139,7 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
 }
 
 OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std::size_t max_memory_bytes) {
-    OffscreenPlan planned{.scene = scene, .frame = frame, .plan = {}, .grid = {}};
+    OffscreenPlan planned{.scene = scene, .frame = frame, .plan = {}, .mesh = {}, .drawn = {}};
     if (size.x > 0 && size.y > 0) planned.scene.camera.resolution = size;
     check_size(planned.scene.camera.resolution);
     const MemoryLimit limit = machine::memory_limit_or(max_memory_bytes);
@@ -150,14 +147,13 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     const char* const run = "this picture";
 
     const auto prepared = prepare(planned.scene);
-    const View view = view_at(planned.scene.camera, frame);
-    ProjectedGridOptions options = projected_grid_options(*prepared);
-    const ProjectedGridNeeds needs = projected_grid_needs(view, options);
+    const SeaView seen{view_at(planned.scene.camera, frame), frame};
+    const DrawnSea::Needs needs = DrawnSea(*prepared, false).needs(seen);
     const auto plan_for = [&](ProductSet wanted, double finest_pixel_m) {
         const Query query = view_query(*prepared, {.products = wanted,
                                                    .finest_cell_m = needs.finest_cell_m,
                                                    .finest_pixel_m = finest_pixel_m,
-                                                   .points = points_of(needs.size)});
+                                                   .points = needs.points});
         return make_plan(prepared, {query}, {.double_precision = false});
     };
     // Positions alone, with waves no shorter than the cells: little beside what pixels resolve. They tell which
@@ -166,15 +162,16 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     MemoryNeed first;
     const Plan of_points = plan_for(products(Product::Position), needs.finest_cell_m);
     add_sea(first, of_points, threads);
-    first.add("the camera's grid of points", points_of(needs.size) * kPointBytes, smaller());
+    first.add("the camera's grid of points", needs.points * kPointBytes, smaller());
     require_memory(first, limit, run, "at least");
-    options.has_levels = of_points.queries.front().query.cell_m.size() > 1;
-    planned.grid = projected_grid(view, options);
+    const bool has_levels = of_points.queries.front().query.cell_m.size() > 1;
+    planned.drawn = std::make_shared<const DrawnSea>(*prepared, has_levels);
+    planned.drawn->lay_out(seen, planned.mesh);
     double finest_pixel_m = needs.finest_pixel_m;
-    if (options.has_levels) {
+    if (has_levels) {
         const auto sea = std::make_shared<const Sea<float>>(of_points);
         const double in_view_m = finest_pixel_in_view(
-            view, planned.grid, positions_of(sea, planned.scene.shot.time_s(frame), planned.grid));
+            seen.view, planned.mesh, positions_of(sea, planned.scene.shot.time_s(frame), planned.mesh));
         // The level below, as every point reads the two levels beside its footprint.
         finest_pixel_m = std::max(first_level_m(needs.finest_pixel_m),
                                   level_below_m(std::min(in_view_m, needs.finest_cell_m)));
@@ -188,17 +185,17 @@ namespace {
 
 // Uploads what earlier breaking has left where the picture's pixels are.
 void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
-                 const View& view, const ProjectedGrid& grid, const BuildWatch& watch) {
-    const SeaRenderer::ShownPoints shown = renderer.shown_points(view, grid);
+                 const View& view, const SeaMesh& mesh, const BuildWatch& watch) {
+    const SeaRenderer::ShownPoints shown = renderer.shown_points(view, mesh);
     FoamHistory<float> history(sea);
     history.set(time_s);
-    history.prepare(Points<float>{.origin_m = grid.origin_m,
+    history.prepare(Points<float>{.origin_m = mesh.points.origin_m,
                                   .count = shown.rest_m.size(),
                                   .rest_m = {shown.rest_m.data()},
                                   .pixel_m = {shown.pixel_m.data()},
                                   .pixel_axis_m = {shown.pixel_axis_m.data()}},
                     0, watch);
-    renderer.upload_foam(std::make_shared<const PackedFoam>(history, grid.origin_m));
+    renderer.upload_foam(std::make_shared<const PackedFoam>(history, mesh.points.origin_m));
 }
 
 }  // namespace
@@ -211,8 +208,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     const LightingChoice lighting = render_options(planned.scene).lighting;
     Frame<float> state(sea);
     state.set(planned.scene.shot.time_s(planned.frame));
-    const ProjectedGridOptions grid = projected_grid_options(*planned.plan.from);
-    refuse_under_water(state, planned.scene, planned.frame, grid);
+    const ProjectedGridOptions& grid = planned.drawn->grid_options();
+    planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     if (lighting.spray) {
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x));
         light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
@@ -221,10 +218,10 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     renderer.upload_once(std::move(state), 0);
     const bool lives = planned.plan.foam && lighting.whitecaps;
     if (lives)
-        upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid,
+        upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.mesh,
                     watch.foam_past);
     renderer.draw(
-        view, planned.grid,
+        view, planned.mesh,
         {.lighting = lighting,
          .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
                            lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),

@@ -66,19 +66,20 @@ class KeptFramebuffer {
 struct SeaRenderer::Implementation {
     Implementation();
 
-    void upload_grid(const ProjectedGrid& grid);
+    void upload_mesh(const SeaMesh& mesh);
+    void upload_shape(const SeaMesh& mesh);
     void make_pictures(glm::ivec2 size, bool layers);
     static void require_framebuffer();
     void make_dither();
     void set_common(const ShaderProgram& program, const View& view) const;
     void set_air(double height_m);
-    void draw_grid(const ShaderProgram& program, const View& view, const ProjectedGrid& grid);
+    void draw_mesh(const ShaderProgram& program, const View& view, const SeaMesh& mesh);
     void draw_over_all(const ShaderProgram& program) const;
     void begin_picture(glm::ivec2 size, bool layers);
-    void draw_points(const View& view, const ProjectedGrid& grid);
+    void draw_points(const View& view, const SeaMesh& mesh);
     void end_picture() const;
     void set_foam_image(const std::shared_ptr<const FoamImage>& image);
-    void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
+    void draw_sea(const View& view, const SeaMesh& mesh, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
@@ -101,7 +102,7 @@ struct SeaRenderer::Implementation {
     std::vector<Uniform> spray;  // empty: there is none
 
     GlVertexArray grid_array, no_array;
-    GlBuffer grid_vertices, grid_indices;
+    GlBuffer grid_vertices, shape_vertices, grid_indices;
     glm::ivec2 grid_size{0};
     GLsizei grid_index_count = 0;
 
@@ -158,7 +159,8 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     return programs.emplace(variant.key(), std::move(program)).first->second;
 }
 
-void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
+void SeaRenderer::Implementation::upload_mesh(const SeaMesh& mesh) {
+    const ProjectedGrid& grid = mesh.points;
     struct Vertex {
         glm::vec2 rest_m;
         float cell_m;
@@ -182,14 +184,29 @@ void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
     attribute(0, 2, offsetof(Vertex, rest_m));
     attribute(1, 3, offsetof(Vertex, cell_m));
     attribute(2, 3, offsetof(Vertex, pixel_m));
-    if (grid_size == glm::ivec2(grid.columns, grid.rows)) return;
-    grid_size = {grid.columns, grid.rows};
-    const std::vector<std::uint32_t> triangles =
-        projected_grid_triangles(ProjectedGridSize{.columns = grid.columns, .rows = grid.rows});
+    upload_shape(mesh);
+    // Whole grids of one size have the same triangles.
+    const glm::ivec2 size(grid.columns, grid.rows);
+    if (size.x > 0 && grid_size == size) return;
+    grid_size = size;
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, grid_indices.name());
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size() * sizeof(std::uint32_t)),
-                 triangles.data(), GL_STATIC_DRAW);
-    grid_index_count = static_cast<GLsizei>(triangles.size());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
+                 mesh.triangles.data(), GL_STATIC_DRAW);
+    grid_index_count = static_cast<GLsizei>(mesh.triangles.size());
+}
+
+// Of a surface that isn't flat; no shader asks for it of others.
+void SeaRenderer::Implementation::upload_shape(const SeaMesh& mesh) {
+    constexpr GLuint kShape = 3;
+    if (mesh.normal.empty()) return glDisableVertexAttribArray(kShape);
+    std::vector<glm::vec4> shapes(mesh.normal.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] = glm::vec4(mesh.normal[i], mesh.height_m[i]);
+    glBindBuffer(GL_ARRAY_BUFFER, shape_vertices.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(shapes.size() * sizeof(glm::vec4)), shapes.data(),
+                 GL_STREAM_DRAW);
+    glEnableVertexAttribArray(kShape);
+    glVertexAttribPointer(kShape, 4, GL_FLOAT, GL_FALSE, sizeof(glm::vec4), nullptr);
 }
 
 // Pictures.
@@ -286,16 +303,16 @@ void SeaRenderer::Implementation::set_air(double height_m) {
     air_height_m = height_m;
 }
 
-void SeaRenderer::Implementation::draw_grid(const ShaderProgram& program, const View& view,
-                                            const ProjectedGrid& grid) {
+void SeaRenderer::Implementation::draw_mesh(const ShaderProgram& program, const View& view,
+                                            const SeaMesh& mesh) {
     program.use();
     set_common(program, view);
-    sea.bind(program, grid.origin_m);
+    sea.bind(program, mesh.points.origin_m);
     set_uniforms(program, air);
     glUniform1f(program.uniform("eye_height_m"), static_cast<float>(view.position_m.z));
-    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
-    upload_grid(grid);
-    const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
+    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(mesh.points.curvature_per_m));
+    upload_mesh(mesh);
+    const glm::mat4 clip(view.clip_from(glm::dvec3(mesh.points.origin_m, 0.0), kNear_m));
     glUniformMatrix4fv(program.uniform("clip_from_grid"), 1, GL_FALSE, glm::value_ptr(clip));
     // Reversed depth, near/distance, keeps precision out to the horizon.
     if (reversed_depth)
@@ -335,30 +352,32 @@ void SeaRenderer::Implementation::end_picture() const {
     glActiveTexture(GL_TEXTURE0);
 }
 
-void SeaRenderer::Implementation::draw_points(const View& view, const ProjectedGrid& grid) {
+void SeaRenderer::Implementation::draw_points(const View& view, const SeaMesh& mesh) {
     glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
-    draw_grid(program_of(ShaderVariant::of_points(sea.layout())), view, grid);
+    draw_mesh(program_of(ShaderVariant::of_points(sea.layout(), !mesh.normal.empty())), view, mesh);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
 }
 
-void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
+void SeaRenderer::Implementation::draw_sea(const View& view, const SeaMesh& mesh,
                                            const DrawOptions& options) {
     const SeaLayout& layout = sea.layout();
     const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
     if (!is_lit_afterwards(options)) {
+        program.use();
+        set_uniforms(program, foam_uniforms(foam_pattern(options.foam, mesh.points.origin_m)));
         glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
-        draw_grid(program, view, grid);
+        draw_mesh(program, view, mesh);
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
         return;
     }
-    draw_points(view, grid);
+    draw_points(view, mesh);
     program.use();
     set_common(program, view);
-    sea.bind(program, grid.origin_m);
+    sea.bind(program, mesh.points.origin_m);
     set_uniforms(program, air);
     set_foam_image(options.foam.image);
-    set_uniforms(program, foam_uniforms(foam_pattern(options.foam, grid.origin_m)));
-    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
+    set_uniforms(program, foam_uniforms(foam_pattern(options.foam, mesh.points.origin_m)));
+    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(mesh.points.curvature_per_m));
     for (std::size_t i = 0; i < points.size(); ++i) bind_texture(kPictures + static_cast<int>(i), points[i]);
     // Where something is nearer than the far plane.
     glDepthMask(GL_FALSE);
@@ -444,7 +463,7 @@ void SeaRenderer::upload_foam(std::shared_ptr<const PackedFoam> foam) {
     implementation_->sea.upload_foam(std::move(foam));
 }
 
-SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const ProjectedGrid& grid) {
+SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const SeaMesh& mesh) {
     Implementation& of = *implementation_;
     const KeptFramebuffer kept;
     of.begin_picture(view.resolution, of.picture_layers);
@@ -452,7 +471,7 @@ SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const Proje
     glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
     glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    of.draw_points(view, grid);
+    of.draw_points(view, mesh);
     of.end_picture();
     glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
     const auto count =
@@ -475,20 +494,21 @@ SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const Proje
     return shown;
 }
 
-void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOptions& options) {
+void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions& options) {
     const auto started = std::chrono::steady_clock::now();
     Implementation& of = *implementation_;
     const KeptFramebuffer kept;
     DrawOptions drawn = options;
     drawn.lighting.air = options.lighting.air && of.air_model;
     drawn.lighting.spray = options.lighting.spray && !of.spray.empty();
+    drawn.is_shaped = !mesh.normal.empty();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
     of.begin_picture(view.resolution, options.layers);
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
-        if (!of.sea.empty()) of.draw_sea(view, grid, drawn);
+        if (!of.sea.empty()) of.draw_sea(view, mesh, drawn);
     }
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);

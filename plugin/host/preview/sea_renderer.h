@@ -17,11 +17,11 @@
 
 #include "core/lighting/lighting.h"
 #include "core/lighting/spray.h"
-#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/host/gpu/draw_options.h"
 #include "plugin/host/gpu/packed_foam.h"
 #include "plugin/host/gpu/packed_frame.h"
+#include "plugin/render/drawn_sea.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
@@ -72,16 +72,16 @@ class SeaRenderer {
     void upload_foam(std::shared_ptr<const PackedFoam> foam);
     // The points at rest that a picture's pixels of the sea show, with their footprints. Waits for the GPU.
     struct ShownPoints {
-        std::vector<glm::vec2> rest_m;  // relative to the grid's origin
+        std::vector<glm::vec2> rest_m;  // relative to the mesh's origin
         std::vector<float> pixel_m;
         std::vector<glm::vec2> pixel_axis_m;
     };
-    ShownPoints shown_points(const View& view, const ProjectedGrid& grid);
+    ShownPoints shown_points(const View& view, const SeaMesh& mesh);
 
-    // Draws a picture of view.resolution into the renderer's own framebuffer. `grid` must be this view's.
+    // Draws a picture of view.resolution into the renderer's own framebuffer. `mesh` must be this view's.
     // Without an uploaded frame only the sky is drawn. Throws PreviewError with the driver's messages if a
     // shader doesn't compile.
-    void draw(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
+    void draw(const View& view, const SeaMesh& mesh, const DrawOptions& options);
 
     // Shows the last picture in the bound framebuffer, filling the viewport, through display_colour()
     // (core/lighting/tone.glsl). False colours and wireframes are shown unchanged.

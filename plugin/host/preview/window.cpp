@@ -24,7 +24,6 @@
 #include "core/lighting/tone.h"
 #include "core/scene/canonical.h"
 #include "core/scene/shot_text.h"
-#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/files/files.h"
@@ -451,7 +450,7 @@ class Preview {
         if (sky_ && metered_wind_mps_ != controls_.scene.sea.wind_speed_mps) meter();
         sea_.ask(controls_.scene);
         const View view = view_now();
-        const bool may_be_wet = frame_ == nullptr || is_among_waves(view, frame_->build->grid);
+        const bool may_be_wet = frame_ == nullptr || frame_->build->drawn->may_be_under_waves(view);
         const auto only_if = [&](bool wanted) { return wanted ? std::optional<View>(view) : std::nullopt; };
         has_spray_ = render_options(controls_.scene).lighting.spray;
         sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_));
@@ -462,7 +461,8 @@ class Preview {
         readout_.waited_s = 1e-3 * milliseconds_since(asked_at_);
         readout_.building_sky = skies_.is_busy();
         readout_.message = status.error.empty() ? skies_.error() : status.error;
-        is_under_water_ = sea_.water_over_eye().has_value();
+        is_under_water_ = sea_.water_over_eye().has_value() ||
+                          (frame_ != nullptr && frame_->build->drawn->cage_above(view).has_value());
         if (readout_.message.empty() && is_under_water_)
             readout_.message =
                 "the camera is under water, which can't be drawn: raise it (E), or wait for the wave to pass";
@@ -476,7 +476,7 @@ class Preview {
         if (readout_.message.empty()) readout_.message = note_;
         readout_.has_sea = frame_ != nullptr;
         if (frame_ == nullptr) return;
-        readout_.significant_height_m = frame_->build->grid.significant_height_m;
+        readout_.significant_height_m = frame_->build->drawn->grid_options().significant_height_m;
         readout_.times.build_s = frame_->build->build_s;
         smooth(readout_.times.transforms_ms, frame_->transforms_ms);
         smooth(readout_.times.packing_ms, frame_->packing_ms);
@@ -514,20 +514,20 @@ class Preview {
             return;
         }
         const auto start = Clock::now();
-        ProjectedGridOptions grid_options = frame_->build->grid;
         // Cells in pixels of the picture as drawn, as in `pelagic render` of that size: with larger pixels there are
         // fewer vertices.
-        grid_options.cell_px = controls_.scene.surface.cell_px;
-        const auto grid = std::make_shared<const ProjectedGrid>(projected_grid(view, grid_options));
+        const auto mesh = std::make_shared<SeaMesh>();
+        frame_->build->drawn->lay_out({view, static_cast<int>(std::lround(controls_.frame))}, *mesh,
+                                      controls_.scene.surface.cell_px);
         smooth(readout_.times.grid_ms, milliseconds_since(start));
-        follow_foam(view, grid);
+        follow_foam(view, {mesh, &mesh->points});
         const Sea<float>& sea = *frame_->build->sea;
         controls_.draw.foam =
             make_foam(controls_.scene, sky_ ? sky_->foam_picture : nullptr,
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
         if (has_spray_) show_spray();
-        renderer_.draw(view, *grid, controls_.draw);
+        renderer_.draw(view, *mesh, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
         renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)),

@@ -8,11 +8,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -412,6 +416,32 @@ TEST(LiveWorker, TakesTurnsAndHandsEachThingOverOnce) {
     EXPECT_EQ(worker.take(), nullptr);
     EXPECT_FALSE(worker.is_busy());
     EXPECT_EQ(most, 1);
+}
+
+// Of points that are no whole grid's, as where a patch is cut out of it: the tiles of a grid's cells are those of its points, or
+// more.
+TEST(LiveFoam, IsAskedForByPointsToo) {
+    Scene scene = small_scene(16.0);
+    scene.effects.foam_decay_s = 4.0;
+    const auto prepared = prepare(scene);
+    const Plan plan =
+        make_plan(prepared, {view_query(*prepared, {.finest_cell_m = 0.5, .finest_pixel_m = 0.2})}, {});
+    ProjectedGrid grid = projected_grid(view_at(scene.camera, 1), projected_grid_options(*prepared));
+    const auto places = [&] {
+        std::set<std::array<std::int64_t, 3>> all;
+        for (const FoamPlace& place : foam_places(*plan.foam, 20.0, grid))
+            all.insert({place.level, place.x, place.y});
+        return all;
+    };
+    const auto of_cells = places();
+    grid.columns = grid.rows = 0;
+    const auto of_points = places();
+    ASSERT_FALSE(of_cells.empty());
+    std::size_t missing = 0;
+    for (const auto& place : of_cells) missing += !of_points.contains(place);
+    std::printf("    of %zu tiles %zu are missing among %zu\n", of_cells.size(), missing, of_points.size());
+    EXPECT_LT(static_cast<double>(missing), 0.01 * static_cast<double>(of_cells.size()));
+    EXPECT_LT(of_points.size(), 3 * of_cells.size());
 }
 
 // Where a new sea comes the old one's foam is let go of on the drawing thread, in the middle of looking for the tiles that

@@ -85,6 +85,30 @@ TEST(PreviewsPicture, IsTheCpusOfCopiesAtRandomOffsets) {
     scene.waves.tiling = Tiling::Random;
     compare_frame("of copies", scene, {320, 180});
 }
+// A mesh that is no whole grid, and one with heights and normals of its own: no other test has their vertices and shaders.
+TEST(PreviewsPicture, IsTheCpusOfAPatchInNothing) {
+    Scene scene = scene_of({0.0, -26.0, 9.0}, {0.0, 0.0, 0.0});
+    scene.surface.size_m = 30.0;
+    scene.surface.beyond = Beyond::Nothing;
+    compare_frame("of a patch in nothing", scene, {320, 180});
+}
+Scene slope_scene() {
+    Scene scene = scene_of({0.0, -30.0, 14.0}, {0.0, 0.0, 4.0});
+    CageMesh mesh;
+    mesh.points_m = {{-14.0, -12.0, 3.0}, {14.0, -12.0, 3.0}, {14.0, 12.0, 6.0}, {-14.0, 12.0, 9.0}};
+    mesh.face_counts = {4};
+    mesh.indices = {0, 1, 2, 3};
+    scene.surface.kind = SurfaceKind::Cage;
+    scene.surface.cage = std::make_shared<const Cage>(mesh);
+    scene.surface.cage_level.is_adaptive = true;
+    return scene;
+}
+TEST(PreviewsPicture, IsTheCpusOfACageInTheSea) {
+    Scene scene = slope_scene();
+    scene.effects.foam_decay_s = 2.0;
+    scene.surface.beyond = Beyond::Sea;
+    compare_frame("of a cage in the sea", scene, {320, 180});
+}
 // From among the crests, and over them.
 Scene sprayed_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
     Scene scene = scene_of(position_m, look_at_m);
@@ -146,13 +170,13 @@ TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
                               .foam = make_foam(scene, make_foam_picture(scene), active_foam(scene, sea->residual_coverage())),
                               .layers = true};
     const auto drawn = [&] {
-        renderer.draw(view_at(scene.camera, 5), planned.grid, options);
+        renderer.draw(view_at(scene.camera, 5), planned.mesh, options);
         return renderer.read_layers();
     };
     // Before there is any, foam is where waves break.
     EXPECT_LT(mean_foam(drawn()), 0.7 * mean_foam(exact));
     FoamWorker worker(sea);
-    const auto grid = std::make_shared<const ProjectedGrid>(planned.grid);
+    const auto grid = std::make_shared<const ProjectedGrid>(planned.mesh.points);
     std::shared_ptr<const PackedFoam> foam;
     for (const int n : {4, 5}) {
         worker.ask(scene.shot.time_s(n), {grid});
@@ -173,7 +197,7 @@ TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
 struct Stage {
     explicit Stage(const Scene& scene)
         : view(view_at(scene.camera, 1)),
-          grid(projected_grid(view, projected_grid_options(*prepare(scene)))) {
+          mesh(open_sea(projected_grid(view, projected_grid_options(*prepare(scene))))) {
         const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}));
         Frame<float> frame(sea);
         frame.set(1.0);
@@ -183,12 +207,12 @@ struct Stage {
         renderer.upload(packed);
     }
     Picture drawn(const DrawOptions& options) {
-        renderer.draw(view, grid, options);
+        renderer.draw(view, mesh, options);
         return renderer.read_layers();
     }
 
     View view;
-    ProjectedGrid grid;
+    SeaMesh mesh;
     SeaRenderer renderer;
 };
 

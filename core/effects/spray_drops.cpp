@@ -23,7 +23,7 @@ namespace {
 constexpr double kShortestLife_s = 0.3;
 constexpr double kComes = 0.15, kGoes = 0.3;  // shares of its life
 constexpr double kFull = 1.0 - 0.5 * (kComes + kGoes);
-constexpr double kNarrowest_m = 0.05, kWidest_m = 0.2, kWider_per_s = 0.8;
+constexpr double kNarrowest_m = 0.04, kWider_m = 0.26, kWider_per_s = 0.8;  // of cells of a metre
 constexpr double kOfWind = 0.2;  // of the wind's speed that a drop is torn off with, beside the water's
 // Turbulence over the sea, in friction velocities (Panofsky and Dutton 1984: 2.4, 1.9 and 1.25): a parcel lasts for as long as part of it.
 constexpr double kGusts = 1.2, kLifts = 0.6;
@@ -136,15 +136,17 @@ typename SprayDrops<T>::Parcel SprayDrops<T>::started(std::int64_t interval, glm
     const glm::dvec2 carried = (wind_mps_ + gust_mps * deviates(gust[0])) * downwind_ +
                                0.5 * gust_mps * deviates(gust[1]) * across;
     const double up_mps = friction_mps_ * std::min(-std::log(unit(kind[1])), 4.0);
-    const double narrow = unit(kind[2]);
+    // Few are wide. A wide one has the more drops, so that all are about as dense: width² over its mean, where u³ says how wide.
+    const double chance = unit(kind[2]), width_m = kNarrowest_m + kWider_m * chance * chance * chance;
+    constexpr double kMeanSquare_m2 = kNarrowest_m * kNarrowest_m + kNarrowest_m * kWider_m / 2.0 + kWider_m * kWider_m / 7.0;
     Parcel parcel{};
     parcel.from_m = {unit(place[0]), unit(place[1]), 0.0};
     parcel.drift_mps = {carried, kLifts * friction_mps_ * deviates(lift[0]) - falls_mps};
     parcel.start_mps = {kOfWind * carried, up_mps};
     parcel.since_s = unit(place[2]) * plan_.interval_s;
     parcel.lag_s = falls_mps / kGravity;
-    parcel.section_m2 = weight * per_m2_ * plan_.cell_m * plan_.cell_m;
-    parcel.width_m = plan_.cell_m * std::lerp(kNarrowest_m, kWidest_m, narrow * narrow);
+    parcel.section_m2 = weight * per_m2_ * plan_.cell_m * plan_.cell_m * width_m * width_m / kMeanSquare_m2;
+    parcel.width_m = plan_.cell_m * width_m;
     parcel.id = static_cast<std::int64_t>((std::uint64_t{kind[3]} << 21) ^ (place[3] & 0x1fffffu));
     return parcel;
 }

@@ -8,7 +8,7 @@
 //
 // A parcel stands for many drops: its section is what they take of the light, and comes and goes with its age. The mean of
 // all sections over area is the law's thickness (SprayDropsLaw), exactly in expectation, whatever lives parcels have: each has its
-// share of section times life.
+// share of section times life, the more the wider it is.
 #pragma once
 
 #include <atomic>

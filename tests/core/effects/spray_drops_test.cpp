@@ -64,9 +64,9 @@ double section_m2(const std::vector<SprayDrop>& drops) {
 // that of what breaks in so many squares.
 TEST(SprayDrops, TheirSectionsAreTheLawsShare) {
     double found = 0.0, broken = 0.0;
-    const int kTimes = std::getenv("TIMES") ? 60 : 4;
+    constexpr int kTimes = 4;
     Scene scene = drops_scene();
-    scene.surface.size_m = 200.0;
+    scene.surface.size_m = 300.0;  // a whole copy of the sea
     scene.effects.spray_gain = 40.0;
     const double area_m2 = scene.surface.size_m * scene.surface.size_m;
     SprayDrops<float> of = drops_over(scene);
@@ -149,7 +149,7 @@ TEST(SprayDrops, VelocitiesAreTheirWaysAndNothingPops) {
         EXPECT_GT(drop.width_m, 0.0);
         if (std::max(std::abs(drop.position_m.x), std::abs(drop.position_m.y)) > 23.9) continue;  // the square's border
         if (!before.contains(drop.id) || !behind.contains(drop.id)) {
-            EXPECT_LT(drop.section_m2, 0.01 * largest);
+            EXPECT_LT(drop.section_m2, 0.02 * largest);
             continue;
         }
         ++seen;

@@ -152,22 +152,21 @@ typename SprayDrops<T>::Parcel SprayDrops<T>::started(std::int64_t interval, glm
 }
 
 template <class T>
-typename SprayDrops<T>::Interval SprayDrops<T>::made(std::int64_t interval, const Cells& cells,
-                                                     const std::atomic<bool>* cancel) {
+std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t interval, const Cells& cells,
+                                                               const std::atomic<bool>* cancel) {
     using Vec = glm::vec<2, T>;
     frame_->set(std::max(static_cast<double>(interval) * plan_.interval_s, -Frame<T>::kLatest_s), cancel);
     const glm::i64vec2 middle(cells.x + cells.columns / 2, cells.y + cells.rows / 2);
     const glm::dvec2 origin_m = glm::dvec2(middle) * plan_.cell_m;
     const PreparedQuery<T> query(*frame_, 0, frame_->sea().plan().queries[0].query.products, origin_m);
     const bool third = frame_->sea().plan().knobs.third_moment;
-    Interval made;
+    std::vector<Parcel> made;
     // Some rows at a time.
     const std::int64_t rows_at_once = std::max<std::int64_t>((std::int64_t{1} << 16) / cells.columns, 1);
     std::vector<Vec> rest_m;
     std::vector<glm::vec<3, T>> moments, displaced_m, moves_mps;
     std::vector<T> breaks;
     std::vector<std::vector<Parcel>> of_row;
-    double broken = 0.0;
     for (std::int64_t first = 0; first < cells.rows; first += rows_at_once) {
         stop_if(cancel);
         const std::int64_t rows = std::min(rows_at_once, cells.rows - first);
@@ -186,7 +185,6 @@ typename SprayDrops<T>::Interval SprayDrops<T>::made(std::int64_t interval, cons
         query.evaluate({.origin_m = origin_m, .count = rest_m.size(), .rest_m = {rest_m.data()}}, results);
 
         of_row.assign(static_cast<std::size_t>(rows), {});
-        std::vector<double> broken_in(static_cast<std::size_t>(rows));
         tbb::parallel_for(std::int64_t{0}, rows, [&](std::int64_t row) {
             for (std::int64_t x = 0; x < cells.columns; ++x) {
                 const auto i = static_cast<std::size_t>(row * cells.columns + x);
@@ -200,7 +198,6 @@ typename SprayDrops<T>::Interval SprayDrops<T>::made(std::int64_t interval, cons
                              third) /
                     mean_breaking_;
                 if (!(share > 0.0)) continue;
-                broken_in[static_cast<std::size_t>(row)] += share;
                 const double expected = SprayDropsPlan::kParcels_per_s * plan_.interval_s * share;
                 const glm::i64vec2 cell(cells.x + x, cells.y + first + row);
                 const double chance =
@@ -216,16 +213,15 @@ typename SprayDrops<T>::Interval SprayDrops<T>::made(std::int64_t interval, cons
                 }
             }
         });
-        for (const double of : broken_in) broken += of;
 
-        const std::size_t begin = made.parcels.size();
+        const std::size_t begin = made.size();
         for (const std::vector<Parcel>& row : of_row)
-            made.parcels.insert(made.parcels.end(), row.begin(), row.end());
-        const std::size_t count = made.parcels.size() - begin;
+            made.insert(made.end(), row.begin(), row.end());
+        const std::size_t count = made.size() - begin;
         if (count == 0) continue;
         rest_m.clear();
-        for (std::size_t i = begin; i < made.parcels.size(); ++i)
-            rest_m.emplace_back(glm::dvec2(made.parcels[i].from_m));
+        for (std::size_t i = begin; i < made.size(); ++i)
+            rest_m.emplace_back(glm::dvec2(made[i].from_m));
         displaced_m.resize(count);
         moves_mps.resize(count);
         Results<T> starts;
@@ -233,7 +229,7 @@ typename SprayDrops<T>::Interval SprayDrops<T>::made(std::int64_t interval, cons
         starts.set(Product::Velocity, {moves_mps.data()});
         query.evaluate({.origin_m = origin_m, .count = count, .rest_m = {rest_m.data()}}, starts);
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-            Parcel& parcel = made.parcels[begin + i];
+            Parcel& parcel = made[begin + i];
             const glm::dvec3 water_mps(moves_mps[i]);
             parcel.from_m += glm::dvec3(origin_m, 0.0) + glm::dvec3(displaced_m[i]) + water_mps * parcel.since_s;
             parcel.start_mps += water_mps;
@@ -242,7 +238,6 @@ typename SprayDrops<T>::Interval SprayDrops<T>::made(std::int64_t interval, cons
             parcel.section_m2 /= parcel.life_s;
         });
     }
-    made.broken = broken / static_cast<double>(cells.columns * cells.rows);
     return made;
 }
 
@@ -250,7 +245,6 @@ template <class T>
 void SprayDrops<T>::at(double time_s, glm::dvec2 middle_m, std::vector<SprayDrop>& drops,
                        const std::atomic<bool>* cancel) {
     drops.clear();
-    broken_ = 0.0;
     if (empty()) return;
     const double now_s = time_within_loop_s(time_s, frame_->sea().loop_s());
     const auto last = static_cast<std::int64_t>(std::floor(now_s / plan_.interval_s));
@@ -268,9 +262,8 @@ void SprayDrops<T>::at(double time_s, glm::dvec2 middle_m, std::vector<SprayDrop
         const std::int64_t same = within_loop(interval);
         auto known = known_.find(same);
         if (known == known_.end()) known = known_.emplace(same, made(same, cells_, cancel)).first;
-        broken_ += known->second.broken / static_cast<double>(plan_.intervals());
         const double since_s = now_s - static_cast<double>(interval) * plan_.interval_s;
-        for (const Parcel& parcel : known->second.parcels) {
+        for (const Parcel& parcel : known->second) {
             const double age_s = since_s - parcel.since_s;
             if (!(age_s > 0.0 && age_s < parcel.life_s)) continue;
             const glm::dvec3 at_m = parcel.position(age_s);

@@ -47,8 +47,6 @@ class SprayDrops {
     // calling arena; the same bits whatever their number. Throws BuildCancelled.
     void at(double time_s, glm::dvec2 middle_m, std::vector<SprayDrop>& drops,
             const std::atomic<bool>* cancel = nullptr);
-    // What breaks over the cells of an interval, over the sea's mean: what the last call's parcels came from.
-    double broken_over_mean() const { return broken_; }
 
   private:
     struct Parcel;
@@ -56,26 +54,22 @@ class SprayDrops {
         std::int64_t x = 0, y = 0, columns = 0, rows = 0;
         bool operator==(const Cells&) const = default;
     };
-    struct Interval {
-        std::vector<Parcel> parcels;
-        double broken = 0.0;
-    };
 
     Cells cells_round(glm::dvec2 middle_m) const;
     std::int64_t within_loop(std::int64_t interval) const;
-    Interval made(std::int64_t interval, const Cells& cells, const std::atomic<bool>* cancel);
+    std::vector<Parcel> made(std::int64_t interval, const Cells& cells, const std::atomic<bool>* cancel);
     Parcel started(std::int64_t interval, glm::i64vec2 cell, int number, double weight) const;
 
     SprayDropsPlan plan_;
     double size_m_ = 0.0, per_m2_ = 0.0;  // the latter: section times seconds of life of a square metre's parcels of a second
-    double mean_breaking_ = 0.0, broken_ = 0.0;
+    double mean_breaking_ = 0.0;
     std::uint64_t seed_ = 0;
     glm::dvec2 downwind_{1.0, 0.0};
     double wind_mps_ = 0.0, friction_mps_ = 0.0;  // where drops fly
     std::vector<double> settling_mps_;            // of drops that each stand for as much
     std::unique_ptr<Frame<T>> frame_;
     Cells cells_;
-    std::map<std::int64_t, Interval> known_;  // of these cells
+    std::map<std::int64_t, std::vector<Parcel>> known_;  // by interval, of these cells
 };
 
 }  // namespace pelagic

@@ -491,7 +491,7 @@ class Drawing {
         if (const KeyValue* drops = made_.value("output.drops"); drops && std::get<bool>(*drops)) {
             for (const char* needed : {"effects.spray_drops", "effects.spray", "effects.whitecaps"})
                 give(needed, true);
-            give("effects.spray_law", std::string(word_of(SpraySource::Andreas1998)));
+            give("effects.spray_law", std::string("andreas-1998"));
         }
         const auto* volumes = list<std::vector<std::string>>("output.volumes");
         if (!volumes || volumes->empty()) return;

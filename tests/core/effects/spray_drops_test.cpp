@@ -105,7 +105,7 @@ TEST(SprayDrops, TheirSectionsAreTheLawsShare) {
 TEST(SprayDrops, AFrameAloneIsThatOfARun) {
     const Scene scene = drops_scene();
     SprayDrops<float> run = drops_over(scene);
-    for (int frame = 0; frame <= 4; ++frame) drops_at(run, 0.2 * frame, {frame == 1 ? 40.0 : 0.0, 0.0});
+    for (int frame = 0; frame <= 4; ++frame) drops_at(run, 0.2 * frame, {frame == 0 ? 40.0 : 0.0, 0.0});
     const std::vector<SprayDrop> alone = drops_at(scene, 0.75);
     EXPECT_GT(alone.size(), 300u);
     EXPECT_TRUE(are_same(alone, drops_at(run, 0.75)));

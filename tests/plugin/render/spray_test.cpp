@@ -125,7 +125,9 @@ TEST(SprayDropsSeen, TheVeilHasWhatTheyLack) {
 }
 
 TEST(SprayDropsSeen, AreFiniteInPicturesAndTheSameAloneAndInARun) {
-    const Scene scene = storm_of_drops(20.0);
+    Scene scene = storm_of_drops(20.0);
+    scene.waves.cascades = {{180.0, 128}, {31.0, 64}};
+    scene.camera.resolution = {48, 27};
     Scene veil = scene;
     veil.effects.spray_drops = false;
     RenderOptions options = spray_options(scene);
@@ -135,9 +137,9 @@ TEST(SprayDropsSeen, AreFiniteInPicturesAndTheSameAloneAndInARun) {
     EXPECT_EQ(with.sea, without.sea);
     EXPECT_FALSE(same_spray_bits(with, without));
     for (const float alpha : with.alpha) EXPECT_TRUE(alpha >= 0.0f && alpha <= 1.001f);
-    Renderer renderer(scene, options, uniform_sky(), std::array{1, 2, 3});
+    Renderer renderer(scene, options, uniform_sky(), std::array{1, 2});
     Picture run;
-    for (const int frame : {3, 2, 1}) renderer.render(frame, run);
+    for (const int frame : {2, 1}) renderer.render(frame, run);
     EXPECT_TRUE(same_spray_bits(with, run));
 }
 

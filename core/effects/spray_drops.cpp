@@ -91,8 +91,8 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
     wind_mps_ = wind.at(kFlight_m);
     friction_mps_ = wind.friction_mps();
     for (const double radius_um : law.drops.radii_um) settling_mps_.push_back(settling_mps(radius_um));
-    frame_ = std::make_unique<Frame<T>>(std::make_shared<const Sea<T>>(
-        plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
+    frame_ = std::make_unique<Frame<T>>(
+        std::make_shared<const Sea<T>>(plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
 }
 
 template <class T>
@@ -133,12 +133,13 @@ typename SprayDrops<T>::Parcel SprayDrops<T>::started(std::int64_t interval, glm
     const double falls_mps =
         settling_mps_[static_cast<std::size_t>(unit(kind[0]) * static_cast<double>(settling_mps_.size()))];
     const double gust_mps = kGusts * friction_mps_;
-    const glm::dvec2 carried = (wind_mps_ + gust_mps * deviates(gust[0])) * downwind_ +
-                               0.5 * gust_mps * deviates(gust[1]) * across;
+    const glm::dvec2 carried =
+        (wind_mps_ + gust_mps * deviates(gust[0])) * downwind_ + 0.5 * gust_mps * deviates(gust[1]) * across;
     const double up_mps = friction_mps_ * std::min(-std::log(unit(kind[1])), 4.0);
     // Few are wide. A wide one has the more drops, so that all are about as dense: width² over its mean, where u³ says how wide.
     const double chance = unit(kind[2]), width_m = kNarrowest_m + kWider_m * chance * chance * chance;
-    constexpr double kMeanSquare_m2 = kNarrowest_m * kNarrowest_m + kNarrowest_m * kWider_m / 2.0 + kWider_m * kWider_m / 7.0;
+    constexpr double kMeanSquare_m2 =
+        kNarrowest_m * kNarrowest_m + kNarrowest_m * kWider_m / 2.0 + kWider_m * kWider_m / 7.0;
     Parcel parcel{};
     parcel.from_m = {unit(place[0]), unit(place[1]), 0.0};
     parcel.drift_mps = {carried, kLifts * friction_mps_ * deviates(lift[0]) - falls_mps};
@@ -153,7 +154,7 @@ typename SprayDrops<T>::Parcel SprayDrops<T>::started(std::int64_t interval, glm
 
 template <class T>
 std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t interval, const Cells& cells,
-                                                               const std::atomic<bool>* cancel) {
+                                                                const std::atomic<bool>* cancel) {
     using Vec = glm::vec<2, T>;
     frame_->set(std::max(static_cast<double>(interval) * plan_.interval_s, -Frame<T>::kLatest_s), cancel);
     const glm::i64vec2 middle(cells.x + cells.columns / 2, cells.y + cells.rows / 2);
@@ -173,10 +174,9 @@ std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t int
         rest_m.clear();
         for (std::int64_t y = first; y < first + rows; ++y)
             for (std::int64_t x = 0; x < cells.columns; ++x)
-                rest_m.emplace_back(
-                    glm::dvec2(static_cast<double>(cells.x + x - middle.x) + 0.5,
-                               static_cast<double>(cells.y + y - middle.y) + 0.5) *
-                    plan_.cell_m);
+                rest_m.emplace_back(glm::dvec2(static_cast<double>(cells.x + x - middle.x) + 0.5,
+                                               static_cast<double>(cells.y + y - middle.y) + 0.5) *
+                                    plan_.cell_m);
         moments.resize(rest_m.size());
         breaks.resize(rest_m.size());
         Results<T> results;
@@ -207,21 +207,21 @@ std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t int
                 const auto count = static_cast<int>(std::floor(std::min(expected, most) + chance));
                 for (int number = 0; number < std::min(count, SprayDropsPlan::kMostParcels); ++number) {
                     Parcel parcel = started(interval, cell, number, weight);
-                    parcel.from_m.x = (parcel.from_m.x + static_cast<double>(cell.x - middle.x)) * plan_.cell_m;
-                    parcel.from_m.y = (parcel.from_m.y + static_cast<double>(cell.y - middle.y)) * plan_.cell_m;
+                    parcel.from_m.x =
+                        (parcel.from_m.x + static_cast<double>(cell.x - middle.x)) * plan_.cell_m;
+                    parcel.from_m.y =
+                        (parcel.from_m.y + static_cast<double>(cell.y - middle.y)) * plan_.cell_m;
                     of_row[static_cast<std::size_t>(row)].push_back(parcel);
                 }
             }
         });
 
         const std::size_t begin = made.size();
-        for (const std::vector<Parcel>& row : of_row)
-            made.insert(made.end(), row.begin(), row.end());
+        for (const std::vector<Parcel>& row : of_row) made.insert(made.end(), row.begin(), row.end());
         const std::size_t count = made.size() - begin;
         if (count == 0) continue;
         rest_m.clear();
-        for (std::size_t i = begin; i < made.size(); ++i)
-            rest_m.emplace_back(glm::dvec2(made[i].from_m));
+        for (std::size_t i = begin; i < made.size(); ++i) rest_m.emplace_back(glm::dvec2(made[i].from_m));
         displaced_m.resize(count);
         moves_mps.resize(count);
         Results<T> starts;
@@ -231,7 +231,8 @@ std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t int
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             Parcel& parcel = made[begin + i];
             const glm::dvec3 water_mps(moves_mps[i]);
-            parcel.from_m += glm::dvec3(origin_m, 0.0) + glm::dvec3(displaced_m[i]) + water_mps * parcel.since_s;
+            parcel.from_m +=
+                glm::dvec3(origin_m, 0.0) + glm::dvec3(displaced_m[i]) + water_mps * parcel.since_s;
             parcel.start_mps += water_mps;
             constexpr double kFalls_m = 0.2;  // at least: a trough's drops fall back into it
             parcel.end_at(std::min(parcel.from_m.z - kFalls_m, 0.0));
@@ -254,7 +255,8 @@ void SprayDrops<T>::at(double time_s, glm::dvec2 middle_m, std::vector<SprayDrop
         cells_ = cells;
     }
     std::erase_if(known_, [&](const auto& of) {
-        const std::int64_t before = plan_.intervals_a_loop > 0 ? within_loop(of.first - first) : of.first - first;
+        const std::int64_t before =
+            plan_.intervals_a_loop > 0 ? within_loop(of.first - first) : of.first - first;
         return before < 0 || before > last - first;
     });
     const glm::dvec2 low_m = middle_m - 0.5 * size_m_, high_m = middle_m + 0.5 * size_m_;

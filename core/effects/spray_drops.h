@@ -25,11 +25,12 @@
 namespace pelagic {
 
 struct SprayDrop {
-    glm::dvec3 position_m{0.0};     // in the world
-    glm::dvec3 velocity_mps{0.0};   // its derivative
-    double width_m = 0.0;           // across the parcel, > 0
-    double section_m2 = 0.0;        // extinction, > 0
-    std::int64_t id = 0;            // 0 … 2^53 − 1, the same at all times; in loops longer than a life no two share one but by chance
+    glm::dvec3 position_m{0.0};    // in the world
+    glm::dvec3 velocity_mps{0.0};  // its derivative
+    double width_m = 0.0;          // across the parcel, > 0
+    double section_m2 = 0.0;       // extinction, > 0
+    std::int64_t id =
+        0;  // 0 … 2^53 − 1, the same at all times; in loops longer than a life no two share one but by chance
 };
 
 template <class T>
@@ -61,7 +62,9 @@ class SprayDrops {
     Parcel started(std::int64_t interval, glm::i64vec2 cell, int number, double weight) const;
 
     SprayDropsPlan plan_;
-    double size_m_ = 0.0, per_m2_ = 0.0;  // the latter: section times seconds of life of a square metre's parcels of a second
+    double size_m_ = 0.0,
+           per_m2_ =
+               0.0;  // the latter: section times seconds of life of a square metre's parcels of a second
     double mean_breaking_ = 0.0;
     std::uint64_t seed_ = 0;
     glm::dvec2 downwind_{1.0, 0.0};

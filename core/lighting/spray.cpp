@@ -90,7 +90,8 @@ SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<fl
 
 glm::vec3 spray_light(const Spray& spray, glm::vec3 direction, float height_m) {
     spray_shading::Shading shading{spray};
-    const float column = spray.haze_per_m * spray.scale_m * std::exp(-std::max(height_m, 0.0f) / spray.scale_m);
+    const float column =
+        spray.haze_per_m * spray.scale_m * std::exp(-std::max(height_m, 0.0f) / spray.scale_m);
     return shading.spray_source(direction, column, view_of(spray));
 }
 

@@ -139,8 +139,8 @@ void add_drops(const OutputRow& row, const OutputContext& context, std::vector<O
     if (!context.prepared.scene.output.drops) return;
     Query query;
     query.name = "drops";
-    query.cell_m = query.pixel_m = {
-        plan_spray_drops(context.prepared, context.prepared.scene.surface.size_m).cell_m};
+    query.cell_m =
+        query.pixel_m = {plan_spray_drops(context.prepared, context.prepared.scene.surface.size_m).cell_m};
     requests.push_back({.row = &row, .query = std::move(query)});
 }
 
@@ -150,8 +150,8 @@ const std::array kOutputTable = std::to_array<OutputRow>({
     {OutputKind::Tile, key_parts(KeyPart::Clock, KeyPart::Waves), 8, add_tiles},
     {OutputKind::Volume, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Volumes), 1, add_volumes},
     {OutputKind::Drops,
-     key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality, KeyPart::Volumes,
-               KeyPart::Spray),
+     key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality,
+               KeyPart::Volumes, KeyPart::Spray),
      1, add_drops},
 });
 

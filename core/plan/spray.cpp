@@ -98,9 +98,8 @@ SprayDropsLaw drops_of(const std::vector<ThicknessOf>& parts) {
     std::size_t next = 0;
     for (const ThicknessOf& part : parts) {
         below += part.thickness;
-        while (next < drops.radii_um.size() &&
-               (static_cast<double>(next) + 0.5) * drops.optical_thickness <=
-                   below * static_cast<double>(drops.radii_um.size()))
+        while (next < drops.radii_um.size() && (static_cast<double>(next) + 0.5) * drops.optical_thickness <=
+                                                   below * static_cast<double>(drops.radii_um.size()))
             drops.radii_um[next++] = part.radius_um;
     }
     while (next < drops.radii_um.size()) drops.radii_um[next++] = parts.back().radius_um;
@@ -200,9 +199,9 @@ SprayLaw spray_law(const Scene& scene, double significant_height_m) {
     SprayLaw law = spray_law(scene.effects.spray_law, scene.sea.wind_speed_mps, significant_height_m,
                              scene.effects.spray_drops);
     const double gain = scene.effects.spray_gain;
-    for (double* part : {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s,
-                         &law.over_foam.extinction_per_m, &law.haze.extinction_per_m,
-                         &law.drops.optical_thickness})
+    for (double* part :
+         {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s, &law.over_foam.extinction_per_m,
+          &law.haze.extinction_per_m, &law.drops.optical_thickness})
         *part *= gain;
     law.ribbons.extinction_per_m *= gain;
     return law;

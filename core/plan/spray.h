@@ -47,9 +47,10 @@ struct SprayRibbons {
 
 // Drops so large that each flies by itself: it falls, and takes a moment to reach the wind's speed.
 struct SprayDropsLaw {
-    static constexpr double kSmallest_um = 37.5;  // r80: as spume, which they nearly all are, they fall by 0.4 m/s or more
+    static constexpr double kSmallest_um =
+        37.5;  // r80: as spume, which they nearly all are, they fall by 0.4 m/s or more
 
-    double optical_thickness = 0.0;  // straight up, on average
+    double optical_thickness = 0.0;     // straight up, on average
     std::array<double, 16> radii_um{};  // over the crest, rising: each stands for as much of that thickness
 };
 

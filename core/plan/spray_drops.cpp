@@ -27,8 +27,8 @@ SprayDropsPlan plan_spray_drops(const PreparedScene& from, double size_m) {
 Plan plan_of_spray_drops(const Plan& plan, const SprayDropsPlan& drops) {
     Query query;
     query.name = "drops of spray";
-    query.products = products(Product::Displacement, Product::Velocity, Product::JacobianMoments,
-                              Product::Breaking);
+    query.products =
+        products(Product::Displacement, Product::Velocity, Product::JacobianMoments, Product::Breaking);
     query.cell_m = query.pixel_m = {drops.cell_m};
     query.is_view = true;
     Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
@@ -44,9 +44,8 @@ std::size_t spray_drops_bytes(const Plan& plan, const SprayDropsPlan& drops, dou
     // Of a cell: its place, and what is asked there. Of a parcel: as it starts, and as it is shown.
     constexpr double kCellBytes = 8.0 * sizeof(double), kParcelBytes = 26.0 * sizeof(double);
     return own.sea_bytes() + own.frame_bytes() +
-           static_cast<std::size_t>(
-               cells * (kCellBytes + kParcelBytes * SprayDropsPlan::kParcels_per_s * drops.interval_s *
-                                         drops.intervals()));
+           static_cast<std::size_t>(cells * (kCellBytes + kParcelBytes * SprayDropsPlan::kParcels_per_s *
+                                                              drops.interval_s * drops.intervals()));
 }
 
 }  // namespace pelagic

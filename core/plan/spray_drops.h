@@ -12,9 +12,11 @@ namespace pelagic {
 // Parcels start from cells of the sea at rest, in intervals of absolute time.
 struct SprayDropsPlan {
     static constexpr double kFinestCell_m = 1.0;
-    static constexpr double kMostCells = 256.0;  // along a side of what is asked for: further on they are wider
+    static constexpr double kMostCells =
+        256.0;  // along a side of what is asked for: further on they are wider
     static constexpr double kParcels_per_s = 3.0;  // of a cell, on average over the sea
-    static constexpr int kMostParcels = 24;  // of a cell in an interval; where more breaks, each stands for more drops
+    static constexpr int kMostParcels =
+        24;  // of a cell in an interval; where more breaks, each stands for more drops
     static constexpr double kLongestLife_s = 2.5;
 
     double cell_m = kFinestCell_m;

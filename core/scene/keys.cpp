@@ -645,8 +645,9 @@ void add_effects_and_quality(Built& out) {
                                    .key_parts = key_parts(KeyPart::Spray)}),
         row<&Effects::spray_drops>(
             {.name = "spray_drops",
-             .help = "the large drops of that spray as particles that fly off crests, in rendered pictures near the camera and "
-                     "in output.drops; volumes hold the rest. Only by andreas-1998",
+             .help =
+                 "the large drops of that spray as particles that fly off crests, in rendered pictures near the camera and "
+                 "in output.drops; volumes hold the rest. Only by andreas-1998",
              .key_parts = key_parts(KeyPart::Spray)}));
     add_table<&Scene::quality>(
         out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
@@ -708,7 +709,8 @@ void add_output(Built& out) {
                                .key_parts = key_parts(KeyPart::Volumes)}),
         row<&Output::drops>(
             {.name = "drops",
-             .help = "USD points over the patch's square, a file a frame: the particles of effects.spray_drops",
+             .help =
+                 "USD points over the patch's square, a file a frame: the particles of effects.spray_drops",
              .key_parts = kChoice}));
 }
 

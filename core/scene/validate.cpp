@@ -518,8 +518,7 @@ void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) 
 }
 
 void check_output(SceneChecker& check, const Effects& effects, const Output& output) {
-    if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty() &&
-        !output.drops) {
+    if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty() && !output.drops) {
         check.refuse({"output.mesh", choice_text(output.mesh),
                       "leaves nothing to bake: there are no maps and no volumes either",
                       "a mesh, or at least one map in output.maps or volume in output.volumes"});

@@ -27,14 +27,16 @@ class DropsPart final : public OutputPart {
     void compute(const SeaAtTime<float>& sea, int frame, OutputSlot& slot, const BuildWatch& watch) override {
         compute_by(singles_, sea, frame, static_cast<DropsSlot&>(slot), watch);
     }
-    void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot, const BuildWatch& watch) override {
+    void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot,
+                 const BuildWatch& watch) override {
         compute_by(doubles_, sea, frame, static_cast<DropsSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
         const SprayDropsPlan drops = plan_spray_drops(*plan_.from, size_m());
         const double cells = std::pow(size_m() / drops.cell_m, 2.0);
-        constexpr double kBytes = sizeof(SprayDrop) + 2 * sizeof(glm::vec3) + 3 * sizeof(float) + sizeof(std::int64_t);
+        constexpr double kBytes =
+            sizeof(SprayDrop) + 2 * sizeof(glm::vec3) + 3 * sizeof(float) + sizeof(std::int64_t);
         return {.once = spray_drops_bytes(plan_, drops, size_m()),
                 .slot = static_cast<std::size_t>(cells * SprayDropsPlan::kParcels_per_s *
                                                  SprayDropsPlan::kLongestLife_s * kBytes),
@@ -76,8 +78,10 @@ class DropsPart final : public OutputPart {
 
     void write_static(const FileSink& sink) const override {
         const Shot& shot = scene().shot;
-        const usd::DropsShot about{
-            .name = shot.name, .fps = shot.fps, .first_frame = shot.first_frame, .last_frame = shot.last_frame};
+        const usd::DropsShot about{.name = shot.name,
+                                   .fps = shot.fps,
+                                   .first_frame = shot.first_frame,
+                                   .last_frame = shot.last_frame};
         sink({.path = usd::drops_manifest_file(shot.name),
               .content = [&](const auto& take) { take(usd::drops_manifest_text(about)); }});
         sink({.path = usd::drops_file(shot.name),
@@ -88,8 +92,8 @@ class DropsPart final : public OutputPart {
     double size_m() const { return scene().surface.size_m; }
 
     template <class T>
-    void compute_by(std::unique_ptr<SprayDrops<T>>& drops, const SeaAtTime<T>& sea, int frame, DropsSlot& slot,
-                    const BuildWatch& watch) const {
+    void compute_by(std::unique_ptr<SprayDrops<T>>& drops, const SeaAtTime<T>& sea, int frame,
+                    DropsSlot& slot, const BuildWatch& watch) const {
         if (!drops) drops = std::make_unique<SprayDrops<T>>(sea.sea(), size_m(), watch);
         drops->at(scene().shot.time_s(frame), glm::dvec2(0.0), slot.drops, watch.cancel);
     }

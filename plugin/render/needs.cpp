@@ -132,9 +132,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");
     if (options.lighting.spray && scene.effects.spray_drops)
-        need.add("the drops of the spray",
-                 spray_drops_bytes(plan, plan_spray_drops(*plan.from, 2.0 * kDropsReach_m), 2.0 * kDropsReach_m),
-                 "set effects.spray_drops to false");
+        need.add(
+            "the drops of the spray",
+            spray_drops_bytes(plan, plan_spray_drops(*plan.from, 2.0 * kDropsReach_m), 2.0 * kDropsReach_m),
+            "set effects.spray_drops to false");
     if (in_flight && scene.camera.glare > 0.0)
         need.add("the lens' glare",
                  static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),

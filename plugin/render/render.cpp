@@ -193,8 +193,8 @@ class RendererOf final : public Impl {
     // The spray, with the drops in it that are seen one by one.
     void find_drops(const PicturePass& pass, const BuildWatch& watch) {
         drops_.clear();
-        const bool are_near = options_.lighting.spray && scene_.effects.spray_drops &&
-                              view_.position_m.z < kDropsReach_m;
+        const bool are_near =
+            options_.lighting.spray && scene_.effects.spray_drops && view_.position_m.z < kDropsReach_m;
         spray_ = sea_.spray_before(view_, grid_options_, are_near);
         if (!are_near || spray_.empty()) return;
         if (!flying_) flying_.emplace(sea_.frame().sea(), 2.0 * kDropsReach_m, watch);
@@ -355,7 +355,9 @@ class RendererOf final : public Impl {
             batch_.sea_m[batch_.sea[i]] = batch_.seen.distance_m[i];
         // Of the view's pixels to the rasteriser's, whose middles passes look beside.
         const double beside = batch_.places.empty() ? 0.0 : 0.5;
-        const auto raster_of = [&](double at_px, double first) { return (at_px - first - 0.5) / sampling_.stride; };
+        const auto raster_of = [&](double at_px, double first) {
+            return (at_px - first - 0.5) / sampling_.stride;
+        };
         constexpr int kRows = 4;
         tbb::parallel_for(0, (rows + kRows - 1) / kRows, [&](int band) {
             const int low = first_row + kRows * band, high = std::min(low + kRows, first_row + rows) - 1;

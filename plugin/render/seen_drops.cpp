@@ -50,7 +50,8 @@ std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const View& v
         const glm::dvec3 at_m = on_earth(drop.position_m - glm::dvec3(nadir_m, 0.0), curvature_per_m);
         const glm::dvec3 way = at_m - glm::dvec3(0.0, 0.0, view.position_m.z);
         const double distance_m = glm::length(way), ahead_m = glm::dot(way, view.forward);
-        const double share = drops_share(distance_m) * eased((distance_m - kHidden_m) / (kWhole_m - kHidden_m));
+        const double share =
+            drops_share(distance_m) * eased((distance_m - kHidden_m) / (kWhole_m - kHidden_m));
         if (!(share > 0.0) || !(ahead_m > kHidden_m)) continue;
         const double px_a_m = 1.0 / (tangent * ahead_m);
         const double radius_px = std::max(0.5 * drop.width_m * px_a_m, kNarrowest_px);
@@ -58,7 +59,8 @@ std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const View& v
                                0.5 * size.y - (glm::dot(way, view.up) / ahead_m - middle.y) / tangent);
         // One more: passes look beside a pixel's middle.
         const double reach_px = radius_px + 1.0;
-        if (at_px.x < -reach_px || at_px.y < -reach_px || at_px.x > size.x + reach_px || at_px.y > size.y + reach_px)
+        if (at_px.x < -reach_px || at_px.y < -reach_px || at_px.x > size.x + reach_px ||
+            at_px.y > size.y + reach_px)
             continue;
         seen.push_back({.at_px = at_px,
                         .radius_px = radius_px,
@@ -79,7 +81,9 @@ std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const View& v
             of[i - begin].air = spray_light(spray, -to_eye[i], heights_m[i]);
             distances_m[i - begin] = seen[i].distance_m;
         }
-        if (air) see_through(*air, std::span(to_eye).subspan(begin, end - begin), {distances_m.data(), of.size()}, of);
+        if (air)
+            see_through(*air, std::span(to_eye).subspan(begin, end - begin), {distances_m.data(), of.size()},
+                        of);
         for (std::size_t i = begin; i < end; ++i) {
             SeaRadiance& radiance = of[i - begin];
             see_through_spray(spray, -to_eye[i], seen[i].distance_m, radiance);

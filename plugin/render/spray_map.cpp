@@ -215,8 +215,8 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
         spray.texels[i] = {
             static_cast<float>(on_earth(at, curvature).z),
             of_foam ? glm::vec3(static_cast<float>(law.over_foam.extinction_per_m * shares[i].x), 0.0f, 0.0f)
-                    : glm::vec3(thicker[i / static_cast<std::size_t>(size.columns)] * law.ribbons.extinction_per_m *
-                                shares[i])};
+                    : glm::vec3(thicker[i / static_cast<std::size_t>(size.columns)] *
+                                law.ribbons.extinction_per_m * shares[i])};
         spray.top_m = std::max(spray.top_m, spray.texels[i].x);
     }
     return spray;

@@ -30,14 +30,15 @@ constexpr std::string_view kVertex = "vertex";
 void check(const DropsSample& sample) {
     check_rate(sample.fps);
     const std::size_t count = sample.points.size();
-    if (sample.velocities.size() != count || sample.widths.size() != count || sample.opacities.size() != count ||
-        sample.sections.size() != count || sample.ids.size() != count)
+    if (sample.velocities.size() != count || sample.widths.size() != count ||
+        sample.opacities.size() != count || sample.sections.size() != count || sample.ids.size() != count)
         throw std::invalid_argument("USD: drops' arrays must have a value for each point");
     const auto is_finite = [](const glm::vec3& v) {
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
     };
     const auto is_number = [](float number) { return std::isfinite(number); };
-    if (!std::ranges::all_of(sample.points, is_finite) || !std::ranges::all_of(sample.velocities, is_finite) ||
+    if (!std::ranges::all_of(sample.points, is_finite) ||
+        !std::ranges::all_of(sample.velocities, is_finite) ||
         !std::ranges::all_of(sample.widths, is_number) || !std::ranges::all_of(sample.opacities, is_number) ||
         !std::ranges::all_of(sample.sections, is_number))
         throw std::invalid_argument("USD: drops must be finite");
@@ -85,7 +86,8 @@ std::string drops_text(const DropsShot& shot) {
     page.line({"double templateStride = 1"});
     page.close("}");
     page.close("}");
-    page.line({"doc = \"Drops of spray as parcels. Each frame has points of its own, ids say which are the same: blur by velocities.\""});
+    page.line(
+        {"doc = \"Drops of spray as parcels. Each frame has points of its own, ids say which are the same: blur by velocities.\""});
     page.close(")");
     page.open({"{"});
     // Clips ignore metadata: it is declared here. A value would hide those of the clips.

@@ -28,8 +28,10 @@ struct DropsSample {
     std::span<const glm::vec3> points{};
     std::span<const glm::vec3> velocities{};
     std::span<const float> widths{};
-    std::span<const float> opacities{};  // primvars:displayOpacity: of the middle of a parcel that wide with that section
-    std::span<const float> sections{};   // primvars:extinctionSection: what its drops take of light's cross-section [m²]
+    std::span<const float>
+        opacities{};  // primvars:displayOpacity: of the middle of a parcel that wide with that section
+    std::span<const float>
+        sections{};  // primvars:extinctionSection: what its drops take of light's cross-section [m²]
     std::span<const std::int64_t> ids{};
 };
 

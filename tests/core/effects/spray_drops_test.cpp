@@ -74,19 +74,22 @@ TEST(SprayDrops, TheirSectionsAreTheLawsShare) {
     SprayDrops<float> of(*sea, scene.surface.size_m);
     double found_m2 = 0.0;
     constexpr int kTimes = 24;
-    for (int time = 0; time < kTimes; ++time) found_m2 += section_m2(drops_at(of, kLoop_s * time / kTimes)) / kTimes;
+    for (int time = 0; time < kTimes; ++time)
+        found_m2 += section_m2(drops_at(of, kLoop_s * time / kTimes)) / kTimes;
 
     Frame<float> frame(std::make_shared<const Sea<float>>(plan_of_spray_drops(sea->plan(), of.plan())));
     std::vector<glm::vec2> rest_m;
     for (int y = 0; y < 120; ++y)
-        for (int x = 0; x < 120; ++x) rest_m.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        for (int x = 0; x < 120; ++x)
+            rest_m.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     double broken = 0.0;
     const auto intervals = static_cast<int>(of.plan().intervals_a_loop);
     ASSERT_EQ(intervals, 12);
     for (int interval = 0; interval < intervals; ++interval) {
         frame.set(interval * of.plan().interval_s);
         Values values;
-        QueryRunner<float>().run(frame, 0, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}}, values);
+        QueryRunner<float>().run(frame, 0, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}},
+                                 values);
         for (std::size_t i = 0; i < rest_m.size(); ++i) {
             const glm::vec3 j = values.vectors(Product::JacobianMoments)[i];
             broken += sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true) *
@@ -95,9 +98,11 @@ TEST(SprayDrops, TheirSectionsAreTheLawsShare) {
     }
     broken /= static_cast<double>(rest_m.size()) * intervals;
     const auto prepared = prepare(scene);
-    const double law = spray_law(prepared->scene, prepared->extent.significant_height_m).drops.optical_thickness;
+    const double law =
+        spray_law(prepared->scene, prepared->extent.significant_height_m).drops.optical_thickness;
     const double found = found_m2 / (scene.surface.size_m * scene.surface.size_m);
-    std::printf("    sections %.5f of the area, the law's %.5f; broke %.3f of the mean\n", found, law, broken);
+    std::printf("    sections %.5f of the area, the law's %.5f; broke %.3f of the mean\n", found, law,
+                broken);
     EXPECT_NEAR(found / (law * broken), 1.0, 0.03);
     EXPECT_GT(broken, 0.3);
 }
@@ -149,7 +154,8 @@ TEST(SprayDrops, LoopsClose) {
                 const auto at = before.find(drop.id);
                 if (at == before.end()) continue;
                 ++same;
-                EXPECT_LT(glm::length(at->second.position_m + 0.01 * drop.velocity_mps - drop.position_m), 0.01);
+                EXPECT_LT(glm::length(at->second.position_m + 0.01 * drop.velocity_mps - drop.position_m),
+                          0.01);
             }
             EXPECT_GT(same, first.size() * 9 / 10);
         }
@@ -168,14 +174,14 @@ TEST(SprayDrops, VelocitiesAreTheirWaysAndNothingPops) {
     std::size_t seen = 0;
     for (const SprayDrop& drop : drops) {
         EXPECT_GT(drop.width_m, 0.0);
-        if (std::max(std::abs(drop.position_m.x), std::abs(drop.position_m.y)) > 23.9) continue;  // the square's border
+        if (std::max(std::abs(drop.position_m.x), std::abs(drop.position_m.y)) > 23.9)
+            continue;  // the square's border
         if (!before.contains(drop.id) || !behind.contains(drop.id)) {
             EXPECT_LT(drop.section_m2, 0.02 * largest);
             continue;
         }
         ++seen;
-        const glm::dvec3 moved =
-            (behind[drop.id].position_m - before[drop.id].position_m) / (2.0 * kStep_s);
+        const glm::dvec3 moved = (behind[drop.id].position_m - before[drop.id].position_m) / (2.0 * kStep_s);
         EXPECT_LT(glm::length(moved - drop.velocity_mps), 1e-3);
         EXPECT_LT(std::abs(behind[drop.id].section_m2 - drop.section_m2), 0.05 * largest);
     }

@@ -181,13 +181,15 @@ TEST(Spray, VeilAndDropsAreTheLaw) {
             EXPECT_GT(parted.drops.optical_thickness, 0.0);
             EXPECT_GT(parted.ribbons.extinction_per_m.z, 0.0);
             EXPECT_NEAR(parted.optical_thickness() / whole.optical_thickness(), 1.0, 1e-12);
-            EXPECT_NEAR(parted.with_drops() * parted.ribbons.optical_thickness() / whole.ribbons.optical_thickness(),
-                        1.0, 1e-12);
+            EXPECT_NEAR(
+                parted.with_drops() * parted.ribbons.optical_thickness() / whole.ribbons.optical_thickness(),
+                1.0, 1e-12);
             for (std::size_t i = 0; i < parted.drops.radii_um.size(); ++i) {
                 EXPECT_GE(parted.drops.radii_um[i], i > 0 ? parted.drops.radii_um[i - 1] : 80.0);
                 EXPECT_LT(parted.drops.radii_um[i], 563.0);
             }
-            EXPECT_EQ(spray_law(SpraySource::Monahan1986, wind_mps, height_m, true).drops.optical_thickness, 0.0);
+            EXPECT_EQ(spray_law(SpraySource::Monahan1986, wind_mps, height_m, true).drops.optical_thickness,
+                      0.0);
         }
     const SprayLaw gale = spray_law(SpraySource::Andreas1998, 20.0, 8.0, true);
     EXPECT_NEAR(gale.drops.optical_thickness / gale.optical_thickness(), 0.175, 0.01);

@@ -525,7 +525,8 @@ TEST(Validate, DropsAreRefusedWhereThereAreNone) {
     refused([](Scene& s) { s.effects.spray_drops = false; }, "effects.spray_drops = true");
     refused([](Scene& s) { s.effects.spray = false; }, "effects.spray = true");
     refused([](Scene& s) { s.effects.whitecaps = false; }, "effects.whitecaps = true");
-    refused([](Scene& s) { s.effects.spray_law = SpraySource::Monahan1986; }, "effects.spray_law = \"andreas-1998\"");
+    refused([](Scene& s) { s.effects.spray_law = SpraySource::Monahan1986; },
+            "effects.spray_law = \"andreas-1998\"");
     // Without output they are a matter of taste.
     expect_good([](Scene& s) { s.effects.spray_drops = true; });
 }

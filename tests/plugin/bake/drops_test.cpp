@@ -48,7 +48,8 @@ TEST(BakedDrops, AFrameAloneHasTheBytesOfARun) {
     const std::string run = drops_bytes(folder / "run" / frame);
     EXPECT_GT(run.size(), 5000u);
     EXPECT_NE(drops_bytes(folder / "run/gale.usda").find("@./gale.drops.usda@"), std::string::npos);
-    EXPECT_NE(drops_bytes(folder / "run/gale.drops.usda").find("\"./drops/gale.####.usdc\""), std::string::npos);
+    EXPECT_NE(drops_bytes(folder / "run/gale.drops.usda").find("\"./drops/gale.####.usdc\""),
+              std::string::npos);
     EXPECT_TRUE(fs::exists(folder / "run/drops/gale.manifest.usda"));
     // Without a mesh, alone.
     scene.output.mesh = MeshFormat::None;

@@ -103,7 +103,8 @@ TEST(SprayDropsSeen, TheVeilHasWhatTheyLack) {
     Scene veil = scene;
     veil.effects.spray_drops = false;
     const auto map_of = [&](const Scene& of, bool drops) {
-        Frame<float> frame(std::make_shared<const Sea<float>>(picture_plan(of, std::array{1}, spray_options(of))));
+        Frame<float> frame(
+            std::make_shared<const Sea<float>>(picture_plan(of, std::array{1}, spray_options(of))));
         frame.set(of.shot.time_s(1));
         return make_spray_map(frame, view, projected_grid_options(*frame.sea().plan().from), {64, 64}, drops);
     };
@@ -112,8 +113,9 @@ TEST(SprayDropsSeen, TheVeilHasWhatTheyLack) {
     const SprayLaw law = spray_law(prepared->scene, prepared->extent.significant_height_m);
     ASSERT_EQ(whole.texels.size(), rest.texels.size());
     for (int row = 0; row < whole.rows; ++row) {
-        const double away_m = std::hypot(static_cast<double>(whole.first_m) * std::exp(static_cast<double>(whole.row_step) * row),
-                                         view.position_m.z);
+        const double away_m = std::hypot(
+            static_cast<double>(whole.first_m) * std::exp(static_cast<double>(whole.row_step) * row),
+            view.position_m.z);
         const double left = std::lerp(1.0, 1.0 / law.with_drops(), drops_share(away_m));
         for (int column = 0; column < whole.columns; column += 7) {
             const auto i = static_cast<std::size_t>(row * whole.columns + column);

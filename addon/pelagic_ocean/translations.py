@@ -36,9 +36,9 @@ GERMAN = {
     "Foam decay": "Schaumabbau", "Foam drift": "Schaumdrift", "Foam structure": "Schaumstruktur", "Foam streaks": "Schaumstreifen",
     "Foam pattern": "Schaummuster", "Foam fresh albedo": "Albedo frischen Schaums", "Foam old albedo": "Albedo alten Schaums",
     "Foam fresh opacity": "Deckkraft frischen Schaums", "Foam old opacity": "Deckkraft alten Schaums",
-    "Spray": "Gischt", "Spray law": "Gischtgesetz", "Spray gain": "Gischtverstärkung", "Level": "Stufe", "Max error": "Größter Fehler", "Frame": "Einzelbild",
+    "Spray": "Gischt", "Spray law": "Gischtgesetz", "Spray gain": "Gischtverstärkung", "Spray drops": "Gischttropfen", "Level": "Stufe", "Max error": "Größter Fehler", "Frame": "Einzelbild",
     "Mesh": "Netz", "Attributes": "Attribute", "Maps": "Karten", "Map resolution": "Kartenauflösung",
-    "Cascade tiles": "Kaskadenkacheln", "Mesh scheme": "Netzschema", "Volumes": "Volumen",
+    "Cascade tiles": "Kaskadenkacheln", "Mesh scheme": "Netzschema", "Volumes": "Volumen", "Drops": "Tropfen",
     # Choices
     "Pierson moskowitz": "Pierson-Moskowitz", "Jonswap 1973": "JONSWAP 1973", "Donelan banner": "Donelan-Banner", "File": "Datei",
     "None": "Keine", "Cosine": "Kosinus", "Trochoid": "Trochoide", "Random": "Zufällig", "Periodic": "Periodisch",

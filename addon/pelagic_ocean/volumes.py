@@ -80,7 +80,7 @@ def scene_of_volume(obj, bpy_scene, depsgraph, kind):
     """The scene whose bake is this volume and nothing else. ValueError for what can't be baked."""
     scene = ocean.scene_of(obj, bpy_scene, depsgraph, _settings_of(obj.evaluated_get(depsgraph), kind))
     scene.output.mesh, scene.output.maps, scene.output.cascade_tiles = "none", (), False
-    scene.output.mesh_scheme, scene.output.volumes = "none", (kind,)
+    scene.output.mesh_scheme, scene.output.volumes, scene.output.drops = "none", (kind,), False
     problems = scene.validate()
     if problems:
         raise ValueError("\n".join(problems))

@@ -1,5 +1,6 @@
 #include "core/lighting/spray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -85,6 +86,13 @@ SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<fl
     if (spray.empty()) return {};
     const auto path = path_of(spray, direction, distance_m, on_sea);
     return {path.transmittance, path.scattered};
+}
+
+glm::vec3 spray_light(const Spray& spray, glm::vec3 direction, float height_m) {
+    spray_shading::Shading shading{spray};
+    const float column =
+        spray.haze_per_m * spray.scale_m * std::exp(-std::max(height_m, 0.0f) / spray.scale_m);
+    return shading.spray_source(direction, column, view_of(spray));
 }
 
 void see_through_spray(const Spray& spray, std::span<const glm::vec3> to_eye,

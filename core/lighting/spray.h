@@ -46,6 +46,10 @@ struct SpraySeen {
 // itself. Finite.
 SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m, bool on_sea);
 
+// The radiance that spray so high above the sea at rest sends on in a direction from the eye (unit), where it hides all behind it: of the
+// same light, by the same phase function, below the haze there. Finite.
+glm::vec3 spray_light(const Spray& spray, glm::vec3 direction, float height_m);
+
 // What an eye sees of radiance[i], of places of the sea, through the spray and the air before them, which see_through() (air.h) has
 // counted already. Spray counts as before the air: what it takes of the air's own light is what the air before the spray would have added.
 // Its light goes into the layer `air`. Throws std::invalid_argument if the spans differ in length. Without spray nothing changes.

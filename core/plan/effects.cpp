@@ -87,6 +87,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
              scene.effects.whitecaps = false;
              std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
              std::erase(scene.output.volumes, VolumeKind::Spray);
+             scene.output.drops = false;
          },
      .products = foam_products() | products(Product::JacobianMoments),
      .key_parts = key_parts(KeyPart::Foam),
@@ -123,6 +124,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
          [](Scene& scene) {
              scene.effects.spray = false;
              std::erase(scene.output.volumes, VolumeKind::Spray);
+             scene.output.drops = false;
          },
      // Its map lies over places of the world.
      .adds_to =

@@ -6,6 +6,7 @@
 
 #include "core/plan/plan.h"
 #include "core/plan/products.h"
+#include "core/plan/spray_drops.h"
 #include "core/scene/names.h"
 
 namespace pelagic {
@@ -133,11 +134,25 @@ void add_volumes(const OutputRow& row, const OutputContext& context, std::vector
         }
 }
 
+// They look at the sea at other times than the frame's, as a sea of their own (core/plan/spray_drops.h).
+void add_drops(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
+    if (!context.prepared.scene.output.drops) return;
+    Query query;
+    query.name = "drops";
+    query.cell_m =
+        query.pixel_m = {plan_spray_drops(context.prepared, context.prepared.scene.surface.size_m).cell_m};
+    requests.push_back({.row = &row, .query = std::move(query)});
+}
+
 const std::array kOutputTable = std::to_array<OutputRow>({
     {OutputKind::Mesh, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Mesh), 9, add_mesh},
     {OutputKind::Map, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Maps), 7, add_patch_maps},
     {OutputKind::Tile, key_parts(KeyPart::Clock, KeyPart::Waves), 8, add_tiles},
     {OutputKind::Volume, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Volumes), 1, add_volumes},
+    {OutputKind::Drops,
+     key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality,
+               KeyPart::Volumes, KeyPart::Spray),
+     1, add_drops},
 });
 
 }  // namespace

@@ -1,8 +1,8 @@
 // What a bake leaves, as the plan sees it: each output is a query, the keys on which it depends, and a revision. Its
 // encoder and its files are a part of plugin/bake.
 //
-// There are the mesh, maps over the patch's square, the same maps over each cascade's own periodic tile, and volumes
-// over the patch's square.
+// There are the mesh, maps over the patch's square, the same maps over each cascade's own periodic tile, and volumes and drops of
+// spray over the patch's square.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ namespace pelagic {
 
 struct OutputRow;
 
-enum class OutputKind { Mesh, Map, Tile, Volume };
+enum class OutputKind { Mesh, Map, Tile, Volume, Drops };
 
 // One output of a scene, and what it asks of the sea.
 struct OutputRequest {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/plan/effects.h"
@@ -85,7 +86,27 @@ double blowing(double wind_speed_mps) {
 
 constexpr double kFastestSeen_mps = 32.0;
 
-SprayLaw andreas_law(double wind_speed_mps, double significant_height_m) {
+// The radii that each stand for as much of the thickness of what counts from r80 = kSmallest_um on, which is a bound of the source's
+// ranges. thickness: of radii in rising order.
+struct ThicknessOf {
+    double radius_um, thickness;
+};
+SprayDropsLaw drops_of(const std::vector<ThicknessOf>& parts) {
+    SprayDropsLaw drops;
+    for (const ThicknessOf& part : parts) drops.optical_thickness += part.thickness;
+    double below = 0.0;
+    std::size_t next = 0;
+    for (const ThicknessOf& part : parts) {
+        below += part.thickness;
+        while (next < drops.radii_um.size() && (static_cast<double>(next) + 0.5) * drops.optical_thickness <=
+                                                   below * static_cast<double>(drops.radii_um.size()))
+            drops.radii_um[next++] = part.radius_um;
+    }
+    while (next < drops.radii_um.size()) drops.radii_um[next++] = parts.back().radius_um;
+    return drops;
+}
+
+SprayLaw andreas_law(double wind_speed_mps, double significant_height_m, bool has_drops) {
     const double blown = blowing(wind_speed_mps);
     if (!(blown > 0.0)) return {};
     const double wind_mps = std::min(wind_speed_mps, kFastestSeen_mps);
@@ -98,6 +119,7 @@ SprayLaw andreas_law(double wind_speed_mps, double significant_height_m) {
                  turbulent_mps = friction_mps * friction_mps / wind_mps;
     SprayLaw law;
     double extinction_per_m = 0.0, thickness = 0.0;
+    std::vector<ThicknessOf> of_drops;
     for (std::size_t i = 0; i < kPowers.size(); ++i)
         over_radii(kBounds_um[i], kBounds_um[i + 1], 32, [&](double r80_um, double weight) {
             const double flux = weight * at_10_um * andreas_shape(r80_um);
@@ -112,6 +134,8 @@ SprayLaw andreas_law(double wind_speed_mps, double significant_height_m) {
                 SprayLaw::kDroplet_kg_per_m3 * kM3PerUm3 * 4.0 / 3.0 * r_um * section_um2 * flux;
             extinction_per_m += k;
             thickness += k * flat_m * (1.0 + above);
+            if (kBounds_um[i] >= SprayDropsLaw::kSmallest_um)
+                of_drops.push_back({r_um, k * flat_m * (1.0 + above)});
         });
     // The air soon mixes what is small; what is torn off crests is low and falls. So ribbons have most of the extinction, haze of the thickness,
     // and both together the law's: how much either has is chosen, by eye.
@@ -120,6 +144,14 @@ SprayLaw andreas_law(double wind_speed_mps, double significant_height_m) {
     law.haze = {haze_per_m, kHazeThickness * thickness / haze_per_m};
     law.ribbons.extinction_per_m = (1.0 - kHazeExtinction) * extinction_per_m * glm::dvec3(1.0, 0.5, 0.15);
     law.ribbons.step_m *= (1.0 - kHazeThickness) * thickness / law.ribbons.optical_thickness();
+    if (has_drops) {
+        // Ribbons are where crests have just broken, as those drops are. In seas of 15 m and more they would hardly be enough.
+        constexpr double kMost = 0.9;
+        const double of_ribbons = law.ribbons.optical_thickness();
+        law.drops = drops_of(of_drops);
+        law.drops.optical_thickness = std::min(law.drops.optical_thickness, kMost * of_ribbons);
+        law.ribbons.extinction_per_m *= 1.0 - law.drops.optical_thickness / of_ribbons;
+    }
     return law;
 }
 
@@ -157,17 +189,19 @@ double spray_source(SpraySource source, double wind_speed_mps, double radius_um)
            smith_source(wind_at_14_m(WindProfile(std::min(wind_speed_mps, kFastestSeen_mps))), 10.0);
 }
 
-SprayLaw spray_law(SpraySource source, double wind_speed_mps, double significant_height_m) {
+SprayLaw spray_law(SpraySource source, double wind_speed_mps, double significant_height_m, bool has_drops) {
     return source == SpraySource::Monahan1986 ? monahan_law(wind_speed_mps)
-                                              : andreas_law(wind_speed_mps, significant_height_m);
+                                              : andreas_law(wind_speed_mps, significant_height_m, has_drops);
 }
 
 SprayLaw spray_law(const Scene& scene, double significant_height_m) {
     if (!is_on(Effect::Spray, scene)) return {};
-    SprayLaw law = spray_law(scene.effects.spray_law, scene.sea.wind_speed_mps, significant_height_m);
+    SprayLaw law = spray_law(scene.effects.spray_law, scene.sea.wind_speed_mps, significant_height_m,
+                             scene.effects.spray_drops);
     const double gain = scene.effects.spray_gain;
-    for (double* part : {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s,
-                         &law.over_foam.extinction_per_m, &law.haze.extinction_per_m})
+    for (double* part :
+         {&law.number_flux_per_m2_s, &law.mass_flux_kg_per_m2_s, &law.over_foam.extinction_per_m,
+          &law.haze.extinction_per_m, &law.drops.optical_thickness})
         *part *= gain;
     law.ribbons.extinction_per_m *= gain;
     return law;

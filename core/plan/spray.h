@@ -45,6 +45,15 @@ struct SprayRibbons {
     double top_m() const { return kHeights.back() * step_m; }
 };
 
+// Drops so large that each flies by itself: it falls, and takes a moment to reach the wind's speed.
+struct SprayDropsLaw {
+    static constexpr double kSmallest_um =
+        37.5;  // r80: as spume, which they nearly all are, they fall by 0.4 m/s or more
+
+    double optical_thickness = 0.0;     // straight up, on average
+    std::array<double, 16> radii_um{};  // over the crest, rising: each stands for as much of that thickness
+};
+
 struct SprayLaw {
     static constexpr double kDroplet_kg_per_m3 = 1025.0;
     static constexpr double kExtinctionEfficiency = 2.0;  // Q_e of spheres much larger than the wavelength
@@ -55,12 +64,19 @@ struct SprayLaw {
     SprayLayer over_foam{};
     SprayRibbons ribbons{};
     SprayLayer haze{};
+    SprayDropsLaw drops{};  // with effects.spray_drops; what they have, the ribbons lack
 
     double extinction_per_m() const {
         return over_foam.extinction_per_m + ribbons.extinction_per_m.x + haze.extinction_per_m;
     }
     double optical_thickness() const {
-        return over_foam.optical_thickness() + ribbons.optical_thickness() + haze.optical_thickness();
+        return over_foam.optical_thickness() + ribbons.optical_thickness() + haze.optical_thickness() +
+               drops.optical_thickness;
+    }
+    // By which ribbons would be thicker if the drops were in them.
+    double with_drops() const {
+        return drops.optical_thickness > 0.0 ? 1.0 + drops.optical_thickness / ribbons.optical_thickness()
+                                             : 1.0;
     }
 };
 
@@ -71,7 +87,9 @@ double settling_mps(double radius_um);
 double spray_source(SpraySource source, double wind_speed_mps, double radius_um);
 
 // Nature's, at gain 1. All 0 without wind, and andreas-1998 in less than 8 m/s: the wind tears crests from 9 on (Monahan et al. 1986).
-SprayLaw spray_law(SpraySource source, double wind_speed_mps, double significant_height_m);
+// `has_drops`: the large drops by themselves, where the law has any.
+SprayLaw spray_law(SpraySource source, double wind_speed_mps, double significant_height_m,
+                   bool has_drops = false);
 
 // The scene's: spray_gain times nature's, and none without spray or whitecaps. Of which waves: extent.h has their height.
 SprayLaw spray_law(const Scene& scene, double significant_height_m);

@@ -682,7 +682,13 @@ void add_effects_and_quality(Built& out) {
                                    .help = "how much spray there is; 1 is the law's",
                                    .range = limits::kSprayGain,
                                    .soft = SoftRange{1.0, 100.0, true},
-                                   .key_parts = key_parts(KeyPart::Spray)}));
+                                   .key_parts = key_parts(KeyPart::Spray)}),
+        row<&Effects::spray_drops>(
+            {.name = "spray_drops",
+             .help =
+                 "the large drops of that spray as particles that fly off crests, in rendered pictures near the camera and "
+                 "in output.drops; volumes hold the rest. Only by andreas-1998",
+             .key_parts = key_parts(KeyPart::Spray)}));
     add_table<&Scene::quality>(
         out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
         row<&Quality::level>(
@@ -740,7 +746,12 @@ void add_output(Built& out) {
                                .unit = "m",
                                .range = limits::kVoxel_m,
                                .soft = SoftRange{0.05, 10.0, true},
-                               .key_parts = key_parts(KeyPart::Volumes)}));
+                               .key_parts = key_parts(KeyPart::Volumes)}),
+        row<&Output::drops>(
+            {.name = "drops",
+             .help =
+                 "USD points over the patch's square, a file a frame: the particles of effects.spray_drops",
+             .key_parts = kChoice}));
 }
 
 Built build() {

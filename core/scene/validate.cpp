@@ -532,10 +532,26 @@ void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) 
 }
 
 void check_output(SceneChecker& check, const Effects& effects, const Output& output) {
-    if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty()) {
+    if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty() && !output.drops) {
         check.refuse({"output.mesh", choice_text(output.mesh),
                       "leaves nothing to bake: there are no maps and no volumes either",
                       "a mesh, or at least one map in output.maps or volume in output.volumes"});
+    }
+    if (output.drops) {
+        const auto refuse = [&](const std::string& problem, const std::string& accepted) {
+            check.refuse({"output.drops", "true", problem, accepted + ", or false"});
+        };
+        if (!effects.spray_drops)
+            refuse("asks for drops while effects.spray_drops is false", "effects.spray_drops = true");
+        else if (!effects.spray)
+            refuse("asks for drops while effects.spray is false", "effects.spray = true");
+        else if (!effects.whitecaps)
+            refuse("asks for drops, which come from whitecaps, while effects.whitecaps is false",
+                   "effects.whitecaps = true");
+        else if (effects.spray_law != SpraySource::Andreas1998)
+            refuse("asks for large drops, and effects.spray_law = " + choice_text(effects.spray_law) +
+                       " has none",
+                   "effects.spray_law = \"andreas-1998\"");
     }
     if (output.cascade_tiles && output.maps.empty()) {
         check.refuse({"output.cascade_tiles", "true", "asks for tiles of no map",

@@ -46,7 +46,7 @@ Plan planned(const Scene& scene, std::span<const int> frames, std::size_t max_me
     Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument(
-            "the shot asks for no output: accepted: output.mesh, output.maps, output.volumes");
+            "the shot asks for no output: accepted: output.mesh, output.maps, output.volumes, output.drops");
     if (!scene.output.volumes.empty())
         vdb::load();  // before anything is known to be enough, since it takes its part
     require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),

@@ -107,6 +107,7 @@ std::vector<MeasureItem> measure_items(const Scene& scene) {
         if (std::find(output.volumes.begin(), output.volumes.end(), row.volume) != output.volumes.end())
             add("volume " + std::string(word_of(row.volume)),
                 [&](Scene& without) { std::erase(without.output.volumes, row.volume); });
+    if (output.drops) add("drops", [](Scene& without) { without.output.drops = false; });
     if (output.cascade_tiles) add("tiles", [](Scene& without) { without.output.cascade_tiles = false; });
     for (const EffectRow& row : effect_table())
         if (row.is_on(scene)) add(row.name, row.turn_off);

@@ -19,6 +19,7 @@ std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan) {
         {OutputKind::Map, make_map_part},
         {OutputKind::Tile, make_map_part},
         {OutputKind::Volume, make_volume_part},
+        {OutputKind::Drops, make_drops_part},
     });
     const auto squares = std::make_shared<SquareCache>();
     std::vector<std::unique_ptr<OutputPart>> parts;

@@ -106,6 +106,8 @@ std::unique_ptr<OutputPart> make_map_part(const Plan& plan, const PlannedOutput&
                                           const std::shared_ptr<SquareCache>& squares);
 std::unique_ptr<OutputPart> make_volume_part(const Plan& plan, const PlannedOutput& output,
                                              const std::shared_ptr<SquareCache>&);
+std::unique_ptr<OutputPart> make_drops_part(const Plan& plan, const PlannedOutput& output,
+                                            const std::shared_ptr<SquareCache>&);
 
 // A mean whose parts count by the area of sea that they stand for [any unit, ≥ 0]. 0 without any area.
 class AreaMean {

@@ -199,6 +199,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
     stage.material = material_of(plan);
     stage.has_camera = true;
     stage.has_volumes = !volumes_of(plan).empty();
+    stage.has_drops = scene.output.drops;
     stage.sun = sun;
     stage.sky = usd::Sky{.lat_long_file = "./" + usd::sky_file(shot.name)};
     stage.custom_data = {

@@ -38,6 +38,7 @@ struct Batch {
     std::vector<PixelPlace> places;        // by sample; empty where all lie in their pixels' centres
     std::vector<SeaRadiance> radiance;     // by sample
     std::vector<float> spray;              // by sample: what it hides of the sky; empty where nobody asks
+    std::vector<float> sea_m;              // by sample: how far the sea is; empty where nobody asks
     std::vector<std::size_t> sea;          // which samples show the sea, rising
     SeenSea<T> seen;                       // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;

@@ -11,6 +11,7 @@
 #include "core/plan/effects.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
+#include "core/plan/spray_drops.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
@@ -18,6 +19,7 @@
 #include "plugin/render/glare.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/render.h"
+#include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 
 namespace pelagic {
@@ -134,6 +136,11 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     if (options.lighting.spray)
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");
+    if (options.lighting.spray && scene.effects.spray_drops)
+        need.add(
+            "the drops of the spray",
+            spray_drops_bytes(plan, plan_spray_drops(*plan.from, 2.0 * kDropsReach_m), 2.0 * kDropsReach_m),
+            "set effects.spray_drops to false");
     if (in_flight && scene.camera.glare > 0.0)
         need.add("the lens' glare",
                  static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),

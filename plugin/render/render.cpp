@@ -25,6 +25,7 @@
 #include "plugin/render/passes.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
+#include "plugin/render/seen_drops.h"
 
 namespace pelagic {
 
@@ -46,6 +47,8 @@ struct SamplesOfPass {
     glm::dvec2 first{0.0};
     bool is_by_pixel = false;
 };
+
+constexpr float kSprayEndless_m = 1e30f;  // where there is no sea
 
 // Of a scene of samples, in the plan's precision; Impl is Renderer's own.
 template <class T, class Impl>
@@ -106,6 +109,7 @@ class RendererOf final : public Impl {
                     sea_.answer(batch_.seen);
                 }
                 if (is_lit) light_sea();
+                if (is_lit && !drops_.empty()) draw_drops(row, rows);
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
                 tell(static_cast<double>(row + rows) / height);
@@ -183,8 +187,21 @@ class RendererOf final : public Impl {
         air_height_m_ = height_m;
         stop_if(watch.cancel);
         lay_out_mesh(watch);
-        spray_ = sea_.spray_before(view_, drawn_.grid_options());
+        find_drops(pass, watch);
         stop_if(watch.cancel);
+    }
+
+    // The spray, with the drops in it that are seen one by one.
+    void find_drops(const PicturePass& pass, const BuildWatch& watch) {
+        drops_.clear();
+        const bool are_near =
+            options_.lighting.spray && scene_.effects.spray_drops && view_.position_m.z < kDropsReach_m;
+        spray_ = sea_.spray_before(view_, drawn_.grid_options(), are_near);
+        if (!are_near || spray_.empty()) return;
+        if (!flying_) flying_.emplace(sea_.frame().sea(), 2.0 * kDropsReach_m, watch);
+        flying_->at(scene_.shot.time_s(pass.frame), glm::dvec2(view_.position_m), in_air_, watch.cancel);
+        drops_ = seen_drops(in_air_, view_, drawn_.grid_options().curvature_per_m,
+                            options_.lighting.air ? &air_ : nullptr, spray_);
     }
 
     void lay_out_mesh(const BuildWatch& watch) {
@@ -329,6 +346,49 @@ class RendererOf final : public Impl {
         batch_.lit.resize(batch_.sea.size());
         sea_.light(batch_.seen, sea_.sky(), air_, spray_, batch_.lit);
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
+    }
+
+    // Over what the samples of the rows show, from the farthest on.
+    void draw_drops(int first_row, int rows) {
+        const auto width = raster_size().x;
+        batch_.sea_m.assign(batch_.triangles.size(), kSprayEndless_m);
+        for (std::size_t i = 0; i < batch_.sea.size(); ++i)
+            batch_.sea_m[batch_.sea[i]] = batch_.seen.distance_m[i];
+        // Of the view's pixels to the rasteriser's, whose middles passes look beside.
+        const double beside = batch_.places.empty() ? 0.0 : 0.5;
+        const auto raster_of = [&](double at_px, double first) {
+            return (at_px - first - 0.5) / sampling_.stride;
+        };
+        constexpr int kRows = 4;
+        tbb::parallel_for(0, (rows + kRows - 1) / kRows, [&](int band) {
+            const int low = first_row + kRows * band, high = std::min(low + kRows, first_row + rows) - 1;
+            for (const SeenDrop& drop : drops_) {
+                const double radius = drop.radius_px / sampling_.stride + beside;
+                const double x = raster_of(drop.at_px.x, sampling_.first.x),
+                             y = raster_of(drop.at_px.y, sampling_.first.y);
+                const int top = std::max(static_cast<int>(std::ceil(y - radius)), low),
+                          bottom = std::min(static_cast<int>(std::floor(y + radius)), high),
+                          left = std::max(static_cast<int>(std::ceil(x - radius)), 0),
+                          right = std::min(static_cast<int>(std::floor(x + radius)), width - 1);
+                for (int row = top; row <= bottom; ++row)
+                    for (int column = left; column <= right; ++column)
+                        hide_by(drop, first_row,
+                                static_cast<std::size_t>(row - first_row) * static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(column));
+            }
+        });
+    }
+
+    void hide_by(const SeenDrop& drop, int first_row, std::size_t sample) {
+        if (!batch_.places.empty() && !batch_.places[sample].is_taken()) return;
+        const float hidden = drop.hides(seen_at(first_row, sample), batch_.sea_m[sample]);
+        if (!(hidden > 0.0f)) return;
+        SeaRadiance& seen = batch_.radiance[sample];
+        for (glm::vec3* layer : {&seen.sun, &seen.sky, &seen.sea, &seen.foam, &seen.air})
+            *layer *= 1.0f - hidden;
+        seen.air += hidden * drop.radiance;
+        if (!batch_.spray.empty() && batch_.triangles[sample] == Rasteriser::kNone)
+            batch_.spray[sample] += hidden * (1.0f - batch_.spray[sample]);
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
@@ -505,6 +565,9 @@ class RendererOf final : public Impl {
     View view_;
     Air air_;  // before that view's eye
     Spray spray_;
+    std::optional<SprayDrops<T>> flying_;  // once they are near
+    std::vector<SprayDrop> in_air_;
+    std::vector<SeenDrop> drops_;
     double air_height_m_ = 0.0;
     std::optional<double> set_s_;  // the time that the sea is set to
     SamplesOfPass sampling_;

@@ -14,6 +14,7 @@
 #include "core/plan/spray.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
+#include "plugin/render/seen_drops.h"
 
 namespace pelagic {
 namespace {
@@ -129,7 +130,7 @@ std::size_t spray_map_bytes(SprayMapSize size) {
 
 template <class T>
 Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGridOptions& options,
-                     SprayMapSize size) {
+                     SprayMapSize size, bool drops) {
     const SprayVeil veil(frame);
     if (veil.empty()) return {};
     const double curvature = options.curvature_per_m;
@@ -156,6 +157,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     std::vector<Vec> places(count), axes(count);
     std::vector<T> widths(count), spreads(count), breaking(count);
     std::vector<double> cells(count);
+    std::vector<double> thicker(static_cast<std::size_t>(size.rows), veil.law().with_drops());
     constexpr double kSmoothest_m = 2.0;
     std::vector<glm::vec<3, T>> displacement(count);
     double finest_m = 0.0;
@@ -169,6 +171,9 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
         // Along the earth.
         const double arc_m = curvature > 0.0 ? std::asin(radius_m * curvature) / curvature : radius_m;
         const double away_m = arc_m * step, beside_m = arc_m * turn;
+        if (drops)
+            thicker[static_cast<std::size_t>(row)] =
+                std::lerp(veil.law().with_drops(), 1.0, drops_share(std::hypot(arc_m, view.position_m.z)));
         const auto width = static_cast<T>(std::max(std::min(away_m, beside_m), finest_m));
         for (int column = 0; column < size.columns; ++column) {
             const double azimuth = span.first_rad + turn * column;
@@ -210,13 +215,16 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
         spray.texels[i] = {
             static_cast<float>(on_earth(at, curvature).z),
             of_foam ? glm::vec3(static_cast<float>(law.over_foam.extinction_per_m * shares[i].x), 0.0f, 0.0f)
-                    : glm::vec3(law.ribbons.extinction_per_m * shares[i])};
+                    : glm::vec3(thicker[i / static_cast<std::size_t>(size.columns)] *
+                                law.ribbons.extinction_per_m * shares[i])};
         spray.top_m = std::max(spray.top_m, spray.texels[i].x);
     }
     return spray;
 }
 
-template Spray make_spray_map(const Frame<float>&, const View&, const ProjectedGridOptions&, SprayMapSize);
-template Spray make_spray_map(const Frame<double>&, const View&, const ProjectedGridOptions&, SprayMapSize);
+template Spray make_spray_map(const Frame<float>&, const View&, const ProjectedGridOptions&, SprayMapSize,
+                              bool);
+template Spray make_spray_map(const Frame<double>&, const View&, const ProjectedGridOptions&, SprayMapSize,
+                              bool);
 
 }  // namespace pelagic

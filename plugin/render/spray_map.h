@@ -23,9 +23,10 @@ std::size_t spray_map_bytes(SprayMapSize size);
 // of no texel are finer than the view's own pixels. Columns span what the view sees, or the whole circle where it sees its nadir or the zenith. Rows
 // go from a part of the eye's height to where the layer is behind the horizon. Texels are means over themselves, and over
 // two metres at least, where volumes have a voxel's: near the camera a picture's spray is smoother than a fine volume's. Empty where the
-// scene has no spray, and where no wave breaks. On all threads of the calling arena; the same bits whatever their number.
+// scene has no spray, and where no wave breaks. `drops`: the large drops near the eye are shown one by one (seen_drops.h); otherwise
+// they are in it. On all threads of the calling arena; the same bits whatever their number.
 template <class T>
 Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGridOptions& options,
-                     SprayMapSize size);
+                     SprayMapSize size, bool drops = false);
 
 }  // namespace pelagic

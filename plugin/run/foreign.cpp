@@ -51,7 +51,7 @@ std::vector<std::string> lines_of(const Groups& groups) {
 }  // namespace
 
 void for_each_bake_file(const fs::path& folder, const std::function<void(const std::string& path)>& take) {
-    constexpr std::array kFolders{"", "mesh/", "maps/", "tiles/", "volumes/"};
+    constexpr std::array kFolders{"", "mesh/", "maps/", "tiles/", "volumes/", "drops/"};
     for (const char* below : kFolders) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / below, error)) {

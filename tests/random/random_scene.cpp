@@ -503,6 +503,11 @@ class Drawing {
     }
 
     void fit_output() {
+        if (const KeyValue* drops = made_.value("output.drops"); drops && std::get<bool>(*drops)) {
+            for (const char* needed : {"effects.spray_drops", "effects.spray", "effects.whitecaps"})
+                give(needed, true);
+            give("effects.spray_law", std::string("andreas-1998"));
+        }
         const auto* volumes = list<std::vector<std::string>>("output.volumes");
         if (!volumes || volumes->empty()) return;
         if (std::find(volumes->begin(), volumes->end(), "spray") != volumes->end()) {

@@ -218,6 +218,7 @@ struct Effects {
     bool spray = false;
     SpraySource spray_law = SpraySource::Andreas1998;
     double spray_gain = 1.0;
+    bool spray_drops = false;  // its large drops as particles, no longer in the veil
 };
 
 // [quality]
@@ -239,6 +240,7 @@ struct Output {
     MeshScheme mesh_scheme = MeshScheme::None;
     std::vector<VolumeKind> volumes;
     double voxel_m = 0.5;  // > 0
+    bool drops = false;    // effects.spray_drops' particles
 };
 
 struct Scene {

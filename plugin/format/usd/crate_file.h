@@ -34,6 +34,7 @@ namespace pelagic::usd {
 enum class ValueType : std::uint64_t {
     Bool = 1,
     Int = 3,
+    Int64 = 5,
     Float = 8,
     Double = 9,
     String = 10,

@@ -6,6 +6,7 @@
 //   DIR/NAME.sky.exr               the dome's image, which someone else writes
 //   DIR/NAME.camera.usdc           the camera's lens and its pose at each frame (camera.h)
 //   DIR/NAME.volumes.usda          volumes and their files (volumes.h)
+//   DIR/NAME.drops.usda            drops of spray and their files (drops.h)
 //   DIR/mesh/NAME.topology.EXT     faces and st, and declarations of the attributes that vary
 //   DIR/mesh/NAME.manifest.usda    names and types of the attributes that vary
 //   DIR/mesh/NAME.####.EXT         one frame's values, as time samples at the frame's number
@@ -164,6 +165,7 @@ struct Stage {
     Material material{};
     bool has_camera = false;   // camera_file() is beside the root
     bool has_volumes = false;  // volumes_file() is
+    bool has_drops = false;    // drops_file() (drops.h) is
     std::optional<Sun> sun{};
     std::optional<Sky> sky{};
     // The entries of customLayerData's dictionary "pelagic", in this order. A key is an identifier:

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plugin/format/usd/drops.h"
 #include "plugin/format/usd/page.h"
 #include "plugin/format/usd/text.h"
 #include "plugin/format/usd/volumes.h"
@@ -367,6 +368,15 @@ void write_volumes(Page& page, const Stage& stage) {
     page.line({"}"});
 }
 
+void write_drops(Page& page, const Stage& stage) {
+    page.gap();
+    page.open({"def Points \"", kDropsName, "\" ("});
+    page.line({"prepend references = @./", drops_file(stage.name), "@"});
+    page.close(")");
+    page.line({"{"});
+    page.line({"}"});
+}
+
 }  // namespace
 
 std::string root_text(const Stage& stage) {
@@ -392,6 +402,7 @@ std::string root_text(const Stage& stage) {
     if (stage.sky) write_sky(page, *stage.sky);
     if (stage.has_camera) write_camera(page, stage);
     if (stage.has_volumes) write_volumes(page, stage);
+    if (stage.has_drops) write_drops(page, stage);
     page.close("}");
     return page.text();
 }

@@ -305,6 +305,7 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     Scene asked = scene;
     asked.output.mesh = MeshFormat::None;
     asked.output.cascade_tiles = tiles;
+    asked.output.drops = false;
     set_from_python(asked, key_at("output.maps"), py::cast(maps));
     require_valid(asked);
     Watch watch(progress, cancel);

@@ -170,6 +170,36 @@ TEST(Spray, IsFiniteAndGrowsUpToWhatHasBeenSeen) {
               spray_law(SpraySource::Andreas1998, 32.0, 6.0).optical_thickness());
 }
 
+// What drops have, ribbons lack. Their share by a plain sum in another program.
+TEST(Spray, VeilAndDropsAreTheLaw) {
+    for (const double wind_mps : {12.0, 20.0, 32.0, 60.0})
+        for (const double height_m : {0.0, 2.0, 8.0, 20.0}) {
+            const SprayLaw whole = spray_law(SpraySource::Andreas1998, wind_mps, height_m),
+                           parted = spray_law(SpraySource::Andreas1998, wind_mps, height_m, true);
+            EXPECT_EQ(whole.drops.optical_thickness, 0.0);
+            EXPECT_EQ(whole.with_drops(), 1.0);
+            EXPECT_GT(parted.drops.optical_thickness, 0.0);
+            EXPECT_GT(parted.ribbons.extinction_per_m.z, 0.0);
+            EXPECT_NEAR(parted.optical_thickness() / whole.optical_thickness(), 1.0, 1e-12);
+            EXPECT_NEAR(
+                parted.with_drops() * parted.ribbons.optical_thickness() / whole.ribbons.optical_thickness(),
+                1.0, 1e-12);
+            for (std::size_t i = 0; i < parted.drops.radii_um.size(); ++i) {
+                EXPECT_GE(parted.drops.radii_um[i], i > 0 ? parted.drops.radii_um[i - 1] : 80.0);
+                EXPECT_LT(parted.drops.radii_um[i], 563.0);
+            }
+            EXPECT_EQ(spray_law(SpraySource::Monahan1986, wind_mps, height_m, true).drops.optical_thickness,
+                      0.0);
+        }
+    const SprayLaw gale = spray_law(SpraySource::Andreas1998, 20.0, 8.0, true);
+    EXPECT_NEAR(gale.drops.optical_thickness / gale.optical_thickness(), 0.175, 0.01);
+    Scene scene;
+    scene.sea.wind_speed_mps = 20.0;
+    scene.effects.spray = scene.effects.spray_drops = true;
+    scene.effects.spray_gain = 7.0;
+    EXPECT_NEAR(spray_law(scene, 8.0).drops.optical_thickness, 7.0 * gale.drops.optical_thickness, 1e-12);
+}
+
 TEST(Spray, ThereIsNoneWithoutWindOrWhereItIsOff) {
     EXPECT_EQ(bubbles(0.0).extinction_per_m(), 0.0);
     for (const SpraySource law : {SpraySource::Monahan1986, SpraySource::Andreas1998}) {

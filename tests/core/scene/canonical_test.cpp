@@ -105,6 +105,7 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.effects.spray = true; },
         [](Scene& s) { s.effects.spray_law = SpraySource::Monahan1986; },
         [](Scene& s) { s.effects.spray_gain = 2.0; },
+        [](Scene& s) { s.effects.spray_drops = true; },
         [](Scene& s) { s.quality.level = QualityLevel::Draft; },
         [](Scene& s) { s.output.mesh = MeshFormat::None; },
         [](Scene& s) { s.output.attributes.pop_back(); },
@@ -114,6 +115,7 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.output.mesh_scheme = MeshScheme::CatmullClark; },
         [](Scene& s) { s.output.volumes = {VolumeKind::Spray}; },
         [](Scene& s) { s.output.voxel_m = 0.25; },
+        [](Scene& s) { s.output.drops = true; },
     };
     return list;
 }

@@ -512,6 +512,33 @@ TEST(Validate, NearFarHasAsManyQuadsASideAsFilesCanCount) {
     expect_refused(near_far(8193), {"surface.resolution", "8193", "1 … 8192"});  // as everywhere, and once
 }
 
+TEST(Validate, DropsAreRefusedWhereThereAreNone) {
+    const auto drops = [](Scene& s) {
+        s.effects.spray = s.effects.spray_drops = true;
+        s.output.drops = true;
+    };
+    expect_good(drops);
+    expect_good([&](Scene& s) {
+        drops(s);
+        s.output.mesh = MeshFormat::None;
+    });
+    const auto refused = [&](void (*change)(Scene&), const char* accepted) {
+        expect_refused(
+            [&](Scene& s) {
+                drops(s);
+                change(s);
+            },
+            {"output.drops", "true", accepted});
+    };
+    refused([](Scene& s) { s.effects.spray_drops = false; }, "effects.spray_drops = true");
+    refused([](Scene& s) { s.effects.spray = false; }, "effects.spray = true");
+    refused([](Scene& s) { s.effects.whitecaps = false; }, "effects.whitecaps = true");
+    refused([](Scene& s) { s.effects.spray_law = SpraySource::Monahan1986; },
+            "effects.spray_law = \"andreas-1998\"");
+    // Without output they are a matter of taste.
+    expect_good([](Scene& s) { s.effects.spray_drops = true; });
+}
+
 TEST(Validate, Volumes) {
     const auto spray = [](Scene& s) {
         s.effects.spray = true;

@@ -63,7 +63,7 @@ inline BaseShot patch_shot() {
 inline BaseShot volumes_shot() {
     BaseShot base{.name = "volumes", .scene = small_shot()};
     base.scene.shot.last_frame = 2;
-    base.scene.effects.spray = true;
+    base.scene.effects.spray = base.scene.effects.spray_drops = true;
     base.scene.output.mesh = MeshFormat::None;
     base.scene.output.volumes = {VolumeKind::Spray, VolumeKind::LevelSet};
     base.scene.output.voxel_m = 5.0;

@@ -3,6 +3,7 @@
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/render/render.h"
+#include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 
 #include <gtest/gtest.h>
@@ -58,6 +59,90 @@ bool same_spray_bits(const Picture& a, const Picture& b) {
 
 double radiance_at(const Picture& picture, std::size_t i) {
     return static_cast<double>(radiance_of(picture.layers[i]).y);
+}
+
+Scene storm_of_drops(double gain) {
+    Scene scene = spray_storm(gain);
+    scene.effects.whitecap_law = WhitecapLaw::Callaghan2008;
+    scene.effects.spray_law = SpraySource::Andreas1998;
+    scene.effects.spray_drops = true;
+    return scene;
+}
+
+bool is_finite(const Picture& picture) {
+    return std::all_of(picture.layers.begin(), picture.layers.end(), [](const SeaRadiance& layers) {
+        const glm::vec3 seen = radiance_of(layers);
+        return std::isfinite(seen.x) && std::isfinite(seen.y) && std::isfinite(seen.z);
+    });
+}
+
+// A parcel far away is spread over the pixels round it.
+TEST(SprayDropsSeen, ADiscHidesAsMuchAsItsSection) {
+    for (const double radius_px : {1.5, 2.3, 12.0})
+        for (const double beside : {0.0, 0.31, 0.5}) {
+            const SeenDrop drop{.at_px = {20.0 + beside, 20.0 - 0.7 * beside},
+                                .radius_px = radius_px,
+                                .section_px2 = 1e-4,
+                                .distance_m = 10.0f,
+                                .depth_m = 0.1f};
+            double sum = 0.0;
+            for (int y = 0; y < 40; ++y)
+                for (int x = 0; x < 40; ++x)
+                    sum += static_cast<double>(drop.hides({x + 0.5, y + 0.5}, 1e30f));
+            EXPECT_NEAR(sum / 1e-4, 1.0, radius_px < 2.0 ? 0.06 : 0.02) << radius_px << " " << beside;
+            EXPECT_EQ(drop.hides(drop.at_px, 9.0f), 0.0f) << "behind the sea";
+            const SeenDrop dense{.section_px2 = 1e9, .distance_m = 1.0f, .depth_m = 1.0f};
+            EXPECT_EQ(dense.hides({0.0, 0.0}, 9.0f), 1.0f);
+        }
+}
+
+// A place that drops have the more, the map has the less: their sum is the whole veil's.
+TEST(SprayDropsSeen, TheVeilHasWhatTheyLack) {
+    const Scene scene = storm_of_drops(1.0);
+    const View view = view_at(scene.camera, 1);
+    Scene veil = scene;
+    veil.effects.spray_drops = false;
+    const auto map_of = [&](const Scene& of, bool drops) {
+        Frame<float> frame(
+            std::make_shared<const Sea<float>>(picture_plan(of, std::array{1}, spray_options(of))));
+        frame.set(of.shot.time_s(1));
+        return make_spray_map(frame, view, projected_grid_options(*frame.sea().plan().from), {64, 64}, drops);
+    };
+    const Spray whole = map_of(veil, false), rest = map_of(scene, true), unseen = map_of(scene, false);
+    const auto prepared = prepare(scene);
+    const SprayLaw law = spray_law(prepared->scene, prepared->extent.significant_height_m);
+    ASSERT_EQ(whole.texels.size(), rest.texels.size());
+    for (int row = 0; row < whole.rows; ++row) {
+        const double away_m = std::hypot(
+            static_cast<double>(whole.first_m) * std::exp(static_cast<double>(whole.row_step) * row),
+            view.position_m.z);
+        const double left = std::lerp(1.0, 1.0 / law.with_drops(), drops_share(away_m));
+        for (int column = 0; column < whole.columns; column += 7) {
+            const auto i = static_cast<std::size_t>(row * whole.columns + column);
+            const auto at = static_cast<double>(whole.texels[i].y);
+            EXPECT_NEAR(static_cast<double>(rest.texels[i].y), left * at, 1e-5 * at + 1e-12) << away_m;
+            EXPECT_NEAR(static_cast<double>(unseen.texels[i].y), at, 1e-5 * at + 1e-12);
+        }
+    }
+}
+
+TEST(SprayDropsSeen, AreFiniteInPicturesAndTheSameAloneAndInARun) {
+    Scene scene = storm_of_drops(20.0);
+    scene.waves.cascades = {{180.0, 128}, {31.0, 64}};
+    scene.camera.resolution = {48, 27};
+    Scene veil = scene;
+    veil.effects.spray_drops = false;
+    RenderOptions options = spray_options(scene);
+    options.alpha = true;
+    const Picture with = spray_picture(scene, options), without = spray_picture(veil, options);
+    EXPECT_TRUE(is_finite(with));
+    EXPECT_EQ(with.sea, without.sea);
+    EXPECT_FALSE(same_spray_bits(with, without));
+    for (const float alpha : with.alpha) EXPECT_TRUE(alpha >= 0.0f && alpha <= 1.001f);
+    Renderer renderer(scene, options, uniform_sky(), std::array{1, 2});
+    Picture run;
+    for (const int frame : {2, 1}) renderer.render(frame, run);
+    EXPECT_TRUE(same_spray_bits(with, run));
 }
 
 TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {

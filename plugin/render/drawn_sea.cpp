@@ -224,7 +224,7 @@ void DrawnSea::lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double>
         options.cell_px = cell_px.value_or(grid_.cell_px);
         mesh.points = projected_grid(seen.view, options);
         const ProjectedGridSize size{mesh.points.columns, mesh.points.rows};
-        if (size != before) mesh.triangles = projected_grid_triangles(size);
+        if (cage_ || size != before) mesh.triangles = projected_grid_triangles(size);
     } else {
         mesh.points = {.origin_m = glm::dvec2(seen.view.position_m),
                        .curvature_per_m = grid_.curvature_per_m};
@@ -236,7 +236,6 @@ void DrawnSea::lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double>
 
 void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
     ProjectedGrid& to = mesh.points;
-    to.columns = to.rows = 0;
     const std::size_t first = to.rest_m.size();
     mesh.height_m.assign(first, 0.0f);
     mesh.normal.assign(first, glm::vec3(0.0f, 0.0f, 1.0f));

@@ -25,7 +25,7 @@ namespace pelagic {
 bool shows_open_sea(const Surface& surface);
 
 struct SeaMesh {
-    // Its columns and rows are 0 where the points are those of no whole grid.
+    // Its columns and rows are those of the whole grid that its points begin with, otherwise 0.
     ProjectedGrid points;
     // How high each point rests, and the surface's unit normal there; empty: 0, and up.
     std::vector<float> height_m;

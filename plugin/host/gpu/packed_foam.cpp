@@ -105,11 +105,15 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
         return foam_level_blend(foam, foam_footprint_m(grid.pixel_m[i], glm::length(grid.pixel_axis_m[i])))
             .level;
     };
-    // Of points that are those of no grid each has its cell's box, and where that is long parts of it, as below.
-    for (std::size_t i = 0; grid.columns == 0 && i < grid.rest_m.size(); ++i) {
+    // Of points beside those of a whole grid each has the half of its cell on either side, cut into parts as below.
+    constexpr double kHalf = 0.6;  // and something for cells that get larger
+    const std::size_t of_grid = grid.columns > 0 ? (static_cast<std::size_t>(grid.columns) + 1) *
+                                                       (static_cast<std::size_t>(grid.rows) + 1)
+                                                 : 0;
+    for (std::size_t i = of_grid; i < grid.rest_m.size(); ++i) {
         if (i % 4096 == 0) stop_if(cancel);
-        const glm::dvec2 at(grid.rest_m[i]), axis_m(grid.cell_axis_m[i]);
-        const double width_m = static_cast<double>(grid.cell_m[i]);
+        const glm::dvec2 at(grid.rest_m[i]), axis_m = kHalf * glm::dvec2(grid.cell_axis_m[i]);
+        const double width_m = kHalf * static_cast<double>(grid.cell_m[i]);
         const int finest = level_at(i);
         for (int level = finest; level <= std::min(finest + 2, FoamPlan::kLevels - 1); ++level) {
             const double tile_m = std::ldexp(foam.cell_m * FoamPlan::kTileCells, level);

@@ -57,7 +57,7 @@ class PackedFoam {
 };
 
 // The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which are
-// read where waves turn away from the eye. Points that are those of no grid (columns 0) stand each for its cell.
+// read where waves turn away from the eye. Points beside those of a whole grid stand each for its cell.
 // `cancel` is looked at for each row of the grid: throws BuildCancelled.
 std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid,
                                    const std::atomic<bool>* cancel = nullptr);

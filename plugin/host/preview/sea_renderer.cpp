@@ -186,7 +186,7 @@ void SeaRenderer::Implementation::upload_mesh(const SeaMesh& mesh) {
     attribute(2, 3, offsetof(Vertex, pixel_m));
     upload_shape(mesh);
     // Whole grids of one size have the same triangles.
-    const glm::ivec2 size(grid.columns, grid.rows);
+    const glm::ivec2 size = mesh.normal.empty() ? glm::ivec2(grid.columns, grid.rows) : glm::ivec2(0);
     if (size.x > 0 && grid_size == size) return;
     grid_size = size;
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, grid_indices.name());

@@ -97,7 +97,14 @@ Crate camera_layer(const Camera& camera) {
         film_back(camera.pose_at(camera.first_frame).fov_deg, camera.resolution, camera.film_width_mm);
 
     Crate crate;
-    crate.add_layer_of(kCameraName, camera.fps, camera.first_frame, camera.last_frame, camera.fingerprint);
+    Crate::Fields layer;
+    if (!camera.fingerprint.empty()) {
+        const CrateValue ours = crate.dictionary("fingerprint", crate.string(camera.fingerprint));
+        layer.push_back({"customLayerData", crate.dictionary("pelagic", ours)});
+    }
+    layer.insert(layer.end(), {{"startTimeCode", crate.real(camera.first_frame)},
+                               {"endTimeCode", crate.real(camera.last_frame)}});
+    crate.add_layer(kCameraName, camera.fps, layer);
 
     const auto real32 = [&](double number) {
         return Crate::Fields{{"default", crate.real32(static_cast<float>(number))}};

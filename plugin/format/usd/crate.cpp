@@ -80,7 +80,7 @@ Crate frame_layer(const MeshSample& sample, const Extent& extent) {
     const std::vector<VaryingValues> all = varying_values(sample, extent);
     check_rate(sample.fps);
     Crate crate;
-    crate.add_layer_of(kMeshName, sample.fps, sample.frame, sample.frame, sample.fingerprint);
+    crate.add_frame_layer(kMeshName, sample.fps, sample.frame, sample.fingerprint);
     std::vector<Crate::Attribute> attributes;
     for (const VaryingValues& varying : all) {
         const auto add_array = [&](const auto& values) {

@@ -224,13 +224,13 @@ void Crate::add_layer(std::string_view prim, double fps, Fields more) {
     spec(SpecType::PseudoRoot, "", more);
 }
 
-void Crate::add_layer_of(std::string_view prim, double fps, int first_frame, int last_frame,
-                         std::string_view fingerprint) {
+void Crate::add_frame_layer(std::string_view prim, double fps, int frame, std::string_view fingerprint) {
     Fields layer;
     if (!fingerprint.empty())
         layer.push_back(
             {"customLayerData", dictionary("pelagic", dictionary("fingerprint", string(fingerprint)))});
-    layer.insert(layer.end(), {{"startTimeCode", real(first_frame)}, {"endTimeCode", real(last_frame)}});
+    const CrateValue time = real(frame);
+    layer.insert(layer.end(), {{"startTimeCode", time}, {"endTimeCode", time}});
     add_layer(prim, fps, layer);
 }
 

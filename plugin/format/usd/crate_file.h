@@ -149,9 +149,8 @@ class Crate {
 
     // The layer's own fields: those of space and time, `more`, and its only prim.
     void add_layer(std::string_view prim, double fps, Fields more);
-    // The same of one whose samples are at these frames, the first to the last. An empty fingerprint isn't written.
-    void add_layer_of(std::string_view prim, double fps, int first_frame, int last_frame,
-                      std::string_view fingerprint);
+    // The same of one whose samples are at this frame. An empty fingerprint isn't written.
+    void add_frame_layer(std::string_view prim, double fps, int frame, std::string_view fingerprint);
     void add_prim(std::string_view prim, Fields fields, const std::vector<Attribute>& attributes);
 
     // Once, after everything was added.

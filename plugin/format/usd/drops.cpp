@@ -112,7 +112,7 @@ void write_drops_crate(const DropsSample& sample, const Sink& sink) {
     check(sample);
     const Extent extent = extent_of(sample);
     Crate crate;
-    crate.add_layer_of(kDropsName, sample.fps, sample.frame, sample.frame, sample.fingerprint);
+    crate.add_frame_layer(kDropsName, sample.fps, sample.frame, sample.fingerprint);
     const Crate::Fields vertex{{"interpolation", crate.token(kVertex)}};
     const std::size_t count = sample.points.size();
     const std::array arrays{crate.array(ValueType::Vec3f, std::span<const glm::vec3>(extent), extent.size()),

@@ -80,14 +80,7 @@ Crate frame_layer(const MeshSample& sample, const Extent& extent) {
     const std::vector<VaryingValues> all = varying_values(sample, extent);
     check_rate(sample.fps);
     Crate crate;
-    Crate::Fields layer;
-    if (!sample.fingerprint.empty()) {
-        const CrateValue ours = crate.dictionary("fingerprint", crate.string(sample.fingerprint));
-        layer.push_back({"customLayerData", crate.dictionary("pelagic", ours)});
-    }
-    const CrateValue frame = crate.real(sample.frame);
-    layer.insert(layer.end(), {{"startTimeCode", frame}, {"endTimeCode", frame}});
-    crate.add_layer(kMeshName, sample.fps, layer);
+    crate.add_frame_layer(kMeshName, sample.fps, sample.frame, sample.fingerprint);
     std::vector<Crate::Attribute> attributes;
     for (const VaryingValues& varying : all) {
         const auto add_array = [&](const auto& values) {

@@ -224,6 +224,16 @@ void Crate::add_layer(std::string_view prim, double fps, Fields more) {
     spec(SpecType::PseudoRoot, "", more);
 }
 
+void Crate::add_frame_layer(std::string_view prim, double fps, int frame, std::string_view fingerprint) {
+    Fields layer;
+    if (!fingerprint.empty())
+        layer.push_back(
+            {"customLayerData", dictionary("pelagic", dictionary("fingerprint", string(fingerprint)))});
+    const CrateValue time = real(frame);
+    layer.insert(layer.end(), {{"startTimeCode", time}, {"endTimeCode", time}});
+    add_layer(prim, fps, layer);
+}
+
 void Crate::add_prim(std::string_view prim, Fields fields, const std::vector<Attribute>& attributes) {
     std::vector<std::string_view> names;
     for (const Attribute& attribute : attributes) names.push_back(attribute.name);

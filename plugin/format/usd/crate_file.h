@@ -149,6 +149,8 @@ class Crate {
 
     // The layer's own fields: those of space and time, `more`, and its only prim.
     void add_layer(std::string_view prim, double fps, Fields more);
+    // The same of one whose samples are at this frame. An empty fingerprint isn't written.
+    void add_frame_layer(std::string_view prim, double fps, int frame, std::string_view fingerprint);
     void add_prim(std::string_view prim, Fields fields, const std::vector<Attribute>& attributes);
 
     // Once, after everything was added.

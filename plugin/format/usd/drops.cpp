@@ -112,14 +112,7 @@ void write_drops_crate(const DropsSample& sample, const Sink& sink) {
     check(sample);
     const Extent extent = extent_of(sample);
     Crate crate;
-    Crate::Fields layer;
-    if (!sample.fingerprint.empty()) {
-        const CrateValue ours = crate.dictionary("fingerprint", crate.string(sample.fingerprint));
-        layer.push_back({"customLayerData", crate.dictionary("pelagic", ours)});
-    }
-    const CrateValue frame = crate.real(sample.frame);
-    layer.insert(layer.end(), {{"startTimeCode", frame}, {"endTimeCode", frame}});
-    crate.add_layer(kDropsName, sample.fps, layer);
+    crate.add_frame_layer(kDropsName, sample.fps, sample.frame, sample.fingerprint);
     const Crate::Fields vertex{{"interpolation", crate.token(kVertex)}};
     const std::size_t count = sample.points.size();
     const std::array arrays{crate.array(ValueType::Vec3f, std::span<const glm::vec3>(extent), extent.size()),

@@ -54,13 +54,13 @@ TEST(BakedDrops, AFrameAloneHasTheBytesOfARun) {
     // Without a mesh, alone.
     scene.output.mesh = MeshFormat::None;
     baked(scene, folder / "alone", {3});
-    EXPECT_EQ(drops_bytes(folder / "alone" / frame), run);
+    EXPECT_TRUE(drops_bytes(folder / "alone" / frame) == run);
     EXPECT_FALSE(fs::exists(folder / "alone" / "drops/gale.0002.usdc"));
     // What is whole is kept, and with another sea made anew.
     EXPECT_EQ(baked(scene, folder / "alone", {3}).kept, 1);
     scene.effects.spray_gain = 2.0;
     EXPECT_EQ(baked(scene, folder / "alone", {3}).kept, 0);
-    EXPECT_NE(drops_bytes(folder / "alone" / frame), run);
+    EXPECT_FALSE(drops_bytes(folder / "alone" / frame) == run);
 }
 
 TEST(BakedDrops, NoneIsAFileWithoutPoints) {

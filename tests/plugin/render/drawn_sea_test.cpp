@@ -190,7 +190,7 @@ TEST(DrawnSea, KindsThatReachTheHorizonAreTheOpenSea) {
     scene.surface.beyond = Beyond::ByKind;
     const Picture open = picture_of(scene);
     const auto fingerprint = [](const Scene& of) {
-        return PictureFingerprint({.scene = of, .options = render_options(of), .sky_content = ""}).of(1);
+        return PictureFingerprint({.scene = of, .options = render_options(of), .picture_content = ""}).of(1);
     };
     const std::string made_of = fingerprint(scene);
     scene.surface.size_m = 20.0;

@@ -35,8 +35,7 @@ double normal_quantile(double p) {
     double z = t - (2.515517 + t * (0.802853 + t * 0.010328)) /
                        (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
     for (int i = 0; i < 2; ++i)
-        z += (0.5 * std::erfc(z / std::sqrt(2.0)) - tail) * std::sqrt(kTwoPi) *
-             std::exp(0.5 * z * z);
+        z += (0.5 * std::erfc(z / std::sqrt(2.0)) - tail) * std::sqrt(kTwoPi) * std::exp(0.5 * z * z);
     return p < 0.5 ? -z : z;
 }
 
@@ -110,7 +109,8 @@ FoamImage make_foam_image(int side, std::span<const float> brightness) {
     const auto width = static_cast<std::size_t>(side);
     image.texels.assign(width * static_cast<std::size_t>(image.rows()), 0.0f);
     float* const variances = image.texels.data() + width * static_cast<std::size_t>(image.rows() - 1);
-    if (std::all_of(brightness.begin(), brightness.end(), [&](float value) { return value == brightness[0]; }))
+    if (std::all_of(brightness.begin(), brightness.end(),
+                    [&](float value) { return value == brightness[0]; }))
         throw std::invalid_argument("is of one brightness all over");
     std::vector<float> level = ranked({brightness.begin(), brightness.end()}, side);
     std::size_t row = 0;

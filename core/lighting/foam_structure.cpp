@@ -33,7 +33,8 @@ FoamPattern foam_pattern(const FoamLook& look, glm::dvec2 origin_m) {
     if (look.image) {
         pattern.picture = look.image.get();
         const auto in_tile = [&](double at) { return at / look.image_m - std::floor(at / look.image_m); };
-        pattern.image = glm::vec4(static_cast<double>(look.image->side), 1.0 / look.image_m, in_tile(along), in_tile(across));
+        pattern.image = glm::vec4(static_cast<double>(look.image->side), 1.0 / look.image_m, in_tile(along),
+                                  in_tile(across));
     }
     return pattern;
 }

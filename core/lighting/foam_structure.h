@@ -17,9 +17,9 @@ inline constexpr int kFoamCell_m = 32;
 struct FoamLook {
     std::shared_ptr<const FoamImage> image{};  // the artist's pattern, in place of the own one
     double image_m = 10.0;                     // the side of it
-    double structure = 0.0;           // 0: smooth coverage … 1: lace
-    double streaks = 0.0;             // 0 … 1, along the wind
-    double wind_direction_deg = 0.0;  // blowing towards, counter-clockwise from +x
+    double structure = 0.0;                    // 0: smooth coverage … 1: lace
+    double streaks = 0.0;                      // 0 … 1, along the wind
+    double wind_direction_deg = 0.0;           // blowing towards, counter-clockwise from +x
     // Of foam where waves break, and of what they leave: the share of its area that it hides (the mean over a law's foam is
     // Koepke's 0.4), and what that reflects.
     float fresh_opacity = 0.4f, old_opacity = 0.4f;

@@ -96,8 +96,8 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
                                             by_place ? air->by_place : 0.0f};
     const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
                                            sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
-    const typename Variant::FoamPattern pattern{foam.cell, foam.rest, foam.axes, foam.look, foam.white,
-                                               foam.image};
+    const typename Variant::FoamPattern pattern{foam.cell, foam.rest,  foam.axes,
+                                                foam.look, foam.white, foam.image};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         typename Variant::SeenFoam seen = shading.no_foam();

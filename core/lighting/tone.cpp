@@ -59,9 +59,9 @@ glm::dvec3 planckian_xyz(double kelvin) {
 
 glm::mat3 white_balance(double kelvin) {
     // Written by rows: IEC 61966-2-1.
-    const glm::dmat3 xyz_of_rgb = glm::transpose(glm::dmat3(0.4123907993, 0.3575843394, 0.1804807884,
-                                                            0.2126390059, 0.7151686788, 0.0721923154,
-                                                            0.0193308187, 0.1191947798, 0.9505321522));
+    const glm::dmat3 xyz_of_rgb =
+        glm::transpose(glm::dmat3(0.4123907993, 0.3575843394, 0.1804807884, 0.2126390059, 0.7151686788,
+                                  0.0721923154, 0.0193308187, 0.1191947798, 0.9505321522));
     const glm::dmat3 cones_of_rgb = bradford() * xyz_of_rgb;
     constexpr double kNeutral = 6500.0;
     const glm::dvec3 gain = bradford() * planckian_xyz(kNeutral) / (bradford() * planckian_xyz(kelvin)) - 1.0;

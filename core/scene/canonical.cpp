@@ -29,7 +29,8 @@ std::string canonical(const Scene& scene, KeyPartSet parts) {
     for (const Key& key : keys()) {
         if ((key.key_parts & parts).none()) continue;
         // Waves that are added up one by one have neither.
-        if (scene.waves.model == WaveModel::Trochoid && (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
+        if (scene.waves.model == WaveModel::Trochoid &&
+            (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
             continue;
         std::string value;
         if (key.type == KeyType::DataFile) {

@@ -639,10 +639,12 @@ void add_effects_and_quality(Built& out) {
                                      .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_pattern>(
             {.name = "foam_pattern",
-             .help = "what foam looks like near: lace, or a picture that tiles, brightest where foam is thickest, the wind blowing "
-                     "to its right; its mean is the same",
-             .accepted = "\"lace\", or the path of an .exr, square, with a side of 16, 32 ... 4096 pixels, from the shot file's "
-                         "folder",
+             .help =
+                 "what foam looks like near: lace, or a picture that tiles, brightest where foam is thickest, the wind blowing "
+                 "to its right; its mean is the same",
+             .accepted =
+                 "\"lace\", or the path of an .exr, square, with a side of 16, 32 ... 4096 pixels, from the shot file's "
+                 "folder",
              .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_pattern_m>({.name = "foam_pattern_m",
                                        .help = "the side of that picture on the water",
@@ -652,7 +654,8 @@ void add_effects_and_quality(Built& out) {
                                        .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_fresh_albedo>(
             {.name = "foam_fresh_albedo",
-             .help = "what foam reflects where waves break, as far as it hides the water; 0.55 is measured (Whitlock 1982)",
+             .help =
+                 "what foam reflects where waves break, as far as it hides the water; 0.55 is measured (Whitlock 1982)",
              .range = limits::kFoamAlbedo,
              .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_old_albedo>({.name = "foam_old_albedo",
@@ -661,8 +664,9 @@ void add_effects_and_quality(Built& out) {
                                         .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_fresh_opacity>(
             {.name = "foam_fresh_opacity",
-             .help = "the share of its area that foam hides where waves break; 0: such that the mean over all foam is "
-                     "0.4, which is measured (Koepke 1984)",
+             .help =
+                 "the share of its area that foam hides where waves break; 0: such that the mean over all foam is "
+                 "0.4, which is measured (Koepke 1984)",
              .range = limits::kFoamOpacity,
              .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_old_opacity>({.name = "foam_old_opacity",

@@ -495,7 +495,8 @@ void check_foam_pattern(SceneChecker& check, const Effects& effects) {
                           "is the size of a picture of foam, and effects.foam_pattern is \"lace\"",
                           number_text(usual.foam_pattern_m) + ", or effects.foam_pattern = \"PATH.exr\""});
     } else if (!is_exr(effects.foam_pattern)) {
-        check.refuse({"effects.foam_pattern", quoted_text(effects.foam_pattern), "is neither \"lace\" nor a picture",
+        check.refuse({"effects.foam_pattern", quoted_text(effects.foam_pattern),
+                      "is neither \"lace\" nor a picture",
                       "\"lace\", or the path of a picture that tiles, an .exr"});
     }
 }

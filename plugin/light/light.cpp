@@ -197,8 +197,10 @@ std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene) {
         std::vector<float> brightness;
         brightness.reserve(picture.pixels.size());
         for (int row = picture.height; row-- > 0;) {  // from the bottom
-            const auto* const first = picture.pixels.data() + static_cast<std::ptrdiff_t>(row) * picture.width;
-            for (int i = 0; i < picture.width; ++i) brightness.push_back(first[i][0] + first[i][1] + first[i][2]);
+            const auto* const first =
+                picture.pixels.data() + static_cast<std::ptrdiff_t>(row) * picture.width;
+            for (int i = 0; i < picture.width; ++i)
+                brightness.push_back(first[i][0] + first[i][1] + first[i][2]);
         }
         return std::make_shared<const FoamImage>(make_foam_image(picture.width, brightness));
     } catch (const exr::ReadError& error) {

@@ -115,7 +115,8 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
     if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
-    for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg)) attributes.push_back(std::move(attribute));
+    for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg))
+        attributes.push_back(std::move(attribute));
     for (const PictureLayerRow& row : kPictureLayers)
         if (!row.light && context.options.layers[index(row.layer)])
             attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});

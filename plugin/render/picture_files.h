@@ -29,8 +29,8 @@ struct PictureContext {
     const Scene& scene;
     const RenderOptions& options;
     const Sky& sky;
-    std::string made_of;   // PictureFingerprint::of(the frame)
-    float exposure;        // shot_exposure() (plugin/light/exposure.h)
+    std::string made_of;  // PictureFingerprint::of(the frame)
+    float exposure;       // shot_exposure() (plugin/light/exposure.h)
     const PictureColours& colours = kOwnColours;
     std::string chosen{};  // RunOptions::chosen (plugin/run/run.h), in the EXR's header
 };

@@ -22,7 +22,8 @@ SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, c
       sea_(std::make_shared<const Sea<T>>(plan, watch)),
       state_(sea_) {
     if (plan.foam)
-        foam_ = make_foam(plan.from->scene, foam_.image, active_foam(plan.from->scene, sea_->residual_coverage()));
+        foam_ = make_foam(plan.from->scene, foam_.image,
+                          active_foam(plan.from->scene, sea_->residual_coverage()));
 }
 
 template <class T>

@@ -286,7 +286,8 @@ std::string random_foam(Draw& draw) {
     std::vector<float> texels;
     for (int i = 0; i < side * side; ++i)
         texels.push_back(draw.chance(black) ? 0.0f : static_cast<float>(brightness * draw.uniform(0.0, 1.0)));
-    return exr::encode_scanline({}, {.width = side, .height = side, .channels = {{.name = "Y", .data = texels.data()}}});
+    return exr::encode_scanline(
+        {}, {.width = side, .height = side, .channels = {{.name = "Y", .data = texels.data()}}});
 }
 
 // An hour of a buoy that measures a few frequencies, some of them without directions or missing.

@@ -204,11 +204,11 @@ struct Effects {
     double foam_decay_s = 4.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
     double foam_drift = 0.02;   // of the wind's speed, along the wind
     WhitecapLaw whitecap_law = WhitecapLaw::Callaghan2008;
-    double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986
-    double whitecap_amount = 1.0;  // ≥ 0, times the law
-    double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
-    double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
-    double foam_streaks = 0.5;     // 0 … 1, along the wind
+    double sea_minus_air_c = 0.0;       // temperature of the sea less the air's, with Monahan1986
+    double whitecap_amount = 1.0;       // ≥ 0, times the law
+    double breaking_from_m = 1.0;       // the shortest waves that break; 0: all do
+    double foam_structure = 1.0;        // 0: smooth coverage … 1: lace
+    double foam_streaks = 0.5;          // 0 … 1, along the wind
     std::string foam_pattern = "lace";  // or the path of a picture
     double foam_pattern_m = 10.0;       // the side of that picture, > 0
     // Of foam where waves break and of what they leave: what it reflects where it hides the water (0 … 1), and the share of its

@@ -15,7 +15,8 @@ namespace pelagic::ocio {
 struct ViewChoice {
     std::string config{};           // the path of a config.ocio
     std::string display{}, view{};  // empty: the configuration's own default
-    std::string space{};            // its name of linear Rec. 709; empty: found by its interchange role or by a usual name
+    std::string
+        space{};  // its name of linear Rec. 709; empty: found by its interchange role or by a usual name
     glm::mat3 aces_of_rec709{1.0f};  // from linear Rec. 709 to ACES 2065-1, the interchange role's
 };
 

@@ -21,16 +21,18 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 // The asked one, or the default of an empty one.
-std::string chosen(const std::string& asked, const char* usual, const char* what, std::vector<std::string> known) {
+std::string chosen(const std::string& asked, const char* usual, const char* what,
+                   std::vector<std::string> known) {
     const std::string name = asked.empty() && usual ? usual : asked;
     if (std::find(known.begin(), known.end(), name) == known.end())
-        throw std::invalid_argument("has no " + std::string(what) + " \"" + name + "\"; accepted: " + listed(known));
+        throw std::invalid_argument("has no " + std::string(what) + " \"" + name +
+                                    "\"; accepted: " + listed(known));
     return name;
 }
 
 // What configurations call linear Rec. 709, where they have no interchange role: the Academy's of both generations, and Blender's.
-constexpr std::array kUsualSpaces{"Linear Rec.709 (sRGB)", "lin_rec709", "Utility - Linear - Rec.709", "Linear Rec.709",
-                                  "lin_srgb", "Linear"};
+constexpr std::array kUsualSpaces{"Linear Rec.709 (sRGB)", "lin_rec709", "Utility - Linear - Rec.709",
+                                  "Linear Rec.709",        "lin_srgb",   "Linear"};
 
 class OcioView final : public View {
   public:
@@ -39,7 +41,8 @@ class OcioView final : public View {
         config->validate();
         std::vector<std::string> displays, views;
         for (int i = 0; i < config->getNumDisplays(); ++i) displays.emplace_back(config->getDisplay(i));
-        const std::string display = chosen(choice.display, config->getDefaultDisplay(), "display", std::move(displays));
+        const std::string display =
+            chosen(choice.display, config->getDefaultDisplay(), "display", std::move(displays));
         for (int i = 0; i < config->getNumViews(display.c_str()); ++i)
             views.emplace_back(config->getView(display.c_str(), i));
         const std::string view =
@@ -67,8 +70,9 @@ class OcioView final : public View {
             if (space.empty() && config->getColorSpace(usual)) space = usual;
         if (space.empty() || !config->getColorSpace(space.c_str()))
             throw std::invalid_argument(
-                (space.empty() ? "has neither the role aces_interchange nor a colour space of a usual name for linear Rec. 709"
-                               : "has no colour space \"" + space + "\"") +
+                (space.empty()
+                     ? "has neither the role aces_interchange nor a colour space of a usual name for linear Rec. 709"
+                     : "has no colour space \"" + space + "\"") +
                 std::string("; accepted: --ocio-space with one of ") + listed(spaces_of(*config)));
         shown->setSrc(space.c_str());
         group->appendTransform(shown);
@@ -92,7 +96,8 @@ class OcioView final : public View {
   private:
     static std::vector<std::string> spaces_of(const OCIO::Config& config) {
         std::vector<std::string> names;
-        for (int i = 0; i < config.getNumColorSpaces(); ++i) names.emplace_back(config.getColorSpaceNameByIndex(i));
+        for (int i = 0; i < config.getNumColorSpaces(); ++i)
+            names.emplace_back(config.getColorSpaceNameByIndex(i));
         return names;
     }
 
@@ -107,7 +112,7 @@ const pelagic::ocio::View* pelagic_ocio_view(const pelagic::ocio::ViewChoice& ch
     try {
         return new pelagic::ocio::OcioView(choice);
     } catch (const OCIO_NAMESPACE::Exception& error) {
-        throw std::invalid_argument(std::string("isn't a configuration that OpenColorIO reads: ") + error.what() +
-                                    "; accepted: the path of a config.ocio");
+        throw std::invalid_argument(std::string("isn't a configuration that OpenColorIO reads: ") +
+                                    error.what() + "; accepted: the path of a config.ocio");
     }
 }

@@ -153,7 +153,8 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     load_cage(reader, file.parent_path(), scene.surface);
     load_camera(reader, file.parent_path(), scene.camera);
     find_picture(reader, file.parent_path(), "light.sky", scene.light.sky, Light{}.sky);
-    find_picture(reader, file.parent_path(), "effects.foam_pattern", scene.effects.foam_pattern, Effects{}.foam_pattern);
+    find_picture(reader, file.parent_path(), "effects.foam_pattern", scene.effects.foam_pattern,
+                 Effects{}.foam_pattern);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
     if (!reader.has_failed("light.sky") && !reader.has_failed("effects.foam_pattern"))
         for (Problem& problem : check_scene(scene)) reader.refuse_value(std::move(problem));

@@ -78,15 +78,15 @@ int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArgumen
     files::remove_stale_temporaries(file.has_parent_path() ? file.parent_path() : ".");
     RenderOptions options = render_options(scene);
     options.samples = 1;
-    const PictureContext about{
-        .scene = scene,
-        .options = options,
-        .sky = sky,
-        .made_of =
-            PictureFingerprint(
-                {.scene = scene, .options = options, .picture_content = picture_content(scene), .drawn_by_gpu = true})
-                .of(frame),
-        .exposure = shot_exposure(scene, sky)};
+    const PictureContext about{.scene = scene,
+                               .options = options,
+                               .sky = sky,
+                               .made_of = PictureFingerprint({.scene = scene,
+                                                              .options = options,
+                                                              .picture_content = picture_content(scene),
+                                                              .drawn_by_gpu = true})
+                                              .of(frame),
+                               .exposure = shot_exposure(scene, sky)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
                                                              : encode_png(about, drawn.picture, frame));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';

@@ -81,7 +81,8 @@ PictureColours colours_of(const RenderArguments& arguments) {
     colours.acescg = arguments.primaries == "acescg";
     if (arguments.ocio.empty()) {
         for (const auto& [option, value] : {std::pair("--ocio-display", arguments.display),
-                                            {"--ocio-view", arguments.view}, {"--ocio-space", arguments.space}})
+                                            {"--ocio-view", arguments.view},
+                                            {"--ocio-space", arguments.space}})
             if (!value.empty()) throw WrongUsage(std::string(option) + " without --ocio; accepted: both");
         return colours;
     }
@@ -89,7 +90,8 @@ PictureColours colours_of(const RenderArguments& arguments) {
     if (config == "env") {
         const char* const named = std::getenv("OCIO");
         if (!named || !*named)
-            throw WrongUsage("--ocio env: the variable OCIO names no configuration; accepted: the path of a config.ocio");
+            throw WrongUsage(
+                "--ocio env: the variable OCIO names no configuration; accepted: the path of a config.ocio");
         config = named;
     }
     try {

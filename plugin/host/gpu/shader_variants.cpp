@@ -67,13 +67,16 @@ std::string foam_constants() {
 }  // namespace
 
 const std::vector<std::string_view>& lighting_files() {
-    static const std::vector<std::string_view> files{
-        "core/lighting/level.glsl",  "core/lighting/fresnel.glsl",
-        "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
-        "core/lighting/sky.glsl",    "core/lighting/water.glsl",
-        "core/lighting/foam.glsl",   "plugin/host/gpu/foam_uniforms.glsl",
-        "core/lighting/foam_structure.glsl",
-        "core/lighting/sea.glsl"};
+    static const std::vector<std::string_view> files{"core/lighting/level.glsl",
+                                                     "core/lighting/fresnel.glsl",
+                                                     "core/lighting/slopes.glsl",
+                                                     "core/lighting/sun.glsl",
+                                                     "core/lighting/sky.glsl",
+                                                     "core/lighting/water.glsl",
+                                                     "core/lighting/foam.glsl",
+                                                     "plugin/host/gpu/foam_uniforms.glsl",
+                                                     "core/lighting/foam_structure.glsl",
+                                                     "core/lighting/sea.glsl"};
     return files;
 }
 
@@ -158,17 +161,16 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
         is_lit_afterwards(options)
             ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
             : joined({query_files(), {shape_file(options.is_shaped, kShapeOfVertex), vertex_file(options)}}),
-        joined(
-            {query_files(),
-             {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-             {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-             lighting_files(),
-             {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
-             spray_files(lighting),
-             {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
-             output_files(options),
-             {"plugin/host/gpu/false_colour.glsl", points_file(options),
-              shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
+        joined({query_files(),
+                {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+                {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+                lighting_files(),
+                {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                spray_files(lighting),
+                {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
+                output_files(options),
+                {"plugin/host/gpu/false_colour.glsl", points_file(options),
+                 shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {

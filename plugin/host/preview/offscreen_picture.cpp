@@ -220,12 +220,11 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     if (lives)
         upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.mesh,
                     watch.foam_past);
-    renderer.draw(
-        view, planned.mesh,
-        {.lighting = lighting,
-         .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
-                           lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
-         .layers = true});
+    renderer.draw(view, planned.mesh,
+                  {.lighting = lighting,
+                   .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
+                                     lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+                   .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =

@@ -28,7 +28,14 @@ namespace pelagic {
 namespace {
 
 // Texture units. SeaTextures has the first ones.
-enum OtherUnit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMapUnit, kDither, kFoamImage, kPictures };
+enum OtherUnit : int {
+    kSkyMap = SeaTextures::kUnits,
+    kAirTable,
+    kSprayMapUnit,
+    kDither,
+    kFoamImage,
+    kPictures
+};
 
 constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
@@ -286,7 +293,8 @@ void SeaRenderer::Implementation::set_foam_image(const std::shared_ptr<const Foa
                            std::to_string(largest_texture) + " texels a side, have room for");
     texels_as_they_are();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, shown.side, shown.rows(), 0, GL_RED, GL_FLOAT, shown.texels.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, shown.side, shown.rows(), 0, GL_RED, GL_FLOAT,
+                 shown.texels.data());
     foam_image = image;
     has_foam_texture = true;
 }

@@ -216,10 +216,11 @@ void add_light(py::module_& module) {
         .def_property_readonly(
             "backscatter_per_m", [](const WaterBody& self) { return tuple_of(self.backscatter_per_m); },
             "[1/m], at the same. Isotropic scattering of twice as much sends as much back.");
-    module.def("foam_picture", &foam_picture_of, py::arg("scene"),
-               "float32 (side, side, 1), rows from the top: the picture of effects.foam_pattern by rank, as a variable of normal "
-               "distribution, mean 0, variance 1, largest where foam is thickest; None where there is none. ValueError for a file "
-               "that is no picture of foam.");
+    module.def(
+        "foam_picture", &foam_picture_of, py::arg("scene"),
+        "float32 (side, side, 1), rows from the top: the picture of effects.foam_pattern by rank, as a variable of normal "
+        "distribution, mean 0, variance 1, largest where foam is thickest; None where there is none. ValueError for a file "
+        "that is no picture of foam.");
     module.def(
         "shade",
         [](const PythonSky& sky, const WaterBody& water, const py::object& to_eye, const py::object& normal,

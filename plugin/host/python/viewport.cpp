@@ -301,7 +301,8 @@ class GpuSea {
     py::dict foam(const Scene& scene, std::array<double, 2> origin_m, const GpuLight& light) const {
         const double active =
             has_living_foam() ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
-        return dict_of(foam_uniforms(foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
+        return dict_of(foam_uniforms(
+            foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
     }
 
     bool has_living_foam() const { return packed_.layout()->has_living_foam(); }

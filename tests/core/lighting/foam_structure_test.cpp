@@ -94,22 +94,25 @@ TEST(FoamStructure, OffIsSmoothCoverage) {
 
 // Fresh foam and old foam are mixed as they hide the water, so that one place's light is the mean of its parts'.
 TEST(FoamStructure, MixesFreshAndOldByWhatTheyHide) {
-    const auto pattern = glsl(foam_pattern({.fresh_opacity = 0.9f, .old_opacity = 0.2f, .fresh_albedo = 0.8f, .old_albedo = 0.3f}, {}));
+    const auto pattern = glsl(foam_pattern(
+        {.fresh_opacity = 0.9f, .old_opacity = 0.2f, .fresh_albedo = 0.8f, .old_albedo = 0.3f}, {}));
     for (const float fresh : {0.0f, 0.02f, 0.15f, 0.3f}) {
-        const auto seen = shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(1.0f, 0.0f, 0.0f), 0.3f, fresh, 2.0f, kSun);
+        const auto seen =
+            shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(1.0f, 0.0f, 0.0f), 0.3f, fresh, 2.0f, kSun);
         EXPECT_NEAR(seen.opacity, 0.9f * fresh + 0.2f * (0.3f - fresh), 1e-6f);
         EXPECT_NEAR(seen.opacity * seen.white, 0.9f * fresh * 0.8f + 0.2f * (0.3f - fresh) * 0.3f, 1e-6f);
     }
     const auto none = glsl(foam_pattern({.structure = 1.0, .fresh_opacity = 0.0f, .old_opacity = 0.0f}, {}));
-    EXPECT_EQ(shading.seen_foam(none, {}, glm::vec3(0.01f, 0.0f, 0.0f), 0.3f, 0.1f, 2.0f, kSun).opacity, 0.0f);
+    EXPECT_EQ(shading.seen_foam(none, {}, glm::vec3(0.01f, 0.0f, 0.0f), 0.3f, 0.1f, 2.0f, kSun).opacity,
+              0.0f);
 }
 
 // Near, the pattern is there: neighbouring places differ, most are foam or none, and coverage is exceeded by what it should be.
 TEST(FoamStructure, IsThere) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> place(-500.0f, 500.0f);
-    const auto pattern = glsl(
-        foam_pattern({.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0, .fresh_opacity = 1.0f}, {}));
+    const auto pattern = glsl(foam_pattern(
+        {.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0, .fresh_opacity = 1.0f}, {}));
     int decided = 0;
     constexpr int kPlaces = 2000;
     for (int i = 0; i < kPlaces; ++i) {

@@ -96,7 +96,8 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
 TEST(Foam, IsKoepkesAndShowsTheWater) {
     Optics optics;
     EXPECT_NEAR(optics.kFoamOpacity * optics.kWhiteFoam, 0.22f, 1e-6f);
-    const SeaAlbedo black = sea_albedo({.reflectance = vec3(0.0f)}), blue = sea_albedo({.reflectance = vec3(0.0f, 0.01f, 0.05f)});
+    const SeaAlbedo black = sea_albedo({.reflectance = vec3(0.0f)}),
+                    blue = sea_albedo({.reflectance = vec3(0.0f, 0.01f, 0.05f)});
     EXPECT_NEAR(black.foam.x, 0.22f, 1e-6f);
     EXPECT_NEAR(blue.foam.z, 0.22f + 0.6f * blue.water.z, 1e-6f);
     EXPECT_GT(blue.water.z, 0.01f);
@@ -106,14 +107,22 @@ TEST(Foam, IsKoepkesAndShowsTheWater) {
 TEST(Foam, HidesWhatItsOpacitySays) {
     Optics optics;
     Inputs inputs(33);
-    const Optics::SeaLight light{normalize(vec3(0.5f, 0.0f, 0.3f)), vec3(1e4f), float(kFoamRadius), vec3(0.7f), vec3(1.0f), vec3(0.02f)};
+    const Optics::SeaLight light{normalize(vec3(0.5f, 0.0f, 0.3f)),
+                                 vec3(1e4f),
+                                 float(kFoamRadius),
+                                 vec3(0.7f),
+                                 vec3(1.0f),
+                                 vec3(0.02f)};
     for (int i = 0; i < 1000; ++i) {
         const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.1, 0.9);
         const vec3 up(0.0f, 0.0f, 1.0f);
-        const auto terms = [&](float opacity) { return optics.sea_radiance(v, up, s, {opacity, 0.55f, 0.0f}, light); };
+        const auto terms = [&](float opacity) {
+            return optics.sea_radiance(v, up, s, {opacity, 0.55f, 0.0f}, light);
+        };
         const auto none = terms(0.0f), some = terms(0.25f), all = terms(1.0f);
         EXPECT_EQ(none.foam, vec3(0.0f));
-        for (const auto& [clear, left, white] : {std::tuple{none.sun, some.sun, some.foam}, {none.sea, some.sea, some.foam}}) {
+        for (const auto& [clear, left, white] :
+             {std::tuple{none.sun, some.sun, some.foam}, {none.sea, some.sea, some.foam}}) {
             EXPECT_NEAR(left.x, 0.75f * clear.x, 1e-5f * clear.x);
             EXPECT_NEAR(white.x, 0.25f * all.foam.x, 1e-5f * all.foam.x);
         }

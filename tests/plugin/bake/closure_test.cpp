@@ -56,8 +56,9 @@ void write_foam(const fs::path& file, int step) {
     constexpr int kSide = 16;
     std::vector<float> texels;
     for (int i = 0; i < kSide * kSide; ++i) texels.push_back(static_cast<float>(i * step % 251));
-    const exr::Image image{
-        .width = kSide, .height = kSide, .channels = {{.name = "Y", .data = texels.data(), .type = exr::PixelType::Half}}};
+    const exr::Image image{.width = kSide,
+                           .height = kSide,
+                           .channels = {{.name = "Y", .data = texels.data(), .type = exr::PixelType::Half}}};
     files::write_atomically(file, exr::encode_scanline({}, image));
 }
 
@@ -434,9 +435,10 @@ TEST_F(Closure, PicturesCountByTheirContent) {
 // A key of which no base shot has another value would be left out in silence.
 TEST(ClosureEdits, ChangeEveryKeyThatHasAnotherValue) {
     std::set<std::string> changed;
-    for (const BaseShot& base : {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), grid_shot(),
-                                 near_far_shot(), automatic_shot(), buoy_shot(), cage_shot(),
-                                 adaptive_cage_shot(), daylight_shot(), sky_shot({"one.exr", "two.exr"}, {"three.exr", "four.exr"})})
+    for (const BaseShot& base :
+         {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), grid_shot(), near_far_shot(),
+          automatic_shot(), buoy_shot(), cage_shot(), adaptive_cage_shot(), daylight_shot(),
+          sky_shot({"one.exr", "two.exr"}, {"three.exr", "four.exr"})})
         for (const Edit& edit : edits_of(base)) changed.insert(edit.key);
     for (const Key& key : keys()) {
         const bool has_one_value = key.type == KeyType::Word && key.choices.size() < 2;

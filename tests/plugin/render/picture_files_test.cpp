@@ -314,18 +314,26 @@ TEST(PictureFiles, HaveTheColoursThatAreAskedFor) {
                                   .shown_by = "inverted"},
         acescg{.acescg = true};
     const auto png = [&](const PictureColours& colours) {
-        return encode_png({.scene = scene, .options = options, .sky = sky, .made_of = "", .exposure = 2.0f, .colours = colours}, picture, 1);
+        return encode_png({.scene = scene,
+                           .options = options,
+                           .sky = sky,
+                           .made_of = "",
+                           .exposure = 2.0f,
+                           .colours = colours},
+                          picture, 1);
     };
     EXPECT_NE(png(inverted), png({}));
     ASSERT_EQ(asked.size(), 2u);
     EXPECT_EQ(asked[0], glm::vec3(0.5f, 1.0f, 0.0f));
     EXPECT_EQ(png(acescg), png({}));
 
-    const std::string bytes =
-        encode_exr({.scene = scene, .options = options, .sky = sky, .made_of = "", .exposure = 2.0f, .colours = acescg}, picture, 1);
+    const std::string bytes = encode_exr(
+        {.scene = scene, .options = options, .sky = sky, .made_of = "", .exposure = 2.0f, .colours = acescg},
+        picture, 1);
     MemoryStream stream(bytes);
     const Imf::InputFile file(stream);
-    EXPECT_EQ(file.header().typedAttribute<Imf::ChromaticitiesAttribute>("chromaticities").value().red, Imath::V2f(0.713f, 0.293f));
+    EXPECT_EQ(file.header().typedAttribute<Imf::ChromaticitiesAttribute>("chromaticities").value().red,
+              Imath::V2f(0.713f, 0.293f));
     EXPECT_EQ(file.header().typedAttribute<Imf::StringAttribute>("unit").value(), "kcd/m2, ACEScg");
     // Rows of the matrix add up to 1: white stays. Green of Rec. 709 is (0.3395, 0.9164, 0.1096) (Bradford), red (0.6131, 0.0702, 0.0206).
     const glm::dvec3 expected = conversion(kRec709, kAcesCg) * glm::dvec3(0.25, 0.5, 0.0);
@@ -335,12 +343,15 @@ TEST(PictureFiles, HaveTheColoursThatAreAskedFor) {
     Read found = read(bytes, resolution);
     for (const char* prefix : {"", "sky."})
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(found.channels[prefix + std::string(1, "RGB"[c])][0], expected[c], 1e-3 * expected[c]) << prefix << c;
+            EXPECT_NEAR(found.channels[prefix + std::string(1, "RGB"[c])][0], expected[c], 1e-3 * expected[c])
+                << prefix << c;
     EXPECT_NEAR(found.channels["foam.G"][1], 0.3f, 3e-4f);
 
     std::vector<std::string> made_of;
     for (const PictureColours& colours : {PictureColours{}, inverted, acescg})
-        made_of.push_back(PictureFingerprint({.scene = scene, .options = options, .picture_content = "", .colours = colours}).of(1));
+        made_of.push_back(PictureFingerprint(
+                              {.scene = scene, .options = options, .picture_content = "", .colours = colours})
+                              .of(1));
     EXPECT_NE(made_of[0], made_of[1]);
     EXPECT_NE(made_of[0], made_of[2]);
     EXPECT_NE(made_of[1], made_of[2]);

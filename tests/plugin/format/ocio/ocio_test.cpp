@@ -75,7 +75,8 @@ void expect_near(glm::vec3 a, glm::vec3 b) {
 TEST_F(Ocio, ShowsByDisplayAndView) {
     const std::string config = written(configuration("", "lin_rec709"));
     const glm::vec3 light(0.5f, 0.2f, 3.0f);
-    const auto usual = ocio::make_view({.config = config}), paper = ocio::make_view({.config = config, .display = "paper"}),
+    const auto usual = ocio::make_view({.config = config}),
+               paper = ocio::make_view({.config = config, .display = "paper"}),
                other = ocio::make_view({.config = config, .display = "paper", .view = "square"});
     expect_near(shown(*usual, light), light * light);
     EXPECT_EQ(usual->name(), "screen, square");
@@ -84,7 +85,8 @@ TEST_F(Ocio, ShowsByDisplayAndView) {
     const auto half = ocio::make_view({.config = config, .display = "paper", .view = "half"});
     expect_near(shown(*half, light), 0.5f * light);
     // A fingerprint's part: the same for the same way, another for another.
-    EXPECT_EQ(half->content(), ocio::make_view({.config = config, .display = "paper", .view = "half"})->content());
+    EXPECT_EQ(half->content(),
+              ocio::make_view({.config = config, .display = "paper", .view = "half"})->content());
     EXPECT_NE(half->content(), usual->content());
     // Many at once, and whatever light there is.
     std::vector<glm::vec3> many(1000, light);
@@ -99,28 +101,34 @@ TEST_F(Ocio, ShowsByDisplayAndView) {
 
 // Through ACES 2065-1, whose white is Rec. 709's.
 TEST_F(Ocio, FindsItsWayByTheInterchangeRole) {
-    const std::string config = written(configuration("  aces_interchange: ap0\n  scene_linear: ap0\n", "ap0"));
+    const std::string config =
+        written(configuration("  aces_interchange: ap0\n  scene_linear: ap0\n", "ap0"));
     const auto to_aces = glm::mat3(conversion(kRec709, kAces2065));
-    const auto view = ocio::make_view({.config = config, .display = "paper", .view = "half", .aces_of_rec709 = to_aces});
+    const auto view =
+        ocio::make_view({.config = config, .display = "paper", .view = "half", .aces_of_rec709 = to_aces});
     expect_near(shown(*view, glm::vec3(0.18f)), glm::vec3(0.09f));
     expect_near(shown(*view, {1.0f, 0.0f, 0.0f}), 0.5f * to_aces[0]);
     // As the artist says, whatever the role says.
-    const auto as_is =
-        ocio::make_view({.config = config, .display = "paper", .view = "half", .space = "ap0", .aces_of_rec709 = to_aces});
+    const auto as_is = ocio::make_view(
+        {.config = config, .display = "paper", .view = "half", .space = "ap0", .aces_of_rec709 = to_aces});
     expect_near(shown(*as_is, {1.0f, 0.0f, 0.0f}), {0.5f, 0.0f, 0.0f});
 }
 
 TEST_F(Ocio, RefusesWithWhatThereIs) {
     const std::string config = written(configuration("", "lin_rec709"));
-    EXPECT_EQ(refusal({.config = config, .display = "wall"}), "has no display \"wall\"; accepted: screen, paper");
+    EXPECT_EQ(refusal({.config = config, .display = "wall"}),
+              "has no display \"wall\"; accepted: screen, paper");
     EXPECT_EQ(refusal({.config = config, .view = "film"}), "has no view \"film\"; accepted: square");
-    EXPECT_NE(refusal({.config = config, .space = "xyz"}).find("has no colour space \"xyz\"; accepted: --ocio-space with one of raw, lin_rec709"),
+    EXPECT_NE(refusal({.config = config, .space = "xyz"})
+                  .find("has no colour space \"xyz\"; accepted: --ocio-space with one of raw, lin_rec709"),
               std::string::npos);
-    EXPECT_NE(refusal({.config = "/no/config.ocio"}).find("isn't a configuration that OpenColorIO reads"), std::string::npos);
+    EXPECT_NE(refusal({.config = "/no/config.ocio"}).find("isn't a configuration that OpenColorIO reads"),
+              std::string::npos);
     const std::string unknown = written(configuration("", "my_own"));
     EXPECT_NE(refusal({.config = unknown}).find("neither the role aces_interchange nor"), std::string::npos);
     EXPECT_EQ(refusal({.config = unknown, .space = "my_own"}), "accepted");
-    EXPECT_NE(refusal({.config = written("not: [a config")}).find("isn't a configuration"), std::string::npos);
+    EXPECT_NE(refusal({.config = written("not: [a config")}).find("isn't a configuration"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -174,7 +174,8 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
     }
     for (const Key& key : keys()) {
         // A picture is no file here, and what turns and scales one is refused without it.
-        const bool can_change = key.set && !key.path.starts_with("light.sky") && !key.path.starts_with("effects.foam_pattern");
+        const bool can_change =
+            key.set && !key.path.starts_with("light.sky") && !key.path.starts_with("effects.foam_pattern");
         EXPECT_EQ(changed.contains(key.path), can_change) << key.path;
     }
 }

@@ -127,8 +127,7 @@ struct Functions {
     PELAGIC_BOTH(level, return vec4(levelled(vv, ll.z < -0.9f ? nn : ll), 0.0f);)
     PELAGIC_BOTH(foam, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(foam_radiance(vv, ll, f, vec3(1e4f, 9e3f, 8e3f), 0.00465f,
-                                           vec3(10.0f, 12.0f, 15.0f),
-                                           ww, 0.4f - aa),
+                                           vec3(10.0f, 12.0f, 15.0f), ww, 0.4f - aa),
                              0.0f);)
     PELAGIC_BOTH(foam_structure,
                  FoamPattern p = FoamPattern(vec3(65535.0f, 3.0f, 65535.0f), vec3(0.9f, 0.2f, 0.99f),
@@ -137,7 +136,8 @@ struct Functions {
                  SeenFoam seen = seen_foam(p, 40.0f * vec2(vv.x, nn.y), vec3(0.1f * cc, 0.2f * cc, 0.0f), ww,
                                            bb, aa, ll);
                  FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 0.1f * cc, 10.0f * bb);
-                 return vec4(seen.opacity, seen.opacity* seen.white, noise.shown, noise.variance + seen.slope);)
+                 return vec4(seen.opacity, seen.opacity* seen.white, noise.shown,
+                             noise.variance + seen.slope);)
     PELAGIC_BOTH(foam_picture,
                  FoamPattern p = FoamPattern(vec3(65535.0f, 3.0f, 65535.0f), vec3(0.9f, 0.2f, 0.99f),
                                              vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f),
@@ -198,7 +198,11 @@ template <class Of>
 class OnBoth {
   public:
     explicit OnBoth(int lookups, bool exact)
-        : map_(test_map()), picture_(test_picture()), functions_(map_, picture_), given_(inputs()), choice_{} {
+        : map_(test_map()),
+          picture_(test_picture()),
+          functions_(map_, picture_),
+          given_(inputs()),
+          choice_{} {
         choice_.sky_quality = lookups == 1   ? SkyQuality::One
                               : lookups == 9 ? SkyQuality::Nine
                                              : SkyQuality::Integral;

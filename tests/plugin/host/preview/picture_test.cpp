@@ -166,9 +166,10 @@ TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
     frame.set(scene.shot.time_s(5));
     packed.pack(frame);
     renderer.upload(packed);
-    const DrawOptions options{.lighting = render_options(scene).lighting,
-                              .foam = make_foam(scene, make_foam_picture(scene), active_foam(scene, sea->residual_coverage())),
-                              .layers = true};
+    const DrawOptions options{
+        .lighting = render_options(scene).lighting,
+        .foam = make_foam(scene, make_foam_picture(scene), active_foam(scene, sea->residual_coverage())),
+        .layers = true};
     const auto drawn = [&] {
         renderer.draw(view_at(scene.camera, 5), planned.mesh, options);
         return renderer.read_layers();

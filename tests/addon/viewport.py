@@ -183,8 +183,8 @@ def steps():
         here.effects.foam_decay_s = 0.0
         without = programs_picture(here)
         here.effects.foam_decay_s = obj.pelagic.effects.foam_decay_s
-        # What earlier breaking has left is seen in few pixels of the sea: there the picture is the one that has it.
-        left = change_of(theirs, without) > 0.1
+        # What earlier breaking has left, a thin film, is seen in few pixels of the sea: there the picture is the one that has it.
+        left = change_of(theirs, without) > 0.05
         left[place_of((0, 1e5, 0))[0] - 3:] = False
         near, far = change_of(living, theirs)[left].mean(), change_of(living, without)[left].mean()
         print(f"    where there is old foam, {left.mean():.4f} of the picture: differs by {near:.4f} from it, by {far:.4f} from none")

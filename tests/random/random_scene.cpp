@@ -480,6 +480,8 @@ class Drawing {
             const double far = draw_.log_uniform(1e-2, 1e4);
             at = {from[0] + far * draw_.uniform(-1.0, 1.0), from[1] + far * draw_.uniform(-1.0, 1.0),
                   from[2] + far * draw_.uniform(-1.0, 0.3)};
+            for (double& place : at)
+                place = std::clamp(place, limits::kCameraCoordinate_m.low, limits::kCameraCoordinate_m.high);
         };
         if (const auto* from = list<std::vector<double>>("camera.position_m")) {
             std::vector<double> at{0.0, 0.0, 0.0};

@@ -15,8 +15,8 @@ from .query import first_ocean
 PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or "clock" in field.key["feeds"]
           or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "surface.earth_curvature", "shot.loop_s",
-                            "effects.foam_structure", "effects.foam_streaks", "effects.foam_pattern", "effects.foam_pattern_m", "effects.foam_fresh_albedo", "effects.foam_old_albedo",
-                            "effects.foam_fresh_opacity", "effects.foam_old_opacity")]
+                            "effects.foam_structure", "effects.foam_streaks", "effects.foam_pattern", "effects.foam_pattern_m", "effects.foam_new_albedo", "effects.foam_old_albedo",
+                            "effects.foam_new_opaque", "effects.foam_old_opaque")]
 
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 

@@ -37,7 +37,7 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
         _set(material, "Foam Structure", scene.effects.foam_structure)
         _set(material, "Foam Streaks", scene.effects.foam_streaks)
-        _set(material, "Foam Color", (scene.effects.foam_fresh_albedo,) * 3 + (1.0,))
+        _set(material, "Foam Color", (scene.effects.foam_new_albedo,) * 3 + (1.0,))
         _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
         _show_picture(material, scene)
         _drive(material, "Time", ripple_clock(scene.shot))

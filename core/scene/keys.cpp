@@ -652,8 +652,8 @@ void add_effects_and_quality(Built& out) {
                                        .range = limits::kFoamPattern_m,
                                        .soft = SoftRange{2.0, 50.0, true},
                                        .key_parts = key_parts(KeyPart::Water)}),
-        row<&Effects::foam_fresh_albedo>(
-            {.name = "foam_fresh_albedo",
+        row<&Effects::foam_new_albedo>(
+            {.name = "foam_new_albedo",
              .help =
                  "what foam reflects where waves break, as far as it hides the water; 0.55 is measured (Whitlock 1982)",
              .range = limits::kFoamAlbedo,
@@ -662,17 +662,17 @@ void add_effects_and_quality(Built& out) {
                                         .help = "the same for the foam that breaking has left",
                                         .range = limits::kFoamAlbedo,
                                         .key_parts = key_parts(KeyPart::Water)}),
-        row<&Effects::foam_fresh_opacity>(
-            {.name = "foam_fresh_opacity",
+        row<&Effects::foam_new_opaque>(
+            {.name = "foam_new_opaque",
              .help =
                  "the share of its area that foam hides where waves break; 0: such that the mean over all foam is "
                  "0.4, which is measured (Koepke 1984)",
              .range = limits::kFoamOpacity,
              .key_parts = key_parts(KeyPart::Water)}),
-        row<&Effects::foam_old_opacity>({.name = "foam_old_opacity",
-                                         .help = "the same for the foam that breaking has left",
-                                         .range = limits::kFoamOpacity,
-                                         .key_parts = key_parts(KeyPart::Water)}),
+        row<&Effects::foam_old_opaque>({.name = "foam_old_opaque",
+                                        .help = "the same for the foam that breaking has left",
+                                        .range = limits::kFoamOpacity,
+                                        .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::spray>({.name = "spray",
                               .help = "droplets over breaking crests; none without whitecaps",
                               .key_parts = key_parts(KeyPart::Spray)}),

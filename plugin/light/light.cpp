@@ -177,10 +177,10 @@ std::string light_content(const Scene& scene) {
     light.effects.foam_structure = usual.foam_structure;
     light.effects.foam_streaks = usual.foam_streaks;
     light.effects.foam_pattern_m = usual.foam_pattern_m;
-    light.effects.foam_fresh_albedo = usual.foam_fresh_albedo;
+    light.effects.foam_new_albedo = usual.foam_new_albedo;
     light.effects.foam_old_albedo = usual.foam_old_albedo;
-    light.effects.foam_fresh_opacity = usual.foam_fresh_opacity;
-    light.effects.foam_old_opacity = usual.foam_old_opacity;
+    light.effects.foam_new_opaque = usual.foam_new_opaque;
+    light.effects.foam_old_opaque = usual.foam_old_opaque;
     return canonical(light, key_parts(KeyPart::Light, KeyPart::Water));
 }
 
@@ -217,14 +217,14 @@ FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture,
                   .structure = effects.foam_structure,
                   .streaks = effects.foam_streaks,
                   .wind_direction_deg = scene.sea.wind_direction_deg,
-                  .fresh_albedo = static_cast<float>(effects.foam_fresh_albedo),
+                  .fresh_albedo = static_cast<float>(effects.foam_new_albedo),
                   .old_albedo = static_cast<float>(effects.foam_old_albedo)};
     constexpr double kMean = 0.4;  // of all ages: Koepke 1984
     // Koepke's patches lose reflectance while they grow; how foam that still breaks compares with what is left isn't told apart
     // there. This makes what breaks as white as dense foam wherever a tenth of the foam does.
     constexpr double kOldOverFresh = 0.4;
     const double left = 1.0 - active;
-    double fresh = effects.foam_fresh_opacity, old = effects.foam_old_opacity;
+    double fresh = effects.foam_new_opaque, old = effects.foam_old_opaque;
     if (fresh == 0.0)
         fresh = old == 0.0   ? kMean / (active + left * kOldOverFresh)
                 : active > 0 ? (kMean - left * old) / active

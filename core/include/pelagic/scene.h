@@ -213,8 +213,8 @@ struct Effects {
     double foam_pattern_m = 10.0;       // the side of that picture, > 0
     // Of foam where waves break and of what they leave: what it reflects where it hides the water (0 … 1), and the share of its
     // area that it hides (0 … 1; 0: such that the mean over the law's foam is 0.4).
-    double foam_fresh_albedo = 0.55, foam_old_albedo = 0.55;
-    double foam_fresh_opacity = 0.0, foam_old_opacity = 0.0;
+    double foam_new_albedo = 0.55, foam_old_albedo = 0.55;
+    double foam_new_opaque = 0.0, foam_old_opaque = 0.0;
     bool spray = false;
     SpraySource spray_law = SpraySource::Andreas1998;
     double spray_gain = 1.0;

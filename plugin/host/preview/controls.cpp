@@ -504,8 +504,8 @@ const std::vector<PanelSection>& panel_sections() {
         {"Foam",
          {"effects.whitecaps", "effects.whitecap_law", "effects.sea_minus_air_c", "effects.whitecap_amount",
           "effects.breaking_from_m", "effects.foam_decay_s", "effects.foam_drift", "effects.foam_structure",
-          "effects.foam_streaks", "effects.foam_pattern_m", "effects.foam_fresh_albedo",
-          "effects.foam_old_albedo", "effects.foam_fresh_opacity", "effects.foam_old_opacity"}},
+          "effects.foam_streaks", "effects.foam_pattern_m", "effects.foam_new_albedo",
+          "effects.foam_old_albedo", "effects.foam_new_opaque", "effects.foam_old_opaque"}},
         {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
         {"Water", {"water.type", "water.chlorophyll_mg_m3"}},
         {"Picture", {"surface.cell_px"}}};

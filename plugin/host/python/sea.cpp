@@ -217,7 +217,7 @@ void add_sea(py::module_& module) {
         .def_property_readonly(
             "dense_foam", &dense_foam,
             "(active, left): the share of its area that foam hides, where waves break now, and in what they left; the "
-            "rest is bubbles over water. effects.foam_fresh_opacity and foam_old_opacity, or such that the mean over a "
+            "rest is bubbles over water. effects.foam_new_opaque and foam_old_opaque, or such that the mean over a "
             "law's foam is 0.4, as both are where foam doesn't live (Koepke 1984).")
         .def_property_readonly(
             "products",

@@ -204,7 +204,7 @@ TEST(Validate, FramesSeedAndLoop) {
         s.light.sky_gain = 0.5;
     });
     expect_refused([](Scene& s) { s.effects.foam_pattern = "bubbles"; },
-                   {"effects.foam_pattern", "bubbles", "\"lace\", or the path"});
+                   {"effects.foam_pattern", "\"bubbles\"", "\"lace\", or the path"});
     expect_refused([](Scene& s) { s.effects.foam_pattern_m = 4.0; },
                    {"effects.foam_pattern_m", "4", "10, or effects.foam_pattern = \"PATH.exr\""});
     expect_good([](Scene& s) {

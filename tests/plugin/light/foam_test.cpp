@@ -24,27 +24,27 @@ TEST(FoamOfAllAges, HasKoepkesMean) {
 // What an artist says of one age leaves the mean, as far as the other age can make up for it; of both, it is what is seen.
 TEST(FoamOfAllAges, IsWhatTheShotSays) {
     Scene scene;
-    scene.effects.foam_fresh_albedo = 0.7;
+    scene.effects.foam_new_albedo = 0.7;
     scene.effects.foam_old_albedo = 0.3;
-    scene.effects.foam_fresh_opacity = 0.8;
+    scene.effects.foam_new_opaque = 0.8;
     FoamLook look = make_foam(scene, nullptr, 0.25);
     EXPECT_EQ(look.fresh_albedo, 0.7f);
     EXPECT_EQ(look.old_albedo, 0.3f);
     EXPECT_EQ(look.fresh_opacity, 0.8f);
     EXPECT_NEAR(look.old_opacity, (0.4 - 0.25 * 0.8) / 0.75, 1e-6);
-    scene.effects.foam_fresh_opacity = 0.0;
-    scene.effects.foam_old_opacity = 0.3;
+    scene.effects.foam_new_opaque = 0.0;
+    scene.effects.foam_old_opaque = 0.3;
     look = make_foam(scene, nullptr, 0.25);
     EXPECT_NEAR(look.fresh_opacity, (0.4 - 0.75 * 0.3) / 0.25, 1e-6);
     EXPECT_EQ(look.old_opacity, 0.3f);
-    scene.effects.foam_old_opacity = 0.9;
+    scene.effects.foam_old_opaque = 0.9;
     for (const double active : {0.0, 1e-9, 0.25, 1.0}) {
         look = make_foam(scene, nullptr, active);
         EXPECT_GE(look.fresh_opacity, 0.0f) << active;
         EXPECT_LE(look.fresh_opacity, 1.0f) << active;
         EXPECT_EQ(look.old_opacity, 0.9f) << active;
     }
-    scene.effects.foam_fresh_opacity = 1.0;
+    scene.effects.foam_new_opaque = 1.0;
     EXPECT_EQ(make_foam(scene, nullptr, 0.25).fresh_opacity, 1.0f);
 }
 

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBatches = 5, kScenes = 150;
+constexpr int kBatches = 5, kScenes = 100;  // and ten thousand at night
 
 std::optional<long> number_of_environment(const char* name) {
     const char* value = std::getenv(name);

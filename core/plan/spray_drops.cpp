@@ -11,7 +11,6 @@ int SprayDropsPlan::intervals() const {
 
 SprayDropsPlan plan_spray_drops(const PreparedScene& from, double size_m) {
     SprayDropsPlan drops;
-    drops.cell_m = std::max(SprayDropsPlan::kFinestCell_m, size_m / SprayDropsPlan::kMostCells);
     if (const double loop_s = from.scene.shot.sea_loop_s(); loop_s > 0.0) {
         const double intervals = std::max(std::round(loop_s / drops.interval_s), 1.0);
         drops.interval_s = loop_s / intervals;
@@ -21,6 +20,10 @@ SprayDropsPlan plan_spray_drops(const PreparedScene& from, double size_m) {
     constexpr double kFaster = 1.3, kWater_mps = 5.0;
     drops.downwind_m = kFaster * from.scene.sea.wind_speed_mps * SprayDropsPlan::kLongestLife_s;
     drops.around_m = from.extent.reach_m + kWater_mps * SprayDropsPlan::kLongestLife_s;
+    // Round a small square in a hurricane there is far more sea that drops may come from.
+    const double all_m = size_m + 2.0 * drops.around_m + drops.downwind_m;
+    drops.cell_m = std::max({SprayDropsPlan::kFinestCell_m, size_m / SprayDropsPlan::kMostCells,
+                             all_m / SprayDropsPlan::kMostCellsInAll});
     return drops;
 }
 

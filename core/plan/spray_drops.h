@@ -14,6 +14,7 @@ struct SprayDropsPlan {
     static constexpr double kFinestCell_m = 1.0;
     static constexpr double kMostCells =
         256.0;  // along a side of what is asked for: further on they are wider
+    static constexpr double kMostCellsInAll = 512.0;  // likewise along what they may come from
     static constexpr double kParcels_per_s = 3.0;  // of a cell, on average over the sea
     static constexpr int kMostParcels =
         24;  // of a cell in an interval; where more breaks, each stands for more drops

@@ -83,7 +83,7 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
     const SprayLaw law = spray_law(from.scene, from.extent.significant_height_m);
     mean_breaking_ = mean_breaking(sea);
     if (!(law.drops.optical_thickness > 0.0) || !(mean_breaking_ > 0.0)) return;
-    per_m2_ = law.drops.optical_thickness / SprayDropsPlan::kParcels_per_s;
+    per_m2_ = law.drops.optical_thickness / plan_.parcels_per_s;
     seed_ = from.scene.shot.seed;
     const double towards = from.scene.sea.wind_direction_deg * kPi / 180.0;
     downwind_ = {std::cos(towards), std::sin(towards)};
@@ -198,7 +198,7 @@ std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t int
                              third) /
                     mean_breaking_;
                 if (!(share > 0.0)) continue;
-                const double expected = SprayDropsPlan::kParcels_per_s * plan_.interval_s * share;
+                const double expected = plan_.parcels_per_s * plan_.interval_s * share;
                 const glm::i64vec2 cell(cells.x + x, cells.y + first + row);
                 const double chance =
                     unit(philox({word(cell.x), word(cell.y), word(interval), kStream}, seed_)[0]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/plan/spray.h"
+
 namespace pelagic {
 
 int SprayDropsPlan::intervals() const {
@@ -20,6 +22,10 @@ SprayDropsPlan plan_spray_drops(const PreparedScene& from, double size_m) {
     constexpr double kFaster = 1.3, kWater_mps = 5.0;
     drops.downwind_m = kFaster * from.scene.sea.wind_speed_mps * SprayDropsPlan::kLongestLife_s;
     drops.around_m = from.extent.reach_m + kWater_mps * SprayDropsPlan::kLongestLife_s;
+    // Where the wind tears few drops off there are few parcels, and not many that hide nothing.
+    constexpr double kMany = 0.004;  // the thickness from which on each parcel has more drops instead
+    const double thickness = spray_law(from.scene, from.extent.significant_height_m).drops.optical_thickness;
+    drops.parcels_per_s = SprayDropsPlan::kMostParcels_per_s * std::clamp(thickness / kMany, 0.01, 1.0);
     // Round a small square in a hurricane there is far more sea that drops may come from.
     const double all_m = size_m + 2.0 * drops.around_m + drops.downwind_m;
     drops.cell_m = std::max({SprayDropsPlan::kFinestCell_m, size_m / SprayDropsPlan::kMostCells,
@@ -47,7 +53,7 @@ std::size_t spray_drops_bytes(const Plan& plan, const SprayDropsPlan& drops, dou
     // Of a cell: its place, and what is asked there. Of a parcel: as it starts, and as it is shown.
     constexpr double kCellBytes = 8.0 * sizeof(double), kParcelBytes = 26.0 * sizeof(double);
     return own.sea_bytes() + own.frame_bytes() +
-           static_cast<std::size_t>(cells * (kCellBytes + kParcelBytes * SprayDropsPlan::kParcels_per_s *
+           static_cast<std::size_t>(cells * (kCellBytes + kParcelBytes * drops.parcels_per_s *
                                                               drops.interval_s * drops.intervals()));
 }
 

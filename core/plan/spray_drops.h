@@ -15,12 +15,13 @@ struct SprayDropsPlan {
     static constexpr double kMostCells =
         256.0;  // along a side of what is asked for: further on they are wider
     static constexpr double kMostCellsInAll = 512.0;  // likewise along what they may come from
-    static constexpr double kParcels_per_s = 3.0;  // of a cell, on average over the sea
+    static constexpr double kMostParcels_per_s = 3.0;
     static constexpr int kMostParcels =
         24;  // of a cell in an interval; where more breaks, each stands for more drops
     static constexpr double kLongestLife_s = 2.5;
 
     double cell_m = kFinestCell_m;
+    double parcels_per_s = kMostParcels_per_s;  // of a cell, on average over the sea
     double interval_s = 0.25;
     std::int64_t intervals_a_loop = 0;  // 0: no loop
 

@@ -38,7 +38,7 @@ class DropsPart final : public OutputPart {
         constexpr double kBytes =
             sizeof(SprayDrop) + 2 * sizeof(glm::vec3) + 3 * sizeof(float) + sizeof(std::int64_t);
         return {.once = spray_drops_bytes(plan_, drops, size_m()),
-                .slot = static_cast<std::size_t>(cells * SprayDropsPlan::kParcels_per_s *
+                .slot = static_cast<std::size_t>(cells * drops.parcels_per_s *
                                                  SprayDropsPlan::kLongestLife_s * kBytes),
                 .remedy = "lower surface.size_m, or set output.drops to false"};
     }

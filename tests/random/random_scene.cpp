@@ -397,6 +397,9 @@ class Drawing {
         fit_trains();
         fit_camera();
         fit_output();
+        // Where all of a sea breaks that gains have raised tenfold, its drops take a minute a frame.
+        if (made_.value("waves.band_gains"))
+            for (const char* key : {"effects.spray_drops", "output.drops"}) leave_out(key);
         if (!is("light.sky", std::string(kSkyName)))
             for (const char* key : {"light.sky_rotation_deg", "light.sky_gain"}) leave_out(key);
         if (!is("effects.foam_pattern", std::string(kFoamName))) leave_out("effects.foam_pattern_m");

@@ -139,12 +139,10 @@ class PELAGIC_MT_presets(bpy.types.Menu):
         layout = self.layout
         for title, group in (("Wind", "beaufort"), ("Seas", "sea")):
             layout.label(text=title)
-            grid = layout.grid_flow(row_major=True, columns=5, even_columns=True, align=True)
             for preset in pelagic.presets():
                 if preset["group"] == group:
-                    cell = grid.column(align=True)
-                    cell.template_icon(icon_value=icon_of(preset["name"]), scale=5.0)
-                    cell.operator(PELAGIC_OT_preset_apply.bl_idname, text=preset["label"]).name = preset["name"]
+                    layout.operator(PELAGIC_OT_preset_apply.bl_idname, text=preset["label"],
+                                    icon_value=icon_of(preset["name"])).name = preset["name"]
             layout.separator()
         own = own_presets()
         if own:

@@ -56,8 +56,8 @@ with checking("the menu is the main panel's first row, and in a view's header fo
     bpy.context.view_layer.objects.active = obj
     for preset in pelagic.presets():
         assert (presets.THUMBNAILS / f"{preset['name']}.jpg").is_file(), f"{preset['name']} has no thumbnail: examples/pictures.sh"
-    shown = drawn(presets.PELAGIC_MT_presets.draw, SimpleNamespace(layout=Layout()))
-    assert sum(what[0] == "template_icon" for what in shown) == len(pelagic.presets()), shown
+    drawn(presets.PELAGIC_MT_presets.draw, SimpleNamespace(layout=Layout()))
+    assert set(presets._icons) == {preset["name"] for preset in pelagic.presets()}, set(presets._icons)
     told = {presets.PELAGIC_OT_preset_apply.description(None, SimpleNamespace(name=preset["name"])) for preset in pelagic.presets()}
     assert len(told) == len(pelagic.presets()) and all(words[0].isupper() and ". Sets " in words for words in told), told
 

@@ -1,7 +1,7 @@
 // Random scenes: whatever a shot file asks is baked and pictured to finite, bounded numbers, the same bits on one thread and
 // on two, or it is refused by name. A scene that fails is shrunk to the simplest that still does, and printed.
 //
-//   PELAGIC_SCENES=10000 test_random_scenes    so many, instead of 150
+//   PELAGIC_SCENES=10000 test_random_scenes    so many, instead of 100
 //   PELAGIC_SCENE=123 test_random_scenes       the scene of this seed alone
 
 #include <gtest/gtest.h>

@@ -33,7 +33,8 @@ std::vector<float> ridges(int side) {
     return out;
 }
 
-// Over independent places, from texels to many tiles, whatever the opacity.
+// Over independent places, from texels to many tiles, whatever the opacity. 6 % of the variance and 2 % of the coverage beside chance:
+// between texels both depend a little on the place, and a blend of two levels is only nearly normal.
 TEST(FoamImage, HasTheCoverageAsItsMean) {
     constexpr int kPlaces = 20000;
     constexpr std::array kShares{0.02f, 0.1f, 0.4f, 0.8f};

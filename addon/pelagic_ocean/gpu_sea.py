@@ -234,7 +234,8 @@ class Drawing:
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()
         shader.uniform_block("SeaTables", tables)
-        _set(shader, {**self.sea.uniforms, **light, **self.sea.foam(scene, grid.origin_m, self.light), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
+        _set(shader, {**self.sea.uniforms, **light, **self.sea.water(scene),
+                      **self.sea.foam(scene, grid.origin_m, self.light), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
                       "curvature_per_m": grid.curvature_per_m})
         textures = dict(self._textures)
         if self.sea.has_living_foam:

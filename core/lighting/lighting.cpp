@@ -1,5 +1,6 @@
 #include "core/lighting/lighting.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -71,6 +72,48 @@ struct Shading {
     // clang-format on
 };
 
+template <class Variant>
+typename Variant::WaterBands bands(const WaterBands& of) {
+    return {of.shorter, of.longer};
+}
+
+template <class Variant>
+typename Variant::WaterLook look_of(const WaterBody& water) {
+    return {water.reflectance,
+            water.has_body,
+            bands<Variant>(water.absorption),
+            bands<Variant>(water.backscatter),
+            bands<Variant>(water.floor_colour),
+            water.floor_m,
+            water.waves,
+            water.crest_light,
+            water.crest_per_m,
+            water.bubbles,
+            water.bubbles_m};
+}
+
+// Seen from 45°, as most of what a camera above the sea sees of the water below it is.
+glm::vec3 reflectance_of(const WaterBody& water) {
+    using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
+    const SkyMap none;
+    Variant shading(none);
+    const typename Variant::WaterWay way{.sun = 1.0f,
+                                         .eye = 1.0f / shading.refracted_cosine(0.70710678f),
+                                         .returned = 0.0f,
+                                         .crest_m = 0.0f,
+                                         .fresh_bubbles = 0.0f,
+                                         .old_bubbles = 0.0f,
+                                         .bubbles_m = 0.0f,
+                                         .floor_m = water.floor_m};
+    const auto back = [&](const glm::vec3& absorption, const glm::vec3& backscatter, const glm::vec3& floor) {
+        return shading.water_back(absorption, backscatter, floor, way).sky;
+    };
+    const glm::vec3 seen = shading.colour_of(
+        {back(water.absorption.shorter, water.backscatter.shorter, water.floor_colour.shorter),
+         back(water.absorption.longer, water.backscatter.longer, water.floor_colour.longer)});
+    return glm::clamp(shading.kPi * seen, vec3(0.0f), vec3(1.0f));
+}
+
 SeaAlbedo albedo(const WaterBody& body) {
     const SkyMap none;
     Shading<FresnelFit::Exact, SkyQuality::One> shading(none);
@@ -95,7 +138,7 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
     const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
-                                           sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
+                                           sky.sun_irradiance, sky.sky_irradiance, look_of<Variant>(water)};
     const typename Variant::FoamPattern pattern{foam.cell, foam.rest,  foam.axes,
                                                 foam.look, foam.white, foam.image};
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -104,10 +147,14 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         if (choice.whitecaps)
             seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s,
                                      sky.sun_direction);
+        const bool has_bubbles = choice.whitecaps && water.bubbles > 0.0f;
+        const float covered = has_bubbles ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
+                    fresh = std::min(covered, std::max(p.active, 0.0f));
+        const typename Variant::SeenBody body{p.crest, fresh, covered - fresh, p.age_s};
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
-            p.slope_variance, seen, light, place);
+            p.slope_variance, seen, body, light, place);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }
@@ -116,6 +163,10 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
 
 SeaAlbedo sea_albedo(const WaterBody& water) {
     return sea_shading::albedo(water);
+}
+
+glm::vec3 body_reflectance(const WaterBody& water) {
+    return sea_shading::reflectance_of(water);
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,

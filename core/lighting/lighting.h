@@ -64,7 +64,11 @@ struct SeaPoint {
     glm::vec3 pixel_m{0.0f};
     float active = 1.0f;
     float age_s = 0.0f;
+    // Of the waves longer than kCrestFootprint_m's, for light through crests: slopes and height above the sea at rest [m].
+    glm::vec3 crest{0.0f};
 };
+// The footprint at which SeaPoint::crest is asked for [m]: ripples don't bend the light's way through a crest.
+inline constexpr double kCrestFootprint_m = 1.0;
 
 // The sea as a diffuse surface, linear Rec. 709, for hosts that bring their own optics: the share of the
 // irradiance of a diffuse sky that leaves again, ideally diffuse.
@@ -76,6 +80,10 @@ struct SeaAlbedo {
     float water_index = 1.0f;  // of refraction, for that surface
 };
 SeaAlbedo sea_albedo(const WaterBody& water);
+
+// What a body sends back of the light of a uniform sky, with its floor, just below the surface and seen from above, as a diffuse
+// reflectance: what hosts with one colour of water take for it. 0 … 1, linear Rec. 709.
+glm::vec3 body_reflectance(const WaterBody& water);
 
 struct Air;
 

@@ -27,7 +27,8 @@ vec3 place_share(vec3 here, vec3 there, float most) { return min(here / max(ther
 
 // sea_radiance() at a place with that vertical. to_eye and normal: relative to it. light: that below the eye, in the
 // eye's axes. The sky's pattern is scaled; where the sky is much brighter than below the eye, the rest is uniform.
-SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeaLight light, PlaceView place) {
+SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeenBody body, SeaLight light,
+                         PlaceView place) {
     float rise = light.sun_direction.z - place.to_sun.z;
     light.sun_direction = levelled(light.sun_direction, up);
     bool is_by_place = place.by_place > 0.0f && up.z < 1.0f;
@@ -55,7 +56,7 @@ SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance,
         more = max(sky - most * sky_before, vec3(0.0f));
         light.sky_irradiance = light.sky_irradiance * share + more;
     }
-    SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, seen, light);
+    SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, seen, body, light);
     if (kSky && is_by_place) {
         SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
         float clear = kWhitecaps ? 1.0f - seen.opacity : 1.0f;

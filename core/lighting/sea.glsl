@@ -7,7 +7,7 @@ struct SeaLight {
     float sun_angular_radius;
     vec3 sun_irradiance;
     vec3 sky_irradiance;
-    vec3 water_reflectance;
+    WaterLook water;
 };
 
 struct SeaTerms {
@@ -20,7 +20,7 @@ struct SeaTerms {
 // to_eye, normal: unit vectors, world axes; the normal may face away. slope_variance: (σxx, σyy, σxy) of the
 // unresolved waves, world axes. Each term is weighted by its share of the pixel (what opaque foam hides, and the rest for the others);
 // their sum is the radiance.
-SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeaLight light) {
+SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeenBody body, SeaLight light) {
     SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
     SeaTerms terms = SeaTerms(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));
     vec3 v = into_frame(frame, to_eye);
@@ -48,9 +48,13 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam se
     }
     if (kWater) {
         float shown = 1.0f - reflected + again * (1.0f - effective_fresnel(level, frame.variance));
-        terms.sea = clear * shown *
-                    water_radiance(light.sun_direction, light.sun_irradiance, light.sky_irradiance,
-                                   light.water_reflectance);
+        vec3 up = light.water.has_body
+                      ? body_radiance(to_eye, frame.normal, light.sun_direction, light.sun_irradiance,
+                                      (kPi * square(light.sun_angular_radius)) * light.sun_radiance, light.sky_irradiance,
+                                      light.water, body)
+                      : water_radiance(light.sun_direction, light.sun_irradiance, light.sky_irradiance,
+                                       light.water.reflectance);
+        terms.sea = clear * shown * up;
     }
     return terms;
 }

@@ -7,7 +7,9 @@
 // plankton     a = (a_w + 0.06 A(λ) C^0.65)(1 + 0.2 exp(−0.014(λ − 440))): A and the yellow substance that
 // comes with
 //              plankton, Prieur and Sathyendranath 1981 in Morel's form of 1991
-//              b_b = (0.002 + 0.02(½ − ¼ log₁₀ C) 550/λ) 0.30 C^0.62 (Gordon and Morel 1983, Morel 1988)
+//              b_b = (0.002 + 0.02(½ − ¼ log₁₀ C) 550/λ) 0.30 C^0.62 (Gordon and Morel 1983, Morel 1988);
+//              of a body (0.002 + 0.01(½ − ¼ log₁₀ C)(λ/550)^ν) 0.416 C^0.766, ν = ½(log₁₀ C − 0.3), not above 0
+//              (Morel and Maritorena 2001)
 // rivers       yellow substance: a = a_y exp(−0.014(λ − 440)) (Bricaud, Morel, Prieur 1981)
 //              mineral particles of concentration s: a = 0.041 m²/g s exp(−0.0123(λ − 443)), scattering 0.51
 // m²/g s
@@ -22,6 +24,7 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 
 #include "core/lighting/colour.h"
@@ -43,47 +46,53 @@ constexpr std::array<double, kSpectrumBands> kPlanktonAbsorption{
     0.618, 0.528, 0.474, 0.416, 0.357, 0.294, 0.276, 0.291, 0.282, 0.236, 0.252,
     0.276, 0.317, 0.334, 0.356, 0.441, 0.595, 0.502, 0.329, 0.215};
 
-constexpr double wavelength_of(std::size_t band) {
-    return 400.0 + 10.0 * static_cast<double>(band);
-}
-
-// What rivers add: absorption of yellow substance at 440 nm [1/m], mineral particles [g/m³].
-struct Rivers {
-    double yellow, minerals;
-};
-
-Rivers rivers_of(WaterKind kind) {
-    switch (kind) {
-        case WaterKind::Ocean:
-            return {0.0, 0.0};
-        case WaterKind::Coastal:
-            return {0.1, 0.7};
-        case WaterKind::Turbid:
-            return {0.5, 6.0};
-    }
-    return {0.0, 0.0};
-}
-
 struct Optics {
     double absorption, backscatter;  // [1/m]
 };
 
-Optics optics_at(std::size_t band, double chlorophyll, const Rivers& rivers) {
-    const double wavelength = wavelength_of(band);
-    const double c = std::max(chlorophyll, 0.01);  // the clearest natural water; 0 has no logarithm
-    const double a_clear = (kWaterAbsorption[band] + 0.06 * kPlanktonAbsorption[band] * std::pow(c, 0.65)) *
+// Between the table's wavelengths linear.
+double at(const std::array<double, kSpectrumBands>& table, double wavelength) {
+    const double place = std::clamp((wavelength - 400.0) / 10.0, 0.0, kSpectrumBands - 1.0);
+    const std::size_t below = std::min(static_cast<std::size_t>(place), kSpectrumBands - 2);
+    return std::lerp(table[below], table[below + 1], place - static_cast<double>(below));
+}
+
+Optics optics_at(double wavelength, const WaterChoice& water) {
+    const double c =
+        std::max(water.chlorophyll_mg_m3, 0.01);  // the clearest natural water; 0 has no logarithm
+    const double a_clear = (at(kWaterAbsorption, wavelength) +
+                            0.06 * at(kPlanktonAbsorption, wavelength) * std::pow(c, 0.65)) *
                            (1.0 + 0.2 * std::exp(-0.014 * (wavelength - 440.0)));
-    const double a = a_clear + rivers.yellow * std::exp(-0.014 * (wavelength - 440.0)) +
-                     0.041 * rivers.minerals * std::exp(-0.0123 * (wavelength - 443.0));
+    const double a = a_clear + water.yellow_per_m * std::exp(-0.014 * (wavelength - 440.0)) +
+                     0.041 * water.minerals_g_m3 * std::exp(-0.0123 * (wavelength - 443.0));
     const double sea_water = 0.5 * 0.00288 * std::pow(wavelength / 500.0, -4.32);
-    // The bracket is negative above 100 mg/m³: water_body() rejects such water.
+    // The brackets are negative above 100 mg/m³: water_body() rejects such water.
+    const double few = 0.5 - 0.25 * std::log10(c);
     const double plankton =
-        (0.002 + 0.02 * (0.5 - 0.25 * std::log10(c)) * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
-    return {a, sea_water + plankton + 0.018 * 0.51 * rivers.minerals};
+        water.has_body
+            ? (0.002 + 0.01 * few * std::pow(wavelength / 550.0, std::min(0.5 * (std::log10(c) - 0.3), 0.0))) *
+                  0.416 * std::pow(c, 0.766)
+            : (0.002 + 0.02 * few * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
+    return {a, sea_water + plankton + 0.018 * 0.51 * water.minerals_g_m3};
 }
 
 // Of the primaries of Rec. 709 under its white, D65, to the nearest band.
 constexpr std::array<double, 3> kDominant_nm{610.0, 550.0, 460.0};
+
+constexpr std::array<double, 6> kWavelengths_nm{440.0, 480.0, 520.0, 555.0, 590.0, 630.0};
+
+// What red, green and blue of 1 are there: three smooth functions of which colour_of() (water.glsl) gives the colour back, and whose sum is 1.
+constexpr std::array<std::array<double, 3>, 6> kBandsOfColour{{{0.0516, -0.0255, 0.9739},
+                                                               {0.0290, 0.2116, 0.7594},
+                                                               {-0.0388, 0.9227, 0.1161},
+                                                               {-0.0117, 1.1012, -0.0895},
+                                                               {0.6852, 0.2819, 0.0329},
+                                                               {0.9342, -0.0108, 0.0766}}};
+
+float& band(WaterBands& of, std::size_t i) {
+    const int place = static_cast<int>(i % 3);
+    return i < 3 ? of.shorter[place] : of.longer[place];
+}
 
 }  // namespace
 
@@ -92,22 +101,34 @@ WaterBody water_body(const WaterChoice& choice) {
     if (!(c >= 0.0 && c <= 100.0)) {
         throw std::invalid_argument("water: give a chlorophyll between 0 and 100 mg/m³");
     }
-    const Rivers rivers = rivers_of(choice.kind);
-    glm::dvec3 sum(0.0), white(0.0);
-    for (std::size_t band = 0; band < kSpectrumBands; ++band) {
-        const glm::dvec3 seen = observed_xyz(wavelength_of(band));
-        const Optics at = optics_at(band, c, rivers);
-        sum += 0.33 * at.backscatter / (at.absorption + at.backscatter) * seen;
-        white += seen;
-    }
     WaterBody water;
-    // Blues outside the gamut have a negative red, which no display shows.
-    water.reflectance = glm::max(rec709_of(sum) / rec709_of(white), glm::dvec3(0.0));
     for (int channel = 0; channel < 3; ++channel) {
-        const auto band = static_cast<std::size_t>((kDominant_nm[channel] - 400.0) / 10.0);
-        const Optics at = optics_at(band, c, rivers);
+        const Optics at = optics_at(kDominant_nm[channel], choice);
         water.absorption_per_m[channel] = static_cast<float>(at.absorption);
         water.backscatter_per_m[channel] = static_cast<float>(at.backscatter);
+    }
+    if (!choice.has_body) {
+        glm::dvec3 sum(0.0), white(0.0);
+        for (std::size_t i = 0; i < kSpectrumBands; ++i) {
+            const double wavelength = 400.0 + 10.0 * static_cast<double>(i);
+            const glm::dvec3 seen = observed_xyz(wavelength);
+            const Optics at = optics_at(wavelength, choice);
+            sum += 0.33 * at.backscatter / (at.absorption + at.backscatter) * seen;
+            white += seen;
+        }
+        // Blues outside the gamut have a negative red, which no display shows.
+        water.reflectance = glm::max(rec709_of(sum) / rec709_of(white), glm::dvec3(0.0));
+        return water;
+    }
+    water.has_body = true;
+    water.floor_m = static_cast<float>(std::min(choice.floor_m, 1e9));
+    for (std::size_t i = 0; i < kWavelengths_nm.size(); ++i) {
+        const Optics at = optics_at(kWavelengths_nm[i], choice);
+        band(water.absorption, i) = static_cast<float>(at.absorption);
+        band(water.backscatter, i) = static_cast<float>(at.backscatter);
+        const auto [red, green, blue] = kBandsOfColour[i];
+        band(water.floor_colour, i) = static_cast<float>(std::clamp(
+            glm::dot(choice.floor_colour, glm::dvec3(red, green, blue)), 0.0, 1.0));
     }
     return water;
 }

@@ -16,6 +16,7 @@ std::span<const EditionChange> edition_changes() {
         {2, "light.turbidity", 3.0},
         {2, "effects.whitecap_law", std::string(word_of(WhitecapLaw::Monahan1980))},
         {2, "effects.spray_law", std::string(word_of(SpraySource::Monahan1986))},
+        {3, "water.body", false},
     };
     return all;
 }

@@ -110,6 +110,8 @@ inline constexpr Range kFoamAlbedo{0.0, 1.0};
 inline constexpr Range kFoamOpacity{0.0, 1.0};
 inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest air that there is to haze
 inline constexpr Range kChlorophyll_mg_m3{0.01, 100.0};  // from the clearest gyres to a bloom
+inline constexpr Range kFloorColour{0.0, 1.0};
+inline constexpr Range kWaterGain{0.0, 10.0};
 inline constexpr Range kMapResolution{1, 8192};
 inline constexpr Range kVoxel_m{1e-3, 1e5};
 inline constexpr double kVoxelsASide =

@@ -69,6 +69,16 @@ constexpr std::array kWaters = std::to_array<Word<WaterType>>({
     {WaterType::Ocean, "ocean"},
     {WaterType::Coastal, "coastal"},
     {WaterType::Turbid, "turbid"},
+    {WaterType::JerlovI, "jerlov-I"},
+    {WaterType::JerlovIA, "jerlov-IA"},
+    {WaterType::JerlovIB, "jerlov-IB"},
+    {WaterType::JerlovII, "jerlov-II"},
+    {WaterType::JerlovIII, "jerlov-III"},
+    {WaterType::Jerlov1C, "jerlov-1C"},
+    {WaterType::Jerlov3C, "jerlov-3C"},
+    {WaterType::Jerlov5C, "jerlov-5C"},
+    {WaterType::Jerlov7C, "jerlov-7C"},
+    {WaterType::Jerlov9C, "jerlov-9C"},
 });
 constexpr std::array kLevels = std::to_array<Word<QualityLevel>>({
     {QualityLevel::Draft, "draft"},

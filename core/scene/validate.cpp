@@ -516,6 +516,14 @@ void check_light(SceneChecker& check, const Light& light) {
     refuse("light.sky_gain", light.sky_gain, 1.0, "multiplies a picture of a sky");
 }
 
+void check_water(SceneChecker& check, const Water& water) {
+    if (water.type <= WaterType::Turbid || !check.is_good("water.chlorophyll_mg_m3")) return;
+    if (water.chlorophyll_mg_m3 == Water{}.chlorophyll_mg_m3) return;
+    check.refuse({"water.chlorophyll_mg_m3", number_text(water.chlorophyll_mg_m3),
+                  "is plankton beside that of water.type = " + choice_text(water.type),
+                  number_text(Water{}.chlorophyll_mg_m3) + ", or water.type = \"ocean\", \"coastal\", \"turbid\""});
+}
+
 // The fit needs a regular grid, whose limit surface is a spline.
 void check_scheme(SceneChecker& check, const Output& output, const Surface& surface) {
     if (output.mesh_scheme != MeshScheme::CatmullClark || surface.kind == SurfaceKind::Patch) return;
@@ -618,6 +626,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_cage(check, scene.surface);
     check_foam_pattern(check, scene.effects);
     check_light(check, scene.light);
+    check_water(check, scene.water);
     check_output(check, scene.effects, scene.output);
     check_scheme(check, scene.output, scene.surface);
     check_budget(check, scene.quality);

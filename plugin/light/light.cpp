@@ -13,26 +13,53 @@
 
 #include "core/base/constants.h"
 #include "core/lighting/air.h"
+#include "core/lighting/lighting.h"
 #include "core/lighting/primaries.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
+#include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/possible.h"
+#include "core/spectrum/spectral_moments.h"
+#include "core/spectrum/viscous_cutoff.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/format/exr/read.h"
 
 namespace pelagic {
 namespace {
 
-WaterKind kind_of(WaterType type) {
-    switch (type) {
+// What each type of water holds. Jerlov's: fitted through Lee's K_d (2005) to the K_d of his tables (1976), rms of its logarithm 0.05 … 0.18;
+// that hardly fixes how much they scatter.
+WaterChoice choice_of(const Water& water) {
+    const double c = water.chlorophyll_mg_m3;
+    switch (water.type) {
         case WaterType::Ocean:
-            return WaterKind::Ocean;
+            return {c};
         case WaterType::Coastal:
-            return WaterKind::Coastal;
+            return {c, 0.1, 0.7};
         case WaterType::Turbid:
-            return WaterKind::Turbid;
+            return {c, 0.5, 6.0};
+        case WaterType::JerlovI:
+            return {0.01};
+        case WaterType::JerlovIA:
+            return {0.01, 0.007};
+        case WaterType::JerlovIB:
+            return {0.01, 0.015};
+        case WaterType::JerlovII:
+            return {0.2, 0.025};
+        case WaterType::JerlovIII:
+            return {1.0, 0.042};
+        case WaterType::Jerlov1C:
+            return {0.01, 0.205, 0.17};
+        case WaterType::Jerlov3C:
+            return {0.01, 0.27, 1.2};
+        case WaterType::Jerlov5C:
+            return {0.3, 0.35, 2.3};
+        case WaterType::Jerlov7C:
+            return {1.0, 0.45, 4.3};
+        case WaterType::Jerlov9C:
+            return {10.0, 0.76, 4.3};
     }
     throw std::invalid_argument("water of no type");
 }
@@ -167,8 +194,31 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg)
 }
 
 WaterBody make_water(const Scene& scene) {
-    return water_body(
-        {.kind = kind_of(scene.water.type), .chlorophyll_mg_m3 = scene.water.chlorophyll_mg_m3});
+    if (!scene.water.body) return water_body(choice_of(scene.water));
+    return make_water(scene, DirectionalSpectrum(scene.sea, scene.waves.band_gains));
+}
+
+WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    WaterChoice choice = choice_of(scene.water);
+    choice.has_body = scene.water.body;
+    choice.floor_colour = scene.water.floor_colour;
+    choice.floor_m = scene.sea.depth_m;
+    WaterBody water = water_body(choice);
+    if (!water.has_body) return water;
+    water.reflectance = body_reflectance(water);
+    constexpr double kShortestCrest_m = 2.0 * kCrestFootprint_m;
+    constexpr double kLeast = 1e-10;  // of variances: their density needs a determinant
+    const SpectralMoments all = moments(spectrum, 0.0, kViscousWavenumber),
+                          crests = moments(spectrum, 0.0, kTwoPi / kShortestCrest_m);
+    const double xx = std::max(all.xx, kLeast), yy = std::max(all.yy, kLeast), most = 0.9999 * std::sqrt(xx * yy);
+    water.waves = glm::vec3(glm::dvec3(xx, yy, std::clamp(all.xy, -most, most)));
+    water.crest_light = static_cast<float>(scene.water.crest_light);
+    // Of a sine of the crests' height and slope.
+    if (crests.m0 > 0.0) water.crest_per_m = static_cast<float>(std::sqrt(crests.mss() / crests.m0));
+    water.bubbles = static_cast<float>(scene.water.bubbles);
+    // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003).
+    water.bubbles_m = static_cast<float>(0.25 * all.significant_height_m());
+    return water;
 }
 
 std::string light_content(const Scene& scene) {

@@ -9,6 +9,7 @@
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "core/scene/problem.h"
+#include "core/spectrum/directional_spectrum.h"
 #include "pelagic/scene.h"
 #include "plugin/format/exr/exr.h"
 
@@ -33,9 +34,10 @@ std::string radiance_unit(const Scene& scene, bool acescg = false);
 // What each EXR of the sky's radiance says of it: that unit, the primaries, and where it is known, in OpenEXR's own way,
 // the luminance of (1, 1, 1).
 std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg = false);
-// What is in the shot's water.
+// What is in the shot's water. Of a body some milliseconds, since it needs the sea's spectrum (prepare()); who has that passes it on.
 WaterBody make_water(const Scene& scene);
-// The keys on which the light depends, as text: while it stays the same, sky, water and make_foam_picture() do. How foam looks
+WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum);
+// The keys on which the light depends, as text: while it stays the same, sky, make_foam_picture() and, over the same sea, water do. How foam looks
 // beside that is no part of it.
 std::string light_content(const Scene& scene);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without

@@ -233,6 +233,8 @@ class RendererOf final : public Impl {
         stop_if(watch.cancel);
         find_mesh_variance();
         stop_if(watch.cancel);
+        find_crests();
+        stop_if(watch.cancel);
         for (std::size_t i = 0; i < mesh_.height_m.size(); ++i)
             position_[i].z += static_cast<T>(mesh_.height_m[i]);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
@@ -271,6 +273,35 @@ class RendererOf final : public Impl {
                            .pixel_m = {width_m.data()},
                            .pixel_axis_m = {cell_axis_m_.data()}},
                  results);
+    }
+
+    // The shape of the long waves, where light goes through crests.
+    void find_crests() {
+        const WaterBody& water = sea_.water();
+        const bool has_crests = water.crest_light > 0.0f && water.crest_per_m > 0.0f && mesh_.normal.empty();
+        const std::size_t count = has_crests ? mesh_.points.rest_m.size() : 0;
+        crest_.resize(count);
+        if (count == 0) return;
+        std::vector<T> width_m = cell_m_;
+        for (T& width : width_m)
+            width = std::max({width, static_cast<T>(kCrestFootprint_m), first_pixel_m_});
+        std::vector<glm::vec<3, T>> normal(count), position(count);
+        Results<T> results;
+        results.set(Product::Normal, {normal.data()});
+        results.set(Product::Position, {position.data()});
+        evaluate(sea_.frame(), kQuery,
+                 Points<T>{.origin_m = mesh_.points.origin_m,
+                           .count = count,
+                           .rest_m = {rest_.data()},
+                           .cell_m = {width_m.data()},
+                           .pixel_m = {width_m.data()},
+                           .cell_axis_m = {cell_axis_m_.data()},
+                           .pixel_axis_m = {cell_axis_m_.data()}},
+                 results);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec3 n(normal[i]);
+            crest_[i] = glm::vec3(-glm::vec2(n) / std::max(n.z, 0.1f), static_cast<float>(position[i].z));
+        }
     }
 
     // Which triangle each sample of the rows shows.
@@ -399,6 +430,7 @@ class RendererOf final : public Impl {
         seen.resize(count);
         const bool is_flat = mesh_.normal.empty();
         seen.rest_normal.resize(is_flat ? 0 : count);
+        seen.crest.resize(crest_.empty() ? 0 : count);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
@@ -417,6 +449,13 @@ class RendererOf final : public Impl {
                 if (!is_flat) normal += weights[corner] * glm::dvec3(mesh_.normal[vertex]);
             }
             if (!is_flat) seen.rest_normal[i] = glm::vec<3, T>(normal);
+            if (!crest_.empty()) {
+                glm::vec3 crest(0.0f);
+                for (int corner = 0; corner < 3; ++corner)
+                    crest += static_cast<float>(weights[corner]) *
+                             crest_[mesh_.triangles[3 * std::size_t{triangle} + corner]];
+                seen.crest[i] = crest;
+            }
             seen.rest[i] = glm::vec<2, T>(rest);
             seen.up[i] = glm::vec3(earth_up(rest, mesh_.points.curvature_per_m));
             const auto pixel = pixel_on_mesh(
@@ -577,6 +616,7 @@ class RendererOf final : public Impl {
     T first_pixel_m_ = T(0);                     // the finest level that the frame reads
     std::vector<glm::vec<2, T>> rest_;           // the mesh's own, in T
     std::vector<glm::vec<3, T>> mesh_variance_;  // (σxx, σyy, σxy) of the slopes that cells don't resolve
+    std::vector<glm::vec3> crest_;               // as SeaPoint's; empty: no light comes through crests
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;
     std::vector<glm::vec<3, T>> position_;

@@ -17,7 +17,7 @@ template <class T>
 SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, const BuildWatch& watch)
     : choice_(choice),
       sky_(std::move(sky)),
-      water_(make_water(plan.from->scene)),
+      water_(make_water(plan.from->scene, plan.from->spectrum)),
       foam_(make_foam(plan.from->scene, make_foam_picture(plan.from->scene))),
       sea_(std::make_shared<const Sea<T>>(plan, watch)),
       state_(sea_) {
@@ -78,6 +78,9 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                                             .mesh_variance = seen.mesh_variance[i],
                                             .rest_m = glm::vec2(seen.rest[i]),
                                             .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i])};
+                          if (!seen.crest.empty())
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  points_[i].crest = seen.crest[i];
                           if (foam_lives())
                               for (std::size_t i = range.begin(); i < range.end(); ++i) {
                                   points_[i].active = answers_.numbers(Product::Breaking)[i];

@@ -38,6 +38,8 @@ struct SeenSea {
     // Of the slopes that the surface on which places were found lacks, at rest, along the view; 0: it lacks none that the
     // pixel shows.
     std::vector<float> mesh_variance;
+    // As SeaPoint::crest; empty: no light comes through crests.
+    std::vector<glm::vec3> crest;
     // Normals of the surface at rest, of any length, as in Points; empty: it is flat everywhere.
     std::vector<glm::vec<3, T>> rest_normal;
 

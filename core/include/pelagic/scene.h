@@ -33,7 +33,22 @@ enum class Tiling { Random, Periodic };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
 enum class Beyond { ByKind, Sea, Nothing };
 enum class CameraInterpolation { Linear, Smooth };
-enum class WaterType { Ocean, Coastal, Turbid };
+enum class WaterType {
+    Ocean,
+    Coastal,
+    Turbid,
+    // Jerlov's types (1976): of the open sea, and of coasts.
+    JerlovI,
+    JerlovIA,
+    JerlovIB,
+    JerlovII,
+    JerlovIII,
+    Jerlov1C,
+    Jerlov3C,
+    Jerlov5C,
+    Jerlov7C,
+    Jerlov9C
+};
 enum class QualityLevel { Draft, Preview, Final, Reference };
 enum class MeshFormat { Usda, Usdc, None };
 enum class MeshAttribute { Normal, Velocity, SlopeVariance, Whitecaps };
@@ -42,7 +57,7 @@ enum class MeshScheme { None, CatmullClark };
 enum class VolumeKind { Spray, LevelSet };
 
 // What an artist's shot means where it doesn't say: its defaults (core/scene/editions.h has what each edition changed).
-inline constexpr int kNewestEdition = 2;
+inline constexpr int kNewestEdition = 3;
 
 // [shot]
 struct Shot {
@@ -195,7 +210,12 @@ struct Light {
 // [water]
 struct Water {
     WaterType type = WaterType::Ocean;
-    double chlorophyll_mg_m3 = 0.1;  // 0.01 … 100
+    double chlorophyll_mg_m3 = 0.1;  // 0.01 … 100; Jerlov's types have their own
+    // Light in the water by the ways of sun and eye, with a floor at sea.depth_m; false: one colour for the whole sea.
+    bool body = true;
+    glm::dvec3 floor_colour{0.36, 0.31, 0.23};  // of that floor, 0 … 1, linear Rec. 709
+    double crest_light = 1.0;                   // ≥ 0, times the light through crests
+    double bubbles = 1.0;                       // ≥ 0, times the bubbles below foam
 };
 
 // [effects]

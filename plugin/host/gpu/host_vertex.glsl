@@ -12,12 +12,14 @@ out vec2 rest_m;
 out vec3 pixel_m;
 out vec3 from_eye_m;
 out vec3 mesh_variance;
+out vec3 crest_shape;
 
 void main() {
     vec3 displacement = query_cell(rest_in, cell_in);
     rest_m = rest_in;
     pixel_m = pixel_in;
     mesh_variance = query_mesh_variance(rest_in, cell_in);
+    crest_shape = crest_at(rest_in, cell_in);
     EarthPoint at = on_earth(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x, curvature_per_m);
     vec3 place = vec3(at.x, at.y, at.z);
     from_eye_m = place - vec3(0.0, 0.0, eye_height_m);

@@ -26,11 +26,22 @@ void main() {
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white,
                                      foam_pattern_image),
                          rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
+    WaterLook water = WaterLook(water_reflectance, water_crests.x > 0.0,
+                                WaterBands(water_absorption_shorter, water_absorption_longer),
+                                WaterBands(water_backscatter_shorter, water_backscatter_longer),
+                                WaterBands(water_floor_shorter, water_floor_longer), water_crests.y, water_waves,
+                                water_crests.z, water_crests.w, water_bubbles.x, water_bubbles.y);
+    SeenBody body = SeenBody(point_crest(), 0.0, 0.0, 0.0);
+    if (kWhitecaps && water_bubbles.x > 0.0) {
+        float covered = clamp(all.coverage, 0.0, 1.0);
+        float fresh = min(covered, max(all.breaking, 0.0));
+        body = SeenBody(body.crest, fresh, covered - fresh, all.age_s);
+    }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
-                        answer.slope_variance, foam,
+                        answer.slope_variance, foam, body,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
-                                 water_reflectance),
+                                 water),
                         PlaceView(air_to_sun, air_by_place));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)

@@ -3,8 +3,10 @@ in vec2 rest_m;
 in vec3 pixel_m;  // width and long axis, on the sea at rest
 in vec3 from_eye_m;
 in vec3 mesh_variance;  // of slopes: xx, yy, xy
+in vec3 crest_shape;    // of long waves: slopes, height [m]
 
 void read_point() {}
+vec3 point_crest() { return crest_shape; }
 float point_distance_m() { return length(from_eye_m); }
 // Variance of the slopes that the mesh leaves unresolved, along the view.
 float mesh_variance_along() {

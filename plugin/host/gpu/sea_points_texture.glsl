@@ -1,11 +1,13 @@
 // The same as sea_points_in.glsl, from the pictures that sea_points_fragment.glsl made.
 uniform sampler2D first_points;
 uniform sampler2D second_points;
+uniform sampler2D third_points;
 
 vec2 rest_m;
 vec3 drawn_pixel_m;
 float drawn_distance_m;
 float drawn_mesh_variance;
+vec3 drawn_crest;
 
 void read_point() {
     vec4 first = texelFetch(first_points, ivec2(gl_FragCoord.xy), 0);
@@ -14,10 +16,15 @@ void read_point() {
     drawn_pixel_m = vec3(first.z, first.w, second.x);
     drawn_distance_m = second.y;
     drawn_mesh_variance = second.z;
+    drawn_crest = texelFetch(third_points, ivec2(gl_FragCoord.xy), 0).xyz;
 }
 
 vec3 pixel_on_mesh() {
     return drawn_pixel_m;
+}
+
+vec3 point_crest() {
+    return drawn_crest;
 }
 
 float point_distance_m() {

@@ -5,6 +5,7 @@
 
 #include "core/lighting/air.h"
 #include "core/lighting/foam_structure.h"
+#include "core/lighting/lighting.h"
 #include "core/plan/taps.h"
 #include "plugin/host/gpu/packed_foam.h"
 
@@ -47,6 +48,7 @@ const char* shape_file(bool is_shaped, const char* shaped) {
 }
 constexpr const char *kShapeOfVertex = "plugin/host/gpu/shape_vertex.glsl",
                      *kShapeOfFragment = "plugin/host/gpu/shape_fragment.glsl";
+constexpr const char* kCrests = "plugin/host/gpu/crests.glsl";
 const char* points_file(const DrawOptions& options) {
     return is_lit_afterwards(options) ? "plugin/host/gpu/sea_points_texture.glsl"
                                       : "plugin/host/gpu/sea_points_in.glsl";
@@ -96,7 +98,8 @@ const std::vector<std::string_view>& query_files() {
 }
 
 std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped) {
-    return constant("kShaped", is_shaped) + constant("kCascades", layout.cascades()) +
+    return constant("kShaped", is_shaped) + "const float kCrestFootprint_m = " +
+           std::to_string(kCrestFootprint_m) + ";\n" + constant("kCascades", layout.cascades()) +
            constant("kTileCascades", std::max(layout.cascades(), 1)) +
            constant("kCellLevels", static_cast<int>(layout.cells().footprints_m.size())) +
            constant("kPixelLevels", static_cast<int>(layout.pixels().footprints_m.size())) +
@@ -160,7 +163,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
             picture_constants(options) + (lives ? foam_constants() : std::string()),
         is_lit_afterwards(options)
             ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
-            : joined({query_files(), {shape_file(options.is_shaped, kShapeOfVertex), vertex_file(options)}}),
+            : joined({query_files(), {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
         joined({query_files(),
                 {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
                 {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
@@ -175,7 +178,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {
     return {query_constants(layout, false, is_shaped),
-            joined({query_files(), {shape_file(is_shaped, kShapeOfVertex), vertex_file({})}}),
+            joined({query_files(), {shape_file(is_shaped, kShapeOfVertex), kCrests, vertex_file({})}}),
             joined({query_files(),
                     {"plugin/host/gpu/rays.glsl", "plugin/host/gpu/sea_points_in.glsl",
                      "plugin/host/gpu/sea_points_fragment.glsl"}})};

@@ -24,7 +24,8 @@ struct Uniform {
 // Of query.glsl and trains.glsl.
 std::vector<Uniform> query_uniforms(const SeaLayout& layout);
 // Of light_uniforms.glsl.
-std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water);
+std::vector<Uniform> light_uniforms(const Sky& sky);
+std::vector<Uniform> water_uniforms(const WaterBody& water);
 // Of foam_uniforms.glsl.
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern);
 // Of air_table.glsl.

@@ -41,7 +41,7 @@ constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
                                                         "foam_picture", "air_picture"};
 
-constexpr std::array<const char*, 2> kPointNames{"first_points", "second_points"};
+constexpr std::array<const char*, 3> kPointNames{"first_points", "second_points", "third_points"};
 
 void set_uniform(GLint at, const glm::vec3& v) {
     glUniform3f(at, v.x, v.y, v.z);
@@ -97,7 +97,7 @@ struct SeaRenderer::Implementation {
 
     GlTexture sky_map, dither_tile;
     int sky_map_size = 0;
-    std::vector<Uniform> light;
+    std::vector<Uniform> light, water;
     std::shared_ptr<const AirModel> air_model;
     GlTexture air_table;
     std::optional<double> air_height_m;  // of the eye that the table is for
@@ -261,7 +261,7 @@ void SeaRenderer::Implementation::make_pictures(glm::ivec2 size, bool layers) {
     }
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
     glDrawBuffers(static_cast<GLsizei>(points.size()),
-                  std::array<GLenum, 2>{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}.data());
+                  std::array<GLenum, 3>{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2}.data());
     require_framebuffer();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     picture_size = size;
@@ -279,6 +279,7 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
+    set_uniforms(program, water);
     if (spray.empty()) return;
     bind_texture(kSprayMapUnit, spray_map);
     set_uniforms(program, spray);
@@ -425,7 +426,8 @@ std::string SeaRenderer::device() const {
 
 void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     Implementation& of = *implementation_;
-    of.light = light_uniforms(sky, water);
+    of.light = light_uniforms(sky);
+    set_water(water);
     of.sky_map_size = sky.map.size();
     of.air_model = sky.air;
     of.air = air_uniforms({});  // none until a table is there
@@ -440,6 +442,10 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     for (int level = 0; level < sky.map.level_count(); ++level)
         glTexImage2D(GL_TEXTURE_2D, level, GL_RGB32F, sky.map.size() >> level, sky.map.size() >> level, 0,
                      GL_RGB, GL_FLOAT, sky.map.level(level).data());
+}
+
+void SeaRenderer::set_water(const WaterBody& water) {
+    implementation_->water = water_uniforms(water);
 }
 
 void SeaRenderer::set_spray(const Spray& spray) {

@@ -57,6 +57,8 @@ class SeaRenderer {
     bool is_software() const;
 
     void set_sky(const Sky& sky, const WaterBody& water);
+    // Under the same sky, as when the sea is another one.
+    void set_water(const WaterBody& water);
     // What the next pictures have between their eye and the sea; none before the first call.
     void set_spray(const Spray& spray);
     // Sets the frame of the next pictures. A frame of another sea replaces that sea: textures are made again,

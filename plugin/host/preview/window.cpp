@@ -194,17 +194,15 @@ std::filesystem::path picture_name(const std::filesystem::path& folder, const st
     }
 }
 
-// Light, water and the artist's picture of foam, made in the background like the sea.
+// Light and the artist's picture of foam, made in the background like the sea.
 struct LiveSky {
     Sky sky;
-    WaterBody water;
     std::shared_ptr<const FoamImage> foam_picture;
 };
 
 std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
     LiveSky made;
     made.sky = make_sky(scene);
-    made.water = make_water(scene);
     made.foam_picture = make_foam_picture(scene);
     return std::make_shared<const LiveSky>(std::move(made));
 }
@@ -430,7 +428,8 @@ class Preview {
     }
 
     void show_sky(const std::shared_ptr<const LiveSky>& sky) {
-        renderer_.set_sky(sky->sky, sky->water);
+        water_ = make_water(controls_.scene);
+        renderer_.set_sky(sky->sky, water_);
         sky_ = sky;
         meter();
     }
@@ -454,7 +453,12 @@ class Preview {
         const auto only_if = [&](bool wanted) { return wanted ? std::optional<View>(view) : std::nullopt; };
         has_spray_ = render_options(controls_.scene).lighting.spray;
         sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_));
+        const std::shared_ptr<const LiveBuild> before = frame_ ? frame_->build : nullptr;
         frame_ = sea_.newest();
+        if (frame_ && frame_->build != before) {
+            water_ = make_water(controls_.scene);
+            renderer_.set_water(water_);
+        }
         const LiveStatus status = sea_.status();
         if (!std::exchange(readout_.building_sea, status.building)) asked_at_ = Clock::now();
         readout_.built = status.built;
@@ -540,7 +544,7 @@ class Preview {
         const std::shared_ptr<const Spray> ready = sea_.newest_spray();
         if (!ready || !sky_) return;
         Spray spray = *ready;
-        light_spray(spray, controls_.draw.lighting, sky_->sky, sky_->water, law_coverage(controls_.scene));
+        light_spray(spray, controls_.draw.lighting, sky_->sky, water_, law_coverage(controls_.scene));
         renderer_.set_spray(spray);
     }
 
@@ -608,6 +612,7 @@ class Preview {
     std::shared_ptr<const LiveSky> sky_;  // the one that is shown
     double metered_wind_mps_ = 0.0;
     float exposure_ = 1.0f;
+    WaterBody water_;
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
     long uploaded_ = 0;  // the frame's number

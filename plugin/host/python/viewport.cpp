@@ -68,7 +68,7 @@ struct GpuLight {
     explicit GpuLight(const Scene& scene) : made_from(light_content(scene)) {
         sky = make_sky(scene);
         map_size = sky.map.size();
-        uniforms = light_uniforms(sky, make_water(scene));
+        uniforms = light_uniforms(sky);
         atlas = sky_atlas(sky.map);
         foam_picture = make_foam_picture(scene);
     }
@@ -304,6 +304,15 @@ class GpuSea {
         return dict_of(foam_uniforms(
             foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
     }
+    // Hosts ask at each redraw, and it takes milliseconds.
+    py::dict water(const Scene& scene) const {
+        std::string from = canonical(scene, key_parts(KeyPart::Water));
+        if (water_.empty() || from != water_from_) {
+            water_ = water_uniforms(make_water(scene, prepared_->spectrum));
+            water_from_ = std::move(from);
+        }
+        return dict_of(water_);
+    }
 
     bool has_living_foam() const { return packed_.layout()->has_living_foam(); }
     void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
@@ -395,12 +404,14 @@ class GpuSea {
     mutable std::mutex mutex_;
     std::shared_ptr<const PackedFoam> foam_;  // what was taken last
     std::optional<FoamThread> foam_thread_;   // of persistent foam that was asked for
+    mutable std::vector<Uniform> water_;
+    mutable std::string water_from_;
 };
 
 void add_gpu_light(py::module_& module) {
     py::class_<GpuLight, std::shared_ptr<GpuLight>>(
         module, "GpuLight",
-        "Sky, sun and water of a scene for GpuSea's shaders. ShotError for an invalid scene, ValueError for a "
+        "Sky and sun of a scene for GpuSea's shaders. ShotError for an invalid scene, ValueError for a "
         "sky's picture that can't be read.")
         .def(py::init(&make_beside_others<GpuLight>), py::arg("scene"))
         .def_static("begin", &begin_making<GpuLight>, py::arg("scene"),
@@ -527,6 +538,8 @@ void add_viewport(py::module_& module) {
             "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"), py::arg("light"),
             "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea and this GpuLight serve has it, "
             "for a grid's origin [m].")
+        .def("water", &GpuSea::water, py::arg("scene"),
+             "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")
         .def_property_readonly(
             "has_living_foam", &GpuSea::has_living_foam,
             "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "

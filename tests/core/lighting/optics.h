@@ -51,6 +51,11 @@ inline Optics::FoamPattern glsl(const FoamPattern& p) {
     return {p.cell, p.rest, p.axes, p.look, p.white, p.image};
 }
 
+// Water without a body.
+inline Optics::WaterLook plain_water(vec3 reflectance) {
+    return {reflectance, false, {}, {}, {}, 1e9f, vec3(0.0f), 0.0f, 0.0f, 0.0f, 0.0f};
+}
+
 // A sea that reflects everything: the white furnace.
 struct Furnace {
     Lookup lookup = uniform_sky;

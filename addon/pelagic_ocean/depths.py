@@ -10,6 +10,9 @@ through the water is longer than it should be. Seen from above, things stand whe
 EEVEE keeps the opaque water: a volume fills its object's box there, and the air over the sea with it.
 """
 
+import copy
+import math
+
 import bpy
 
 from . import compat
@@ -90,7 +93,9 @@ def _add_floor(obj):
 
 def coefficients(scene):
     """(absorption, scattering), (r, g, b) each [1/m]."""
-    water = pelagic.WaterBody(scene)
+    deep = copy.copy(scene)
+    deep.sea.depth_m = math.inf  # a floor is there to be seen through it
+    water = pelagic.WaterBody(deep)
     scattering = []
     for absorption, reflectance in zip(water.absorption_per_m, water.reflectance):
         # Of the light that comes in at the cosine μ₀, b/c / (4 (μ + μ₀)) comes back to μ, scattered once: 0.13 … 0.21 b/c,

@@ -93,18 +93,16 @@ typename Variant::WaterLook look_of(const WaterBody& water) {
 }
 
 // Seen from 45°, as most of what a camera above the sea sees of the water below it is.
+constexpr float kSeenFrom = 0.70710678f;
+
 glm::vec3 reflectance_of(const WaterBody& water) {
     using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
     const SkyMap none;
     Variant shading(none);
-    const typename Variant::WaterWay way{.sun = 1.0f,
-                                         .eye = 1.0f / shading.refracted_cosine(0.70710678f),
-                                         .returned = 0.0f,
-                                         .crest_m = 0.0f,
-                                         .fresh_bubbles = 0.0f,
-                                         .old_bubbles = 0.0f,
-                                         .bubbles_m = 0.0f,
-                                         .floor_m = water.floor_m};
+    typename Variant::WaterWay way{};
+    way.sun = 1.0f;
+    way.eye = 1.0f / shading.refracted_cosine(kSeenFrom);
+    way.floor_m = water.floor_m;
     const auto back = [&](const glm::vec3& absorption, const glm::vec3& backscatter, const glm::vec3& floor) {
         return shading.water_back(absorption, backscatter, floor, way).sky;
     };
@@ -115,11 +113,15 @@ glm::vec3 reflectance_of(const WaterBody& water) {
 }
 
 SeaAlbedo albedo(const WaterBody& body) {
+    using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
     const SkyMap none;
-    Shading<FresnelFit::Exact, SkyQuality::One> shading(none);
+    Variant shading(none);
     // Of irradiance π the radiance is the albedo.
+    const vec3 up(0.0f, 0.0f, 1.0f), dark(0.0f), sky(shading.kPi);
     const glm::vec3 water =
-        shading.water_radiance({0.0f, 0.0f, 1.0f}, vec3(0.0f), vec3(shading.kPi), body.reflectance);
+        body.has_body ? shading.body_radiance({kSeenFrom, 0.0f, kSeenFrom}, up, up, dark, dark, sky,
+                                              look_of<Variant>(body), shading.no_crest_nor_bubbles())
+                      : shading.water_radiance(up, dark, sky, body.reflectance);
     return {.water = water,
             .foam = glm::mix(water, vec3(shading.kWhiteFoam), shading.kFoamOpacity),
             .water_index = shading.kWaterIndex};

@@ -216,8 +216,10 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
     // Of a sine of the crests' height and slope.
     if (crests.m0 > 0.0) water.crest_per_m = static_cast<float>(std::sqrt(crests.mss() / crests.m0));
     water.bubbles = static_cast<float>(scene.water.bubbles);
-    // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003).
-    water.bubbles_m = static_cast<float>(0.25 * all.significant_height_m());
+    // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003); most whitecaps are those of waves much shorter than the
+    // peak's, some 0.4 of its speed and 0.3 of its height.
+    constexpr double kBreakerOverHs = 0.3;
+    water.bubbles_m = static_cast<float>(0.25 * kBreakerOverHs * all.significant_height_m());
     return water;
 }
 

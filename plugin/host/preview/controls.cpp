@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <stdexcept>
+#include <string_view>
 
 #include "core/plan/effects.h"
 #include "core/scene/keys.h"
@@ -217,40 +219,45 @@ void key_controls(Scene& scene, const PanelSection& section) {
     for (const std::string_view path : section.paths) key_control(scene, key_of(path));
 }
 
-// In the order of panel_sections().
-enum Section { kWavesSection, kSkySection, kWaterSection, kPictureSection };
-
-const PanelSection& keys_of(Section section) {
-    return panel_sections().at(section);
+const PanelSection& keys_of(std::string_view title) {
+    const std::vector<PanelSection>& all = panel_sections();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const PanelSection& s) { return s.title == title; });
+    if (found == all.end()) throw std::logic_error("the panel has no section " + std::string(title));
+    return *found;
 }
 
 void waves_section(Controls& controls, const Readout& readout) {
-    if (!section(keys_of(kWavesSection).title)) return;
-    const bool had_whitecaps = is_on(Effect::Whitecaps, controls.scene);
-    key_controls(controls.scene, keys_of(kWavesSection));
-    // Foam that is turned on is drawn, also in a shot that begins without.
-    if (is_on(Effect::Whitecaps, controls.scene) && !had_whitecaps) controls.draw.lighting.whitecaps = true;
+    if (!section(keys_of("Wind and waves").title)) return;
+    key_controls(controls.scene, keys_of("Wind and waves"));
     ImGui::PushStyleColor(ImGuiCol_Text,
                           readout.building_sea ? kAccent : ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
     ImGui::TextWrapped("%s", sea_words(readout).c_str());
     ImGui::PopStyleColor();
 }
 
+void foam_section(Controls& controls) {
+    if (!section(keys_of("Foam").title)) return;
+    const bool had_whitecaps = is_on(Effect::Whitecaps, controls.scene);
+    key_controls(controls.scene, keys_of("Foam"));
+    // Foam that is turned on is drawn, also in a shot that begins without.
+    if (is_on(Effect::Whitecaps, controls.scene) && !had_whitecaps) controls.draw.lighting.whitecaps = true;
+}
+
 void sky_section(Scene& scene, const Readout& readout) {
-    if (!section(keys_of(kSkySection).title)) return;
+    if (!section(keys_of("Sun and sky").title)) return;
     const bool daylight = scene.light.sky == Light{}.sky;
     if (!daylight) {
         ImGui::TextDisabled("Sky: %s", std::filesystem::path(scene.light.sky).filename().string().c_str());
         tooltip("The sun stands where the picture has it");
     }
     ImGui::BeginDisabled(!daylight);
-    key_controls(scene, keys_of(kSkySection));
+    key_controls(scene, keys_of("Sun and sky"));
     ImGui::EndDisabled();
     if (readout.building_sky) ImGui::TextColored(kAccent, "Building this sky …");
 }
 
 void water_section(Scene& scene) {
-    if (section(keys_of(kWaterSection).title)) key_controls(scene, keys_of(kWaterSection));
+    if (section(keys_of("Water").title)) key_controls(scene, keys_of("Water"));
 }
 
 void light_section(LightingChoice& choice) {
@@ -295,7 +302,7 @@ void light_section(LightingChoice& choice) {
 }
 
 void picture_section(Controls& controls, const Readout& readout) {
-    if (!section(keys_of(kPictureSection).title)) return;
+    if (!section(keys_of("Picture").title)) return;
     slider("Exposure", controls.exposure_stops,
            {.low = -6.0,
             .high = 6.0,
@@ -305,7 +312,7 @@ void picture_section(Controls& controls, const Readout& readout) {
     choose("Resolution", controls.pixel_size, kSizes,
            "Of the drawn picture, against the window's: lower it where the graphics are slow");
     ImGui::TextDisabled("%d × %d pixels drawn", readout.drawn_px.x, readout.drawn_px.y);
-    key_controls(controls.scene, keys_of(kPictureSection));
+    key_controls(controls.scene, keys_of("Picture"));
     static constexpr std::array kColours{std::pair{FalseColour::None, "Light"},
                                          std::pair{FalseColour::FilterLevel, "Filter levels"},
                                          std::pair{FalseColour::UnresolvedVariance, "Hidden slopes"},
@@ -401,6 +408,7 @@ void panel(Controls& controls, const Readout& readout, const Scene& shot, Clicks
     }
     if (!readout.message.empty()) warning(readout.message);
     waves_section(controls, readout);
+    foam_section(controls);
     sky_section(controls.scene, readout);
     water_section(controls.scene);
     light_section(controls.draw.lighting);
@@ -507,7 +515,9 @@ const std::vector<PanelSection>& panel_sections() {
           "effects.foam_streaks", "effects.foam_pattern_m", "effects.foam_new_albedo",
           "effects.foam_old_albedo", "effects.foam_new_opaque", "effects.foam_old_opaque"}},
         {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
-        {"Water", {"water.type", "water.chlorophyll_mg_m3"}},
+        {"Water",
+         {"water.type", "water.chlorophyll_mg_m3", "water.body", "water.crest_light",
+          "water.bubbles"}},
         {"Picture", {"surface.cell_px"}}};
     return sections;
 }

@@ -43,6 +43,7 @@ TEST(Editions, TheFirstIsKept) {
     EXPECT_EQ(first.light.turbidity, 3.0);
     EXPECT_EQ(first.effects.whitecap_law, WhitecapLaw::Monahan1980);
     EXPECT_EQ(first.effects.spray_law, SpraySource::Monahan1986);
+    EXPECT_FALSE(first.water.body);
 }
 
 // A preset in a scene of the first edition is what it was then: no camera, and Beaufort's are the wind sea alone.
@@ -56,6 +57,7 @@ TEST(Editions, PresetsAreThoseOfTheirTime) {
         EXPECT_EQ(scene.light.turbidity, 3.0) << preset.name;
         EXPECT_EQ(scene.camera.position_m, Camera{}.position_m) << preset.name;
         EXPECT_EQ(scene.effects.whitecap_amount, 1.0) << preset.name;
+        EXPECT_FALSE(scene.water.body) << preset.name;
         if (preset.group == PresetGroup::Beaufort) {
             Scene wind = scene_of_edition(1);
             wind.sea = scene.sea;

@@ -284,7 +284,7 @@ TEST(Keys, AnIntegerMayHaveAnotherWord) {
 }
 
 TEST(ShotText, NothingDiffersIsNoText) {
-    EXPECT_EQ(shot_text(Scene{}), "[shot]\nedition = 2\n");
+    EXPECT_EQ(shot_text(Scene{}), "[shot]\nedition = 3\n");
     Scene scene;
     scene.sea.fetch_m = 1e5;
     EXPECT_EQ(shot_text(scene, scene), "");
@@ -300,7 +300,7 @@ TEST(ShotText, OnlyWhatDiffersInTheTablesOfAShotFile) {
     now.effects.whitecaps = false;
     EXPECT_EQ(shot_text(now),
               "[shot]\n"
-              "edition = 2\n"
+              "edition = 3\n"
               "\n[sea]\n"
               "wind_speed_mps = 12.5\n"
               "fetch_m = 100000\n"

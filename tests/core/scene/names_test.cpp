@@ -27,7 +27,8 @@ TEST(Names, AreTheShotFilesWords) {
     expect_words<WaveModel>({"fft", "trochoid"});
     expect_words<SurfaceKind>({"patch", "projected-grid", "near-far", "cage", "planet"});
     expect_words<CameraInterpolation>({"linear", "smooth"});
-    expect_words<WaterType>({"ocean", "coastal", "turbid"});
+    expect_words<WaterType>({"ocean", "coastal", "turbid", "jerlov-I", "jerlov-IA", "jerlov-IB", "jerlov-II",
+                             "jerlov-III", "jerlov-1C", "jerlov-3C", "jerlov-5C", "jerlov-7C", "jerlov-9C"});
     expect_words<QualityLevel>({"draft", "preview", "final", "reference"});
     expect_words<MeshFormat>({"usda", "usdc", "none"});
     expect_words<MeshAttribute>({"normal", "velocity", "slope-variance", "whitecaps"});

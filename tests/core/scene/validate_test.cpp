@@ -102,6 +102,10 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
         {"light.turbidity", limits::kTurbidity, [](Scene& s, double v) { s.light.turbidity = v; }},
         {"water.chlorophyll_mg_m3", limits::kChlorophyll_mg_m3,
          [](Scene& s, double v) { s.water.chlorophyll_mg_m3 = v; }},
+        {"water.floor_colour", limits::kFloorColour,
+         [](Scene& s, double v) { s.water.floor_colour.y = v; }},
+        {"water.crest_light", limits::kWaterGain, [](Scene& s, double v) { s.water.crest_light = v; }},
+        {"water.bubbles", limits::kWaterGain, [](Scene& s, double v) { s.water.bubbles = v; }},
         {"surface.cell_px", limits::kCell_px, [](Scene& s, double v) { s.surface.cell_px = v; }},
     };
     for (const Case& c : cases) {

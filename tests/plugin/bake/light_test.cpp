@@ -358,17 +358,19 @@ TEST_F(StageLightTest, WaterAndFoamHaveTheCoresColours) {
     for (const WaterType type : {WaterType::Ocean, WaterType::Coastal, WaterType::Turbid})
         for (const double chlorophyll : {0.01, 0.1, 3.0, 100.0}) {
             Scene scene = small_scene();
-            scene.water = {.type = type, .chlorophyll_mg_m3 = chlorophyll};
+            scene.water = {.type = type, .chlorophyll_mg_m3 = chlorophyll, .body = chlorophyll > 1.0};
+            scene.sea.depth_m = 4.0;
             const std::string stage = baked(scene);
             const WaterBody water = make_water(scene);
             const Prim mixed = prim_of(stage, "def Shader \"BaseColor\"");
             const glm::dvec3 below(water.reflectance), color = water_color(stage);
             const glm::dvec3 foam = vector_in(mixed.at("color3f inputs:fg"));
             EXPECT_EQ(vector_in(mixed.at("color3f inputs:bg")), color);
-            // Through the surface, the water and its underside, and into the narrower cone below.
+            // Through the surface, the water and its underside, and into the narrower cone below; of a body the surface is rough, and what
+            // it sends down again is told by that.
             const glm::dvec3 expected = below * (1.0 - 0.06751) / (1.0 - 0.48 * below) / (1.34 * 1.34);
-            EXPECT_LT(largest(glm::abs(color - expected)), 1e-6);
-            EXPECT_LT(largest(glm::abs(foam - (0.22 + 0.6 * expected))), 1e-6);
+            EXPECT_LT(largest(glm::abs(color - expected)), scene.water.body ? 0.05 * largest(expected) : 1e-6);
+            EXPECT_LT(largest(glm::abs(foam - (0.22 + 0.6 * color))), 1e-6);
             for (const char* shader : {"def Shader \"Preview\"", "def Shader \"Surface\""}) {
                 const Prim prim = prim_of(stage, shader);
                 const auto ior = prim.find(prim.contains("float inputs:ior") ? "float inputs:ior"
@@ -376,18 +378,26 @@ TEST_F(StageLightTest, WaterAndFoamHaveTheCoresColours) {
                 EXPECT_EQ(ior->second, "1.34");
             }
 
-            // And they are what the core shades: a calm sea from above, under a sky of radiance 1.
+            // And they are what the core shades: a calm sea from 45°, under a sky of radiance 1.
             Sky even;
             even.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(1.0f)));
             even.sky_irradiance = glm::vec3(static_cast<float>(kPi));
-            std::array<SeaRadiance, 2> seen;
-            const std::array<SeaPoint, 2> points{SeaPoint{.slope_variance = glm::vec3(1e-9f, 1e-9f, 0.0f)},
-                                                 SeaPoint{.coverage = 1.0f}};
-            shade_sea({}, even, water, points, seen);
-            const double fresnel = std::pow(0.34 / 2.34, 2.0);
+            std::array<SeaRadiance, 3> seen;
+            const glm::vec3 from = glm::normalize(glm::vec3(1.0f, 0.0f, 1.0f));
+            const std::array<SeaPoint, 3> points{
+                SeaPoint{.to_eye = from, .slope_variance = glm::vec3(1e-9f, 1e-9f, 0.0f)},
+                SeaPoint{.to_eye = from, .slope_variance = glm::vec3(1e-9f, 1e-9f, 0.0f), .coverage = 1.0f},
+                SeaPoint{.coverage = 1.0f}};
+            WaterBody without_bubbles = water;
+            without_bubbles.bubbles = 0.0f;
+            shade_sea({}, even, without_bubbles, points, seen);
+            // At 45° the parallel part is the square of the other one.
+            const double below_rad = std::asin(std::sqrt(0.5) / 1.34), above_rad = kPi / 4.0,
+                         across = std::pow(std::sin(above_rad - below_rad) / std::sin(above_rad + below_rad), 2.0),
+                         fresnel = 0.5 * across * (1.0 + across);
             EXPECT_LT(largest(glm::abs(glm::dvec3(seen[0].sea) - (1.0 - fresnel) * color)), 1e-5);
             // The core's foam is rough: its facets see 0.956 of the sky.
-            EXPECT_LT(largest(glm::abs(glm::dvec3(seen[1].foam) - 0.9564 * 0.22)), 1e-4);
+            EXPECT_LT(largest(glm::abs(glm::dvec3(seen[2].foam) - 0.9564 * 0.22)), 1e-4);
             EXPECT_LT(largest(glm::abs(glm::dvec3(seen[1].sea - 0.6f * seen[0].sea))), 1e-6);
         }
 }

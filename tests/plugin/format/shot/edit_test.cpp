@@ -54,7 +54,7 @@ void expect_edited(const std::string& text, const Scene& wanted, const std::stri
 TEST(EditShot, TheEditionIsWritten) {
     const Scene base = read("[sea]\nfetch_m = 1e5\n");
     EXPECT_EQ(edited_shot("[sea]\nfetch_m = 1e5\n", base, base),
-              "[sea]\nfetch_m = 1e5\n\n[shot]\nedition = 2\n");
+              "[sea]\nfetch_m = 1e5\n\n[shot]\nedition = 3\n");
     const std::string old = "[shot]\nedition = 1\n";
     Scene scene = read(old);
     EXPECT_EQ(edited_shot(old, scene, read(old)), old);

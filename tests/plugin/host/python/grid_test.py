@@ -182,7 +182,7 @@ class Text(unittest.TestCase):
         scene.shot.seed = 2**62
         again = pelagic.Scene.from_text(scene.shot_text())
         self.assertEqual(str(again), str(scene))
-        self.assertEqual(pelagic.Scene().shot_text(), "[shot]\nedition = 2\n")
+        self.assertEqual(pelagic.Scene().shot_text(), "[shot]\nedition = 3\n")
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "shot.toml")
             scene.save(path)

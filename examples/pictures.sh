@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renders the gallery's pictures from their shots in examples/pictures, on the CPU: those that the README shows, a sheet of foam near
-# and far, a strip of eight frames a second apart, and a sheet of all presets, which becomes the add-on's thumbnails. Takes some minutes.
+# and far, a strip of eight frames a second apart, one of water types, and a sheet of all presets, which becomes the add-on's thumbnails. Takes some minutes.
 #   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
@@ -23,7 +23,7 @@ sheet() {  # COLUMNS JPEG PICTURE…
 render() {  # SHOT FRAMES
     "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$1.toml" --frames "$2" --samples 2 --out "$scratch"
 }
-for shot in noon low-sun overcast storm spray from-8-km patch; do
+for shot in noon low-sun overcast storm spray from-8-km patch lagoon; do
     render $shot 12
     sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
@@ -31,9 +31,15 @@ for shot in foam-breeze foam-gale foam-storm; do render $shot 1-2; done
 sheet 2 foam.jpg "$scratch"/foam-{breeze,gale,storm}.000{1,2}.png
 render foam-strip 25-193x24
 sheet 4 foam-strip.jpg "$scratch"/foam-strip.*.png
+# Side by side as in Darles et al. 2007, Fig. 8.
+for type in jerlov-I jerlov-III coastal jerlov-3C jerlov-5C turbid; do
+    sed "s/^name = .*/name = \"$type\"/; s/^type = .*/type = \"$type\"/" "$here/pictures/water-types.toml" > "$scratch/$type.toml"
+    "$PELAGIC_ROOT/build/release/pelagic" render "$scratch/$type.toml" --frames 12 --samples 2 --out "$scratch"
+done
+sheet 3 water-types.jpg "$scratch"/{jerlov-I,jerlov-III,coastal,jerlov-3C,jerlov-5C,turbid}.0012.png
 "$PELAGIC_ROOT/build/release/pelagic" presets --sheet "$scratch/presets.png"
 sheet 1 presets.jpg "$scratch/presets.png"
 mapfile -t presets < <("$PELAGIC_ROOT/build/release/pelagic" presets | cut -d ' ' -f 1)
 blender -b --factory-startup --python-exit-code 1 --python "$here/preset-thumbnails.py" -- \
     "$scratch/presets.png" "$PELAGIC_ROOT/addon/pelagic_ocean/thumbnails" "${presets[@]}" >/dev/null
-ls -l "$out"/{presets,noon,low-sun,overcast,storm,spray,from-8-km,patch,foam,foam-strip}.jpg
+ls -l "$out"/{presets,noon,low-sun,overcast,storm,spray,from-8-km,patch,lagoon,water-types,foam,foam-strip}.jpg

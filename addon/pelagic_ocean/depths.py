@@ -54,8 +54,8 @@ def add_depths(tree, part, foam, mirror, white, before_air):
                                           1: named(SCATTERING, "ShaderNodeVolumeScatter")})
 
 
-def connect(obj, material):
-    """Makes Cycles show the volume, or the opaque water."""
+def connect(obj, material, scene):
+    """Makes Cycles show the volume of the scene's water over its floor, or the opaque water."""
     tree, is_on = material.node_tree, obj.pelagic.see_through
     output = tree.nodes.get(OUTPUT)
     if output is not None and not is_on:
@@ -71,12 +71,24 @@ def connect(obj, material):
         tree.links.new(tree.nodes[SURFACE].outputs[0], output.inputs["Surface"])
         tree.links.new(tree.nodes[VOLUME].outputs[0], output.inputs["Volume"])
         _add_floor(obj)
+    if is_on:
+        _set_floor(obj, scene)
+
+
+def _set_floor(obj, scene):
+    """Where the sea has one, and black where no light comes from any more: what hits nothing is in no volume for Cycles."""
+    is_seen = scene.water.body and scene.sea.depth_m < FLOOR_DEPTH_M
+    depth_m, colour = (scene.sea.depth_m, scene.water.floor_colour) if is_seen else (FLOOR_DEPTH_M, (0.0, 0.0, 0.0))
+    for floor in [child for child in obj.children if MARK in child]:
+        floor.scale = (1.0, 1.0, depth_m)
+        for node in floor.data.materials[0].node_tree.nodes if floor.data.materials else ():
+            if node.type == "BSDF_DIFFUSE":
+                node.inputs["Color"].default_value = (*colour, 1.0)
 
 
 def _add_floor(obj):
-    """Black, where no light comes from any more: what hits nothing is in no volume for Cycles."""
     mesh = bpy.data.meshes.new("Pelagic Floor")
-    mesh.from_pydata([(x * FLOOR_M, y * FLOOR_M, -FLOOR_DEPTH_M) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [],
+    mesh.from_pydata([(x * FLOOR_M, y * FLOOR_M, -1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [],
                      [(0, 1, 2, 3)])
     black = bpy.data.materials.new("Pelagic Floor")
     black.use_nodes = True

@@ -43,7 +43,7 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
-        depths.connect(obj, material)
+        depths.connect(obj, material, scene)
         if significant_height_m is not None:
             _set(material, "Wave Height", max(significant_height_m, 1e-3))
         if dense_foam is not None:
@@ -196,19 +196,11 @@ def put_air(obj, scene, sky):
 def upwelling_albedo(scene):
     """(r, g, b): the diffuse reflectance of the sea for light that comes from below its surface, without the factor
     (1 − Fresnel) on the way out: water_radiance() of water.glsl over the irradiance of the scene's own light, / π."""
-    sky, reflectance = sky_of(scene), pelagic.WaterBody(scene).reflectance
+    sky, water = sky_of(scene), pelagic.WaterBody(scene)
     diffuse, underside = 0.06751, 0.48
-    into_water = 1.0 - fresnel(sky.sun_direction[2])
+    into_water = water.entering(sky.sun_direction)
     albedo = []
-    for sun, dome, r in zip(sky.sun_irradiance, sky.sky_irradiance, reflectance):
+    for sun, dome, r in zip(sky.sun_irradiance, sky.sky_irradiance, water.reflectance):
         down = (sun * into_water + dome * (1.0 - diffuse)) / max(sun + dome, 1e-12)
         albedo.append(down * r / (1.0 - underside * r) / WATER_INDEX**2)
     return albedo
-
-
-def fresnel(cosine):
-    """The unpolarised reflectance of water."""
-    cosine = min(max(cosine, 0.0), 1.0)
-    g = math.sqrt(WATER_INDEX**2 - 1 + cosine * cosine)
-    along = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1)
-    return 0.5 * ((g - cosine) / (g + cosine))**2 * (1 + along * along)

@@ -167,6 +167,14 @@ SeaAlbedo sea_albedo(const WaterBody& water) {
     return sea_shading::albedo(water);
 }
 
+float water_entering(const WaterBody& water, glm::vec3 from) {
+    const SkyMap none;
+    sea_shading::Shading<FresnelFit::Exact, SkyQuality::One> shading(none);
+    from.z = std::max(from.z, 0.0f);
+    return water.has_body ? shading.entering(from, water.waves)
+                          : 1.0f - shading.fresnel_exact(from.z, shading.kWaterIndex);
+}
+
 glm::vec3 body_reflectance(const WaterBody& water) {
     return sea_shading::reflectance_of(water);
 }

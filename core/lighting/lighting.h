@@ -85,6 +85,10 @@ SeaAlbedo sea_albedo(const WaterBody& water);
 // reflectance: what hosts with one colour of water take for it. 0 … 1, linear Rec. 709.
 glm::vec3 body_reflectance(const WaterBody& water);
 
+// The part of light from a direction (unit; below the horizon as at it) that the surface lets into the water, 0 … 1: a rough one of a body, a
+// level one otherwise.
+float water_entering(const WaterBody& water, glm::vec3 from);
+
 struct Air;
 
 // Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is

@@ -124,6 +124,15 @@ std::vector<Preset> named_seas() {
     out.push_back(named("coastal-bay", "Coastal bay", "short, steep waves over shallow green water", coast,
                         {2.5, 0.5, 50.0}));
 
+    Scene lagoon;
+    lagoon.sea.wind_speed_mps = 4.0;
+    lagoon.sea.fetch_m = 2e3;
+    lagoon.sea.depth_m = 2.5;
+    lagoon.light = {.sun_elevation_deg = 55.0, .sun_azimuth_deg = 60.0};
+    lagoon.water = {.type = WaterType::JerlovIB, .floor_colour = {0.55, 0.50, 0.40}};
+    out.push_back(named("lagoon", "Lagoon", "clear, shallow water over coral sand, a light wind", lagoon,
+                        {3.0, 0.6, 50.0}));
+
     Scene evening;
     evening.sea.wind_speed_mps = 5.0;
     evening.sea.fetch_m = 100e3;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/lighting/background.h"
+#include "core/lighting/lighting.h"
 #include "plugin/host/python/arrays.h"
 #include "plugin/host/python/bindings.h"
 #include "plugin/host/python/watch.h"
@@ -215,7 +216,15 @@ void add_light(py::module_& module) {
             "[1/m], at the dominant wavelengths of red, green and blue.")
         .def_property_readonly(
             "backscatter_per_m", [](const WaterBody& self) { return tuple_of(self.backscatter_per_m); },
-            "[1/m], at the same. Isotropic scattering of twice as much sends as much back.");
+            "[1/m], at the same. Isotropic scattering of twice as much sends as much back.")
+        .def(
+            "entering",
+            [](const WaterBody& self, std::array<float, 3> direction) {
+                return water_entering(self, {direction[0], direction[1], direction[2]});
+            },
+            py::arg("direction"),
+            "The part of light from a direction (a unit vector) that the surface lets in: a rough surface of a body of "
+            "water, a level one without.");
     module.def(
         "foam_picture", &foam_picture_of, py::arg("scene"),
         "float32 (side, side, 1), rows from the top: the picture of effects.foam_pattern by rank, as a variable of normal "

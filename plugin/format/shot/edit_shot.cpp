@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "core/scene/editions.h"
 #include "core/scene/shot_text.h"
 #include "plugin/format/shot/shot.h"
 
@@ -45,7 +46,13 @@ std::string with_key(const std::string& text, const std::string& table, const st
 std::string edited_shot(std::string_view text, const Scene& scene, const Scene& base) {
     std::string edited(text);
     Scene read = base;
-    if (toml::parse(text)["shot"]["edition"].node() == nullptr) read.shot.edition = 0;  // to be written
+    const toml::table root = toml::parse(text);
+    if (root["shot"]["edition"].node() == nullptr) read.shot.edition = 0;  // to be written
+    // What the text will mean in another edition.
+    if (scene.shot.edition != base.shot.edition)
+        for (const EditionChange& change : edition_changes())
+            if (const Key& key = key_of(change.path); root.at_path(change.path).node() == nullptr)
+                set_value(read, key, fallback_in(scene.shot.edition, key));
     std::istringstream changes(shot_text(scene, read));
     std::string table;
     try {

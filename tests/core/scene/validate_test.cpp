@@ -102,8 +102,6 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
         {"light.turbidity", limits::kTurbidity, [](Scene& s, double v) { s.light.turbidity = v; }},
         {"water.chlorophyll_mg_m3", limits::kChlorophyll_mg_m3,
          [](Scene& s, double v) { s.water.chlorophyll_mg_m3 = v; }},
-        {"water.floor_colour", limits::kFloorColour,
-         [](Scene& s, double v) { s.water.floor_colour.y = v; }},
         {"water.crest_light", limits::kWaterGain, [](Scene& s, double v) { s.water.crest_light = v; }},
         {"water.bubbles", limits::kWaterGain, [](Scene& s, double v) { s.water.bubbles = v; }},
         {"surface.cell_px", limits::kCell_px, [](Scene& s, double v) { s.surface.cell_px = v; }},
@@ -121,6 +119,12 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
         }
         expect_refused([&](Scene& s) { c.set(s, kNan); }, {c.key, "nan", text_of(c.range)});
     }
+}
+
+TEST(Validate, AColoursPartsAreInItsRange) {
+    expect_good([](Scene& s) { s.water.floor_colour = {0.0, 1.0, 0.5}; });
+    for (const double bad : {-1e-9, 1.1, kNan})
+        EXPECT_EQ(validate(changed([&](Scene& s) { s.water.floor_colour.y = bad; })).size(), 1u) << bad;
 }
 
 // The hard cases that have to work.

@@ -93,6 +93,7 @@ TEST(Render, FlatSeaUnderUniformSkyIsFresnelsAndTheWaters) {
     Scene scene = calm_scene();
     scene.surface.earth_curvature = false;
     scene.quality.level = QualityLevel::Preview;
+    scene.water.body = false;  // a body's light depends on the eye's way through it
     const Picture picture = picture_of(scene);
     const View view = view_at(scene.camera, 1);
     double colour = 0.0;
@@ -378,6 +379,7 @@ TEST(Render, OneSampleShowsAsMuchLightAsMany) {
 TEST(Render, TermsThatAreOffAreBlack) {
     Scene scene = small_scene();
     scene.sea.wind_speed_mps = 18.0;
+    scene.water.bubbles = 0.0;  // they are there where foam is
     Sky sky = uniform_sky();
     sky.sun_direction = {0.0f, 0.8f, 0.6f};
     sky.sun_radiance = glm::vec3(1e5f);

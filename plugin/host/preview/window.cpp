@@ -35,6 +35,7 @@
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/seen_drops.h"
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
@@ -535,13 +536,22 @@ class Preview {
         readout_.times.gpu = renderer_.times();
     }
 
-    // The spray before the last camera for which it is ready.
+    // The spray before the last camera for which it is ready, and its drops.
     void show_spray() {
         const std::shared_ptr<const Spray> ready = sea_.newest_spray();
         if (!ready || !sky_) return;
         Spray spray = *ready;
         light_spray(spray, controls_.draw.lighting, sky_->sky, sky_->water, law_coverage(controls_.scene));
-        renderer_.set_spray(spray);
+        // Drops fly on while later ones are computed, as long as that is nearly their way.
+        constexpr double kLongest_s = 0.5;
+        const std::shared_ptr<const LiveDrops> drops = sea_.newest_drops();
+        double late_s = drops ? frame_->packed->time_s() - drops->time_s : 0.0;
+        if (const double loop_s = frame_->build->sea->loop_s(); loop_s > 0.0)
+            late_s = std::remainder(late_s, loop_s);
+        if (drops && drops->build == frame_->build && std::abs(late_s) <= kLongest_s)
+            renderer_.set_spray(spray, {drops, &drops->drops}, late_s);
+        else
+            renderer_.set_spray(spray);
     }
 
     // Persistent foam comes when it is ready. Until then a picture shows what there is.
@@ -577,6 +587,7 @@ class Preview {
     bool is_screenshot_due() {
         if (!options_.screenshot || frame_ == nullptr) return false;
         if (foam_worker_ && foam_worker_->is_busy()) return false;
+        if (has_spray_ && are_drops_near(frame_->build->scene, view_now()) && !sea_.newest_drops()) return false;
         if (pictures_++ == 0) first_picture_ = Clock::now();
         return pictures_ >= options_.screenshot_after;
     }

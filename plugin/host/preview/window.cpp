@@ -527,7 +527,8 @@ class Preview {
             make_foam(controls_.scene, sky_ ? sky_->foam_picture : nullptr,
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
-        if (has_spray_) show_spray();
+        lacks_drops_ = false;
+        if (has_spray_) show_spray(view);
         renderer_.draw(view, *mesh, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
@@ -537,7 +538,8 @@ class Preview {
     }
 
     // The spray before the last camera for which it is ready, and its drops.
-    void show_spray() {
+    void show_spray(const View& view) {
+        lacks_drops_ = are_drops_near(frame_->build->scene, view);
         const std::shared_ptr<const Spray> ready = sea_.newest_spray();
         if (!ready || !sky_) return;
         Spray spray = *ready;
@@ -548,10 +550,12 @@ class Preview {
         double late_s = drops ? frame_->packed->time_s() - drops->time_s : 0.0;
         if (const double loop_s = frame_->build->sea->loop_s(); loop_s > 0.0)
             late_s = std::remainder(late_s, loop_s);
-        if (drops && drops->build == frame_->build && std::abs(late_s) <= kLongest_s)
+        if (drops && drops->build == frame_->build && std::abs(late_s) <= kLongest_s) {
             renderer_.set_spray(spray, {drops, &drops->drops}, late_s);
-        else
+            lacks_drops_ = false;
+        } else {
             renderer_.set_spray(spray);
+        }
     }
 
     // Persistent foam comes when it is ready. Until then a picture shows what there is.
@@ -587,7 +591,7 @@ class Preview {
     bool is_screenshot_due() {
         if (!options_.screenshot || frame_ == nullptr) return false;
         if (foam_worker_ && foam_worker_->is_busy()) return false;
-        if (has_spray_ && are_drops_near(frame_->build->scene, view_now()) && !sea_.newest_drops()) return false;
+        if (lacks_drops_) return false;
         if (pictures_++ == 0) first_picture_ = Clock::now();
         return pictures_ >= options_.screenshot_after;
     }
@@ -629,7 +633,8 @@ class Preview {
     std::optional<FoamWorker> foam_worker_;  // of foam_of_, where its foam is persistent
     std::optional<View> foam_view_;          // what it was asked for last
     double foam_time_s_ = 0.0;
-    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false;
+    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false,
+         lacks_drops_ = false;  // that are still to come
     std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;
     LiveSea sea_{LiveLimits{.memory = machine::memory_limit_or(options_.max_memory_bytes),

@@ -154,9 +154,8 @@ void LiveSea::compute_frames() {
     std::optional<double> tried_s;
     std::optional<View> tried_eye, tried_spray;
     const auto spray_before = [&](const View& view) {
-        return std::make_shared<const Spray>(
-            make_spray_map(*frame, view, tried->drawn->grid_options(), kSprayMap,
-                           are_drops_near(tried->scene, view)));
+        return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->drawn->grid_options(),
+                                                            kSprayMap, are_drops_near(tried->scene, view)));
     };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {

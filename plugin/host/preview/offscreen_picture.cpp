@@ -219,7 +219,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
         light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
         const auto drops = std::make_shared<std::vector<SprayDrop>>();
         if (are_near && !spray.empty())
-            SprayDrops<float>(*sea, kDropsSquare_m).at(planned.scene.shot.time_s(planned.frame), glm::dvec2(view.position_m), *drops);
+            SprayDrops<float>(*sea, kDropsSquare_m)
+                .at(planned.scene.shot.time_s(planned.frame), glm::dvec2(view.position_m), *drops);
         renderer.set_spray(spray, drops);
     }
     renderer.upload_once(std::move(state), 0);

@@ -418,11 +418,12 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
 // Over the picture, from the farthest on.
 void SeaRenderer::Implementation::draw_drops(const View& view, double curvature_per_m,
                                              const DrawOptions& options) {
-    const std::vector<SeenDrop> seen = seen_drops(*drops->drops, {.view = view,
-                                                                  .curvature_per_m = curvature_per_m,
-                                                                  .air = options.lighting.air ? &seen_air : nullptr,
-                                                                  .spray = drops->spray,
-                                                                  .late_s = drops->late_s});
+    const std::vector<SeenDrop> seen =
+        seen_drops(*drops->drops, {.view = view,
+                                   .curvature_per_m = curvature_per_m,
+                                   .air = options.lighting.air ? &seen_air : nullptr,
+                                   .spray = drops->spray,
+                                   .late_s = drops->late_s});
     if (seen.empty()) return;
     struct Disc {
         glm::vec2 at_px;

@@ -99,7 +99,10 @@ TEST(SprayDropsSeen, ADiscHidesAsMuchAsItsSection) {
 // Those of a moment ago are where they fly, straight on.
 TEST(SprayDropsSeen, FlyOnFromWhereTheyWere) {
     const View view = view_at(storm_of_drops(1.0).camera, 1);
-    SprayDrop drop{.position_m = view.position_m + 20.0 * view.forward, .velocity_mps = {3.0, 1.0, -2.0}, .width_m = 1.0, .section_m2 = 1.0};
+    SprayDrop drop{.position_m = view.position_m + 20.0 * view.forward,
+                   .velocity_mps = {3.0, 1.0, -2.0},
+                   .width_m = 1.0,
+                   .section_m2 = 1.0};
     const Spray unlit;
     const auto seen = [&](double late_s) {
         return seen_drops({&drop, 1}, {.view = view, .spray = unlit, .late_s = late_s}).at(0);

@@ -136,7 +136,8 @@ TEST(PreviewsPicture, IsTheCpusOfSprayFromAPlane) {
 // In each pixel: whether drops hide something of what is behind them.
 std::vector<bool> are_behind_drops(const Scene& scene, int frame) {
     const View view = view_at(scene.camera, frame);
-    const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene, std::array{frame}, render_options(scene)));
+    const auto sea =
+        std::make_shared<const Sea<float>>(picture_plan(scene, std::array{frame}, render_options(scene)));
     std::vector<SprayDrop> drops;
     SprayDrops<float>(*sea, kDropsSquare_m).at(scene.shot.time_s(frame), glm::dvec2(view.position_m), drops);
     const Spray unlit;
@@ -167,7 +168,8 @@ TEST(PreviewsPicture, IsTheCpusOfDropsOfSpray) {
         if (!behind[i] || both.cpu.sea[i] != both.gpu.sea[i]) continue;
         const SeaRadiance &a = both.cpu.layers[i], &b = both.gpu.layers[i];
         glm::vec3 apart(0.0f);
-        for (glm::vec3 SeaRadiance::*layer : {&SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::sea, &SeaRadiance::foam, &SeaRadiance::air})
+        for (glm::vec3 SeaRadiance::*layer :
+             {&SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::sea, &SeaRadiance::foam, &SeaRadiance::air})
             apart += glm::abs(a.*layer - b.*layer);
         sum += static_cast<double>((apart / radiance_of(a)).y);
         pixels += 1.0;

@@ -75,12 +75,15 @@ std::vector<Problem> check_foam_picture(const Scene& scene) {
     }
 }
 
-void add_bytes(Fingerprint& hash, const std::string& path, const Problem& unreadable) {
+// A hash of the file's bytes.
+std::string content_of(const std::string& path, const Problem& unreadable) {
+    Fingerprint hash;
     std::ifstream stream(path, std::ios::binary);
     std::string piece(std::size_t{1} << 20, '\0');
     while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
         hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
     if (!stream.eof()) throw std::invalid_argument(text_of(unreadable));
+    return hash.text();
 }
 
 }  // namespace
@@ -129,19 +132,17 @@ std::vector<Problem> check_scene(const Scene& scene) {
     return problems;
 }
 
+std::string sky_content(const Scene& scene) {
+    for (const Problem& problem : check_sky(scene)) throw std::invalid_argument(text_of(problem));
+    if (scene.light.sky == Light{}.sky) return {};
+    return content_of(scene.light.sky, sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR"));
+}
+
 std::string picture_content(const Scene& scene) {
-    std::vector<Problem> problems = check_sky(scene);
-    for (Problem& problem : check_foam_picture(scene)) problems.push_back(std::move(problem));
-    for (const Problem& problem : problems) throw std::invalid_argument(text_of(problem));
-    std::string content;
-    const auto add = [&](const std::string& path, const Problem& unreadable) {
-        Fingerprint hash;
-        add_bytes(hash, path, unreadable);
-        content += hash.text();
-    };
-    if (scene.light.sky != Light{}.sky)
-        add(scene.light.sky, sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR"));
-    if (has_foam_picture(scene)) add(scene.effects.foam_pattern, foam_problem(scene, "can't be read"));
+    std::string content = sky_content(scene);
+    for (const Problem& problem : check_foam_picture(scene)) throw std::invalid_argument(text_of(problem));
+    if (has_foam_picture(scene))
+        content += content_of(scene.effects.foam_pattern, foam_problem(scene, "can't be read"));
     return content;
 }
 

@@ -26,6 +26,8 @@ Sky make_sky(const Scene& scene);
 // What make_sky() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
 // without any. Throws std::invalid_argument for a file that can't be read.
 std::string picture_content(const Scene& scene);
+// Of make_sky()'s alone.
+std::string sky_content(const Scene& scene);
 // The scene as files describe it, wherever they are made: pictures by their names without their folders.
 Scene portable(Scene scene);
 // The unit of the sky's radiance, as files say it.

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -209,6 +213,35 @@ std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene) {
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(text_of(foam_problem(scene, error.what())));
     }
+}
+
+std::shared_ptr<const FoamImage> kept_foam_picture(const Scene& scene) {
+    if (!has_foam_picture(scene)) return nullptr;
+    struct File {
+        std::filesystem::path path;
+        std::uintmax_t bytes = 0;
+        std::filesystem::file_time_type::rep changed = 0;
+        bool operator==(const File&) const = default;
+    };
+    static std::mutex mutex;
+    static std::optional<File> last;
+    static std::weak_ptr<const FoamImage> made;
+    // Looked at before it is read: what changes in between is seen the next time.
+    std::optional<File> file{{.path = scene.effects.foam_pattern}};
+    std::error_code unknown;
+    file->bytes = std::filesystem::file_size(file->path, unknown);
+    if (!unknown)
+        file->changed = std::filesystem::last_write_time(file->path, unknown).time_since_epoch().count();
+    if (unknown) file.reset();
+    {
+        const std::lock_guard lock(mutex);
+        if (auto picture = made.lock(); picture && file && file == last) return picture;
+    }
+    const auto picture = make_foam_picture(scene);
+    const std::lock_guard lock(mutex);
+    last = file;
+    made = picture;
+    return picture;
 }
 
 FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {

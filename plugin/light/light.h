@@ -46,6 +46,9 @@ double active_foam(const Scene& scene, double residual_coverage);
 // The picture that effects.foam_pattern is the path of, or null. Throws std::invalid_argument, naming the key and the file, for one
 // that can't be read or isn't one of foam.
 std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene);
+// The same, for hosts that make light again and again: the one that this function gave last, while somebody has it and its file is the
+// same by its path, its size and the time of its change.
+std::shared_ptr<const FoamImage> kept_foam_picture(const Scene& scene);
 // How the foam of a shot looks. picture: make_foam_picture()'s, null where nobody asks for more than opacities. active: the share of
 // active_foam(); the rest is what earlier breaking left. Where the shot doesn't say otherwise foam hides the water while it breaks, and
 // what it leaves is thin (Darles et al. 2007: less with its age); all of the law's foam together has Koepke's opacity: in lighting by

@@ -206,7 +206,7 @@ std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
     LiveSky made;
     made.sky = make_sky(scene);
     made.water = make_water(scene);
-    made.foam_picture = make_foam_picture(scene);
+    made.foam_picture = kept_foam_picture(scene);
     return std::make_shared<const LiveSky>(std::move(made));
 }
 

@@ -23,8 +23,10 @@ constexpr double kHidden_m = 0.5, kWhole_m = 2.0;
 // Where the disc is no narrower, its profile adds up over pixels to its integral.
 constexpr double kNarrowest_px = 1.5;
 
+namespace drop_shading {
 using namespace glm;
 #include "core/lighting/spray_drop.glsl"
+}  // namespace drop_shading
 
 }  // namespace
 
@@ -48,8 +50,8 @@ float SeenDrop::thickness() const {
 }
 
 float SeenDrop::hides(glm::dvec2 place_px, float sea_m) const {
-    return spray_drop_hides(glm::vec2((place_px - at_px) / radius_px), thickness(),
-                            (sea_m - distance_m) / depth_m);
+    return drop_shading::spray_drop_hides(glm::vec2((place_px - at_px) / radius_px), thickness(),
+                                          (sea_m - distance_m) / depth_m);
 }
 
 std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const DropsEye& eye) {

@@ -17,8 +17,7 @@ namespace pelagic {
 
 // As far from the eye drops are seen one by one, to this share; what the rest holds is in the veil.
 inline constexpr double kDropsReach_m = 96.0;
-inline constexpr double kDropsSquare_m =
-    2.0 * kDropsReach_m;  // the side of the square that SprayDrops has them in
+inline constexpr double kDropsSquare_m = 2.0 * kDropsReach_m;  // the side of what is asked of SprayDrops
 double drops_share(double distance_m);
 // Whether that camera sees some, in a picture that has spray: its map then lacks them.
 bool are_drops_near(const Scene& scene, const View& view);

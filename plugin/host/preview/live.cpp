@@ -80,9 +80,10 @@ void LiveSea::show(double time_s, const std::optional<View>& eye, const std::opt
     wake_.notify_one();
     if (build && spray_from && are_drops_near(build->scene, *spray_from)) {
         ask_drops(build, time_s, *spray_from);
-    } else {
-        drops_asked_.reset();
+    } else if (drops_worker_) {
         drops_.reset();
+        drops_worker_->take();  // one that came too late
+        if (std::exchange(drops_asked_, std::nullopt)) drops_worker_->ask({});
     }
 }
 
@@ -96,17 +97,17 @@ void LiveSea::ask_drops(const std::shared_ptr<const LiveBuild>& build, double ti
     };
     if (!drops_worker_)
         drops_worker_.emplace(
-            in_the_background([flying = std::make_shared<Flying>()](const DropsAsked& wanted) {
-                if (flying->of != wanted.build) {
-                    flying->drops.reset();  // before the new ones are made
-                    flying->drops.emplace(*wanted.build->sea, kDropsSquare_m);
-                    flying->of = wanted.build;
-                }
+            in_the_background([flying = std::make_shared<Flying>()](
+                                  const DropsAsked& wanted) -> std::shared_ptr<const LiveDrops> {
+                if (flying->of != wanted.build) flying->drops.reset();  // before new ones are made
+                flying->of = wanted.build;
+                if (!wanted.build) return nullptr;
+                if (!flying->drops) flying->drops.emplace(*wanted.build->sea, kDropsSquare_m);
                 auto made = std::make_shared<LiveDrops>();
                 made->build = wanted.build;
                 made->time_s = wanted.time_s;
                 flying->drops->at(wanted.time_s, wanted.middle_m, made->drops);
-                return std::shared_ptr<const LiveDrops>(std::move(made));
+                return made;
             }));
     drops_worker_->ask(asked);
     drops_asked_ = std::move(asked);

@@ -129,7 +129,7 @@ class LiveSea {
     std::optional<Scene> asked_;                        // used by the drawing thread only
     std::shared_ptr<const std::atomic<double>> built_;  // null where nobody tells
     struct DropsAsked {
-        std::shared_ptr<const LiveBuild> build;
+        std::shared_ptr<const LiveBuild> build;  // null: forgets what it has
         double time_s = 0.0;
         glm::dvec2 middle_m{0.0};
         bool operator==(const DropsAsked&) const = default;

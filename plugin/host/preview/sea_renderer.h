@@ -36,9 +36,8 @@ class PreviewError : public std::runtime_error {
 // Milliseconds of the latest frame whose timer queries have finished: a few frames old, because nothing waits
 // for them.
 struct StageTimes {
-    double upload_ms = 0.0, sea_ms = 0.0, sky_ms = 0.0,
-           show_ms = 0.0;    // on the GPU; sky: with drops of spray
-    double submit_ms = 0.0;  // of draw() on the CPU
+    double upload_ms = 0.0, sea_ms = 0.0, sky_ms = 0.0, show_ms = 0.0;  // on the GPU; drops are the sky's
+    double submit_ms = 0.0;                                             // of draw() on the CPU
 };
 
 // The OpenGL context must be current on the calling thread for every call and for destruction.

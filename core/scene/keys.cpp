@@ -712,7 +712,7 @@ void add_effects_and_quality(Built& out) {
         row<&Effects::spray_drops>(
             {.name = "spray_drops",
              .help =
-                 "the large drops of that spray as particles that fly off crests, in rendered pictures near the camera and "
+                 "the large drops of that spray as particles that fly off crests: in pictures, near the camera, in Blender and "
                  "in output.drops; volumes hold the rest. Only by andreas-1998",
              .key_parts = key_parts(KeyPart::Spray)}));
     add_table<&Scene::quality>(

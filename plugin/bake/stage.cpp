@@ -141,7 +141,9 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::string last_source;
     static std::shared_ptr<const StageLight> last;
-    const std::string source = canonical(scene, key_parts(KeyPart::Light)) + picture_content(scene);
+    Scene lit = scene;
+    lit.effects = {};  // no foam's look is in it
+    const std::string source = canonical(lit, key_parts(KeyPart::Light)) + sky_content(scene);
     {
         const std::lock_guard lock(mutex);
         if (last && last_source == source) return last;

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -102,12 +106,15 @@ std::vector<Problem> check_foam_picture(const Scene& scene) {
     }
 }
 
-void add_bytes(Fingerprint& hash, const std::string& path, const Problem& unreadable) {
+// A hash of the file's bytes.
+std::string content_of(const std::string& path, const Problem& unreadable) {
+    Fingerprint hash;
     std::ifstream stream(path, std::ios::binary);
     std::string piece(std::size_t{1} << 20, '\0');
     while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
         hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
     if (!stream.eof()) throw std::invalid_argument(text_of(unreadable));
+    return hash.text();
 }
 
 }  // namespace
@@ -156,19 +163,17 @@ std::vector<Problem> check_scene(const Scene& scene) {
     return problems;
 }
 
+std::string sky_content(const Scene& scene) {
+    for (const Problem& problem : check_sky(scene)) throw std::invalid_argument(text_of(problem));
+    if (scene.light.sky == Light{}.sky) return {};
+    return content_of(scene.light.sky, sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR"));
+}
+
 std::string picture_content(const Scene& scene) {
-    std::vector<Problem> problems = check_sky(scene);
-    for (Problem& problem : check_foam_picture(scene)) problems.push_back(std::move(problem));
-    for (const Problem& problem : problems) throw std::invalid_argument(text_of(problem));
-    std::string content;
-    const auto add = [&](const std::string& path, const Problem& unreadable) {
-        Fingerprint hash;
-        add_bytes(hash, path, unreadable);
-        content += hash.text();
-    };
-    if (scene.light.sky != Light{}.sky)
-        add(scene.light.sky, sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR"));
-    if (has_foam_picture(scene)) add(scene.effects.foam_pattern, foam_problem(scene, "can't be read"));
+    std::string content = sky_content(scene);
+    for (const Problem& problem : check_foam_picture(scene)) throw std::invalid_argument(text_of(problem));
+    if (has_foam_picture(scene))
+        content += content_of(scene.effects.foam_pattern, foam_problem(scene, "can't be read"));
     return content;
 }
 
@@ -260,6 +265,35 @@ std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene) {
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(text_of(foam_problem(scene, error.what())));
     }
+}
+
+std::shared_ptr<const FoamImage> kept_foam_picture(const Scene& scene) {
+    if (!has_foam_picture(scene)) return nullptr;
+    struct File {
+        std::filesystem::path path;
+        std::uintmax_t bytes = 0;
+        std::filesystem::file_time_type::rep changed = 0;
+        bool operator==(const File&) const = default;
+    };
+    static std::mutex mutex;
+    static std::optional<File> last;
+    static std::weak_ptr<const FoamImage> made;
+    // Looked at before it is read: what changes in between is seen the next time.
+    std::optional<File> file{{.path = scene.effects.foam_pattern}};
+    std::error_code unknown;
+    file->bytes = std::filesystem::file_size(file->path, unknown);
+    if (!unknown)
+        file->changed = std::filesystem::last_write_time(file->path, unknown).time_since_epoch().count();
+    if (unknown) file.reset();
+    {
+        const std::lock_guard lock(mutex);
+        if (auto picture = made.lock(); picture && file && file == last) return picture;
+    }
+    const auto picture = make_foam_picture(scene);
+    const std::lock_guard lock(mutex);
+    last = file;
+    made = picture;
+    return picture;
 }
 
 FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {

@@ -27,6 +27,8 @@ Sky make_sky(const Scene& scene);
 // What make_sky() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
 // without any. Throws std::invalid_argument for a file that can't be read.
 std::string picture_content(const Scene& scene);
+// Of make_sky()'s alone.
+std::string sky_content(const Scene& scene);
 // The scene as files describe it, wherever they are made: pictures by their names without their folders.
 Scene portable(Scene scene);
 // The unit of the sky's radiance, as files say it.
@@ -46,6 +48,9 @@ double active_foam(const Scene& scene, double residual_coverage);
 // The picture that effects.foam_pattern is the path of, or null. Throws std::invalid_argument, naming the key and the file, for one
 // that can't be read or isn't one of foam.
 std::shared_ptr<const FoamImage> make_foam_picture(const Scene& scene);
+// The same, for hosts that make light again and again: the one that this function gave last, while somebody has it and its file is the
+// same by its path, its size and the time of its change.
+std::shared_ptr<const FoamImage> kept_foam_picture(const Scene& scene);
 // How the foam of a shot looks. picture: make_foam_picture()'s, null where nobody asks for more than opacities. active: the share of
 // active_foam(); the rest is what earlier breaking left. Where the shot doesn't say otherwise foam hides the water while it breaks, and
 // what it leaves is thin (Darles et al. 2007: less with its age); all of the law's foam together has Koepke's opacity: in lighting by

@@ -11,7 +11,6 @@
 #include "core/plan/effects.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
-#include "core/plan/spray_drops.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
@@ -133,14 +132,11 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
-    if (options.lighting.spray)
+    if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");
-    if (options.lighting.spray && scene.effects.spray_drops)
-        need.add(
-            "the drops of the spray",
-            spray_drops_bytes(plan, plan_spray_drops(*plan.from, 2.0 * kDropsReach_m), 2.0 * kDropsReach_m),
-            "set effects.spray_drops to false");
+        add_seen_drops(need, plan);
+    }
     if (in_flight && scene.camera.glare > 0.0)
         need.add("the lens' glare",
                  static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),

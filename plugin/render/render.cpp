@@ -194,14 +194,15 @@ class RendererOf final : public Impl {
     // The spray, with the drops in it that are seen one by one.
     void find_drops(const PicturePass& pass, const BuildWatch& watch) {
         drops_.clear();
-        const bool are_near =
-            options_.lighting.spray && scene_.effects.spray_drops && view_.position_m.z < kDropsReach_m;
+        const bool are_near = options_.lighting.spray && are_drops_near(scene_, view_);
         spray_ = sea_.spray_before(view_, drawn_.grid_options(), are_near);
         if (!are_near || spray_.empty()) return;
-        if (!flying_) flying_.emplace(sea_.frame().sea(), 2.0 * kDropsReach_m, watch);
+        if (!flying_) flying_.emplace(sea_.frame().sea(), kDropsSquare_m, watch);
         flying_->at(scene_.shot.time_s(pass.frame), glm::dvec2(view_.position_m), in_air_, watch.cancel);
-        drops_ = seen_drops(in_air_, view_, drawn_.grid_options().curvature_per_m,
-                            options_.lighting.air ? &air_ : nullptr, spray_);
+        drops_ = seen_drops(in_air_, {.view = view_,
+                                      .curvature_per_m = drawn_.grid_options().curvature_per_m,
+                                      .air = options_.lighting.air ? &air_ : nullptr,
+                                      .spray = spray_});
     }
 
     void lay_out_mesh(const BuildWatch& watch) {

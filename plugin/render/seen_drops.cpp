@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <glm/glm.hpp>
 
 #include "core/base/constants.h"
 #include "core/surface/earth.h"
@@ -20,8 +20,13 @@ double eased(double x) {
 
 // Parcels at the eye itself would fill the picture.
 constexpr double kHidden_m = 0.5, kWhole_m = 2.0;
-// A disc's profile, (1 − ρ²)², adds up over pixels to its integral where the disc is no narrower than this.
+// Where the disc is no narrower, its profile adds up over pixels to its integral.
 constexpr double kNarrowest_px = 1.5;
+
+namespace drop_shading {
+using namespace glm;
+#include "core/lighting/spray_drop.glsl"
+}  // namespace drop_shading
 
 }  // namespace
 
@@ -29,17 +34,28 @@ double drops_share(double distance_m) {
     return 1.0 - eased(2.0 * distance_m / kDropsReach_m - 1.0);
 }
 
-float SeenDrop::hides(glm::dvec2 place_px, float sea_m) const {
-    const glm::dvec2 beside = (place_px - at_px) / radius_px;
-    const double inner = 1.0 - glm::dot(beside, beside);
-    const float before = std::clamp(0.5f + 0.5f * (sea_m - distance_m) / depth_m, 0.0f, 1.0f);
-    if (!(inner > 0.0) || !(before > 0.0f)) return 0.0f;
-    const double thickness = section_px2 * 3.0 / (kPi * radius_px * radius_px) * inner * inner;
-    return static_cast<float>(-std::expm1(-thickness)) * before;
+bool are_drops_near(const Scene& scene, const View& view) {
+    return scene.effects.spray_drops && view.position_m.z < kDropsReach_m;
 }
 
-std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const View& view, double curvature_per_m,
-                                 const Air* air, const Spray& spray) {
+void add_seen_drops(MemoryNeed& need, const Plan& plan) {
+    if (!plan.from->scene.effects.spray_drops) return;
+    need.add("the drops of the spray",
+             spray_drops_bytes(plan, plan_spray_drops(*plan.from, kDropsSquare_m), kDropsSquare_m),
+             "set effects.spray_drops to false");
+}
+
+float SeenDrop::thickness() const {
+    return static_cast<float>(section_px2 / (kPi * radius_px * radius_px));
+}
+
+float SeenDrop::hides(glm::dvec2 place_px, float sea_m) const {
+    return drop_shading::spray_drop_hides(glm::vec2((place_px - at_px) / radius_px), thickness(),
+                                          (sea_m - distance_m) / depth_m);
+}
+
+std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const DropsEye& eye) {
+    const auto& [view, curvature_per_m, air, spray, late_s] = eye;
     const glm::dvec2 nadir_m(view.position_m);
     const double tangent = view.pixel_tangent();
     const glm::dvec2 size(view.resolution), middle = view.middle_tangents();
@@ -47,7 +63,8 @@ std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const View& v
     std::vector<glm::vec3> to_eye;
     std::vector<float> heights_m;
     for (const SprayDrop& drop : drops) {
-        const glm::dvec3 at_m = on_earth(drop.position_m - glm::dvec3(nadir_m, 0.0), curvature_per_m);
+        const glm::dvec3 flown_m = drop.position_m + late_s * drop.velocity_mps,
+                         at_m = on_earth(flown_m - glm::dvec3(nadir_m, 0.0), curvature_per_m);
         const glm::dvec3 way = at_m - glm::dvec3(0.0, 0.0, view.position_m.z);
         const double distance_m = glm::length(way), ahead_m = glm::dot(way, view.forward);
         const double share =
@@ -68,7 +85,7 @@ std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const View& v
                         .distance_m = static_cast<float>(distance_m),
                         .depth_m = static_cast<float>(0.5 * drop.width_m)});
         to_eye.push_back(glm::vec3(-way / distance_m));
-        heights_m.push_back(static_cast<float>(drop.position_m.z));
+        heights_m.push_back(static_cast<float>(flown_m.z));
     }
     constexpr std::size_t kAtOnce = 256;
     const std::size_t parts = (seen.size() + kAtOnce - 1) / kAtOnce;

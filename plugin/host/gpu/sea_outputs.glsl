@@ -16,3 +16,16 @@ void write_terms(vec3 sun, vec3 sky, vec3 sea, vec3 foam, vec3 air, float is_sea
         sea_out = vec4(sun + sky + sea + foam + air, is_sea);
     }
 }
+
+// Something before all that, by blending: it hides such a share of each term, and adds light to the air's.
+void write_before(vec3 air, float hidden) {
+    if (kLayers) {
+        sea_out = vec4(vec3(0.0), hidden);
+        sun_out = sea_out;
+        sky_out = sea_out;
+        foam_out = sea_out;
+        air_out = vec4(air, hidden);
+    } else {
+        sea_out = vec4(air, hidden);
+    }
+}

@@ -200,6 +200,13 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
                     {"plugin/host/gpu/sky_fragment.glsl"}})};
 }
 
+ShaderVariant ShaderVariant::of_drops(bool layers) {
+    return {constant("kLayers", layers),
+            {"plugin/host/gpu/drops_vertex.glsl"},
+            {"core/lighting/spray_drop.glsl", "plugin/host/gpu/rays.glsl", "plugin/host/gpu/sea_outputs.glsl",
+             "plugin/host/gpu/drops_fragment.glsl"}};
+}
+
 ShaderVariant ShaderVariant::of_screen(bool layers, bool plain) {
     return {constant("kLayers", layers) + constant("kPlain", plain),
             {"plugin/host/gpu/full_vertex.glsl"},

@@ -21,6 +21,7 @@ class ShaderVariant {
     // The first of two passes.
     static ShaderVariant of_points(const SeaLayout& layout, bool is_shaped);
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
+    static ShaderVariant of_drops(bool layers);
     static ShaderVariant of_screen(bool layers, bool plain);
 
     // Equal for variants with equal source text.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/waves/frame.h"
+#include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 #include "plugin/render/under_water.h"
 
@@ -21,11 +22,12 @@ double milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-// Runs a build at lower priority than the frames' parallel loops.
-LiveSea::Build in_the_background(LiveSea::Build build) {
-    return [build = std::move(build)](const Scene& scene) {
+// Runs it at lower priority than the frames' parallel loops.
+template <class Make>
+auto in_the_background(Make make) {
+    return [make = std::move(make)](const auto& asked) mutable {
         tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
-        return arena.execute([&] { return build(scene); });
+        return arena.execute([&] { return make(asked); });
     };
 }
 
@@ -61,6 +63,7 @@ void LiveSea::ask(const Scene& scene) {
 
 void LiveSea::show(double time_s, const std::optional<View>& eye, const std::optional<View>& spray_from) {
     auto built = builder_.take();
+    std::shared_ptr<const LiveBuild> build;
     {
         const std::lock_guard lock(mutex_);
         time_s_ = time_s;
@@ -72,8 +75,42 @@ void LiveSea::show(double time_s, const std::optional<View>& eye, const std::opt
             build_.swap(built);
             ++seas_;
         }
+        build = build_;
     }
     wake_.notify_one();
+    if (build && spray_from && are_drops_near(build->scene, *spray_from)) {
+        ask_drops(build, time_s, *spray_from);
+    } else if (drops_worker_) {
+        drops_.reset();
+        drops_worker_->take();  // one that came too late
+        if (std::exchange(drops_asked_, std::nullopt)) drops_worker_->ask({});
+    }
+}
+
+void LiveSea::ask_drops(const std::shared_ptr<const LiveBuild>& build, double time_s, const View& view) {
+    DropsAsked asked{.build = build, .time_s = time_s, .middle_m = glm::dvec2(view.position_m)};
+    if (drops_asked_ == asked) return;
+    // A square of the sea elsewhere takes as long as many frames: not on their thread.
+    struct Flying {
+        std::shared_ptr<const LiveBuild> of;
+        std::optional<SprayDrops<float>> drops;
+    };
+    if (!drops_worker_)
+        drops_worker_.emplace(
+            in_the_background([flying = std::make_shared<Flying>()](
+                                  const DropsAsked& wanted) -> std::shared_ptr<const LiveDrops> {
+                if (flying->of != wanted.build) flying->drops.reset();  // before new ones are made
+                flying->of = wanted.build;
+                if (!wanted.build) return nullptr;
+                if (!flying->drops) flying->drops.emplace(*wanted.build->sea, kDropsSquare_m);
+                auto made = std::make_shared<LiveDrops>();
+                made->build = wanted.build;
+                made->time_s = wanted.time_s;
+                flying->drops->at(wanted.time_s, wanted.middle_m, made->drops);
+                return made;
+            }));
+    drops_worker_->ask(asked);
+    drops_asked_ = std::move(asked);
 }
 
 const LiveFrame* LiveSea::newest() {
@@ -94,11 +131,18 @@ std::shared_ptr<const Spray> LiveSea::newest_spray() const {
     return spray_;
 }
 
+std::shared_ptr<const LiveDrops> LiveSea::newest_drops() {
+    if (!drops_asked_) return nullptr;
+    if (auto made = drops_worker_->take()) drops_ = std::move(made);
+    return drops_;
+}
+
 LiveStatus LiveSea::status() const {
     LiveStatus status{
         .building = builder_.is_busy(), .built = built_ ? built_->load() : 0.0, .error = builder_.error()};
     const std::lock_guard lock(mutex_);
     if (status.error.empty()) status.error = frame_error_;
+    if (status.error.empty() && drops_asked_) status.error = drops_worker_->error();
     status.seas = seas_;
     status.frames = frames_;
     return status;
@@ -111,8 +155,8 @@ void LiveSea::compute_frames() {
     std::optional<double> tried_s;
     std::optional<View> tried_eye, tried_spray;
     const auto spray_before = [&](const View& view) {
-        return std::make_shared<const Spray>(
-            make_spray_map(*frame, view, tried->drawn->grid_options(), kSprayMap));
+        return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->drawn->grid_options(),
+                                                            kSprayMap, are_drops_near(tried->scene, view)));
     };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {

@@ -13,7 +13,9 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "core/effects/spray_drops.h"
 #include "core/lighting/spray.h"
 #include "core/plan/memory.h"
 #include "core/surface/view.h"
@@ -57,10 +59,17 @@ struct LiveFrame {
     double transforms_ms = 0.0, packing_ms = 0.0;
 };
 
+// Large drops of the spray round a camera, at one time.
+struct LiveDrops {
+    std::shared_ptr<const LiveBuild> build;
+    double time_s = 0.0;
+    std::vector<SprayDrop> drops;
+};
+
 struct LiveStatus {
     bool building = false;      // a sea is being built
     double built = 0.0;         // how much of it, 0 … 1, where that is known
-    std::string error;          // of the latest sea or frame; empty if it succeeded
+    std::string error;          // of the latest sea, frame or drops; empty if it succeeded
     long seas = 0, frames = 0;  // numbers finished
 };
 
@@ -68,7 +77,8 @@ class LiveSea {
   public:
     using Build = LiveWorker<Scene, LiveBuild>::Make;
 
-    // Two threads: one builds seas, one computes frames. Frames have priority on the cores.
+    // Two threads: one builds seas, one computes frames. Frames have priority on the cores. A third computes the drops of the
+    // spray, once there are some.
     explicit LiveSea(Build build);
     explicit LiveSea(const LiveLimits& limits = {});
     ~LiveSea();  // waits for the frame and the sea being made
@@ -82,7 +92,7 @@ class LiveSea {
     void ask(const Scene& scene);
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
     // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the waves
-    // (is_among_waves()), for water_over_eye(). `spray_from`: a camera for newest_spray().
+    // (is_among_waves()), for water_over_eye(). `spray_from`: a camera for newest_spray() and newest_drops().
     void show(double time_s, const std::optional<View>& eye = {}, const std::optional<View>& spray_from = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
@@ -91,11 +101,15 @@ class LiveSea {
     // The spray before the latest camera that was asked for, not lit yet; null before the first. It has fewer texels
     // than that of a single picture.
     std::shared_ptr<const Spray> newest_spray() const;
+    // Its drops that are seen one by one, of the latest request that is done: of some earlier time, and elsewhere, where the
+    // camera moves far. Null before the first, and where that camera sees none.
+    std::shared_ptr<const LiveDrops> newest_drops();
     LiveStatus status() const;
 
   private:
     LiveSea(const LiveLimits& limits, const std::shared_ptr<std::atomic<double>>& built);
     void compute_frames();
+    void ask_drops(const std::shared_ptr<const LiveBuild>& build, double time_s, const View& view);
 
     // Triple buffering: one slot is being written, one waits, one is being drawn.
     std::array<LiveFrame, 3> slots_;
@@ -114,6 +128,16 @@ class LiveSea {
     bool stopping_ = false;
     std::optional<Scene> asked_;                        // used by the drawing thread only
     std::shared_ptr<const std::atomic<double>> built_;  // null where nobody tells
+    struct DropsAsked {
+        std::shared_ptr<const LiveBuild> build;  // null: forgets what it has
+        double time_s = 0.0;
+        glm::dvec2 middle_m{0.0};
+        bool operator==(const DropsAsked&) const = default;
+    };
+    // Used by the drawing thread only.
+    std::optional<DropsAsked> drops_asked_;  // none: the camera sees none
+    std::shared_ptr<const LiveDrops> drops_;
+    std::optional<LiveWorker<DropsAsked, LiveDrops>> drops_worker_;
     std::thread frames_thread_;
     LiveWorker<Scene, LiveBuild> builder_;
 };

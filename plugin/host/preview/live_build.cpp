@@ -16,6 +16,7 @@
 #include "plugin/host/gpu/packed_foam.h"
 #include "plugin/host/gpu/sea_layout.h"
 #include "plugin/host/preview/live.h"
+#include "plugin/render/seen_drops.h"
 
 namespace pelagic {
 namespace {
@@ -31,6 +32,7 @@ MemoryNeed live_memory(const Plan& plan) {
                   static_cast<std::size_t>(plane.channels) * sizeof(float);
     need.add("the frame's grids as textures", 6 * packed,
              "lower the resolutions in waves.cascades, or quality.level");
+    if (render_options(plan.from->scene).lighting.spray) add_seen_drops(need, plan);
     // A history, three packed ones and the driver's.
     if (plan.foam)
         need.add("the foam as textures", 4 * PackedFoam::bytes_for(*plan.foam, plan.foam_history_bytes()),

@@ -21,6 +21,7 @@
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 
 namespace pelagic {
@@ -131,9 +132,11 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     if (planned.scene.surface.kind == SurfaceKind::Cage)
         need.add("the cage's surface", planned.drawn->surface_bytes(points) + points * sizeof(glm::vec4),
                  "lower surface.cage_level, or raise surface.cell_px");
-    if (render_options(planned.scene).lighting.spray)
+    if (render_options(planned.scene).lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
                  "set effects.spray to false");
+        add_seen_drops(need, planned.plan);
+    }
     need.add("the driver", kDriverBytes, smaller());
     return need;
 }
@@ -211,9 +214,14 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
     planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     if (lighting.spray) {
-        Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x));
+        const bool are_near = are_drops_near(planned.scene, view);
+        Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);
         light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
-        renderer.set_spray(spray);
+        const auto drops = std::make_shared<std::vector<SprayDrop>>();
+        if (are_near && !spray.empty())
+            SprayDrops<float>(*sea, kDropsSquare_m)
+                .at(planned.scene.shot.time_s(planned.frame), glm::dvec2(view.position_m), *drops);
+        renderer.set_spray(spray, drops);
     }
     renderer.upload_once(std::move(state), 0);
     const bool lives = planned.plan.foam && lighting.whitecaps;

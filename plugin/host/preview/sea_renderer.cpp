@@ -23,6 +23,7 @@
 #include "plugin/host/preview/gl_textures.h"
 #include "plugin/host/preview/sea_textures.h"
 #include "plugin/host/preview/shader_program.h"
+#include "plugin/render/seen_drops.h"
 
 namespace pelagic {
 namespace {
@@ -88,6 +89,7 @@ struct SeaRenderer::Implementation {
     void set_foam_image(const std::shared_ptr<const FoamImage>& image);
     void draw_sea(const View& view, const SeaMesh& mesh, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
+    void draw_drops(const View& view, double curvature_per_m, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
     GLint largest_texture = 0;
@@ -102,11 +104,20 @@ struct SeaRenderer::Implementation {
     GlTexture air_table;
     std::optional<double> air_height_m;  // of the eye that the table is for
     std::vector<Uniform> air;
+    Air seen_air;  // that the table has
     GlTexture foam_texture;
     std::shared_ptr<const FoamImage> foam_image;  // that the texture has
     bool has_foam_texture = false;
     GlTexture spray_map;
     std::vector<Uniform> spray;  // empty: there is none
+    struct Drops {
+        Spray spray;
+        std::shared_ptr<const std::vector<SprayDrop>> drops;
+        double late_s = 0.0;
+        GlVertexArray array;
+        GlBuffer discs;
+    };
+    std::optional<Drops> drops;
 
     GlVertexArray grid_array, no_array;
     GlBuffer grid_vertices, shape_vertices, grid_indices;
@@ -160,7 +171,8 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     glUniform1i(program.uniform("dither"), kDither);
     glUniform1i(program.uniform("foam_image"), kFoamImage);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
-    // No program reads both kinds.
+    // No program reads two of these kinds.
+    glUniform1i(program.uniform("sea_depth"), kPictures);
     for (std::size_t i = 0; i < kPointNames.size(); ++i)
         glUniform1i(program.uniform(kPointNames[i]), kPictures + static_cast<int>(i));
     return programs.emplace(variant.key(), std::move(program)).first->second;
@@ -303,12 +315,12 @@ void SeaRenderer::Implementation::set_foam_image(const std::shared_ptr<const Foa
 void SeaRenderer::Implementation::set_air(double height_m) {
     bind_texture(kAirTable, air_table);
     if (air_height_m == height_m) return;
-    const Air seen = air_model->seen_from(height_m);
+    seen_air = air_model->seen_from(height_m);
     texels_as_they_are();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kWidth, Air::kHeight, 0, GL_RGBA, GL_FLOAT,
-                 seen.texels.data());
-    air = air_uniforms(seen);
+                 seen_air.texels.data());
+    air = air_uniforms(seen_air);
     air_height_m = height_m;
 }
 
@@ -404,6 +416,64 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
     draw_over_all(program);
 }
 
+// Over the picture, from the farthest on.
+void SeaRenderer::Implementation::draw_drops(const View& view, double curvature_per_m,
+                                             const DrawOptions& options) {
+    const std::vector<SeenDrop> seen =
+        seen_drops(*drops->drops, {.view = view,
+                                   .curvature_per_m = curvature_per_m,
+                                   .air = options.lighting.air ? &seen_air : nullptr,
+                                   .spray = drops->spray,
+                                   .late_s = drops->late_s});
+    if (seen.empty()) return;
+    struct Disc {
+        glm::vec2 at_px;
+        float radius_px, thickness;
+        glm::vec3 radiance;
+        float distance_m, depth_m;
+    };
+    std::vector<Disc> discs;
+    discs.reserve(seen.size());
+    for (const SeenDrop& drop : seen)
+        discs.push_back({glm::vec2(drop.at_px), static_cast<float>(drop.radius_px), drop.thickness(),
+                         drop.radiance, drop.distance_m, drop.depth_m});
+    glBindVertexArray(drops->array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, drops->discs.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(discs.size() * sizeof(Disc)), discs.data(),
+                 GL_STREAM_DRAW);
+    const auto attribute = [](GLuint location, GLint size, std::size_t offset) {
+        glEnableVertexAttribArray(location);
+        glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Disc),
+                              reinterpret_cast<const void*>(offset));
+        glVertexAttribDivisor(location, 1);
+    };
+    attribute(0, 4, offsetof(Disc, at_px));
+    attribute(1, 4, offsetof(Disc, radiance));
+    attribute(2, 1, offsetof(Disc, depth_m));
+
+    const ShaderProgram& program = program_of(ShaderVariant::of_drops(options.layers));
+    program.use();
+    set_common(program, view);
+    glUniform2f(program.uniform("picture_size"), static_cast<float>(view.resolution.x),
+                static_cast<float>(view.resolution.y));
+    const auto near = static_cast<float>(kNear_m);
+    if (reversed_depth)
+        glUniform3f(program.uniform("nearness_of_depth"), 0.0f, 1.0f, near);
+    else
+        glUniform3f(program.uniform("nearness_of_depth"), 1.0f, -1.0f, near);
+    // A texture that is drawn to can't be read.
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
+    bind_texture(kPictures, depth);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // alpha says where there is sea
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(discs.size()));
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_BLEND);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+}
+
 SeaRenderer::SeaRenderer() : implementation_(std::make_unique<Implementation>()) {}
 SeaRenderer::~SeaRenderer() = default;
 
@@ -448,9 +518,18 @@ void SeaRenderer::set_water(const WaterBody& water) {
     implementation_->water = water_uniforms(water);
 }
 
-void SeaRenderer::set_spray(const Spray& spray) {
+void SeaRenderer::set_spray(const Spray& spray, std::shared_ptr<const std::vector<SprayDrop>> drops,
+                            double late_s) {
     Implementation& of = *implementation_;
     of.spray.clear();
+    if (spray.empty() || !drops || drops->empty()) {
+        of.drops.reset();
+    } else {
+        if (!of.drops) of.drops.emplace();
+        of.drops->spray = spray;
+        of.drops->drops = std::move(drops);
+        of.drops->late_s = late_s;
+    }
     if (spray.empty()) return;
     of.spray = spray_uniforms(spray);
     edit_texture(of.spray_map);
@@ -527,6 +606,8 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
         of.draw_sky(view, drawn);
+        if (of.drops && drawn.lighting.spray && !of.picture_plain)
+            of.draw_drops(view, mesh.points.curvature_per_m, drawn);
     }
 
     of.end_picture();

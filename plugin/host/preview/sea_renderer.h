@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/effects/spray_drops.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/spray.h"
 #include "core/surface/view.h"
@@ -35,7 +36,7 @@ class PreviewError : public std::runtime_error {
 // Milliseconds of the latest frame whose timer queries have finished: a few frames old, because nothing waits
 // for them.
 struct StageTimes {
-    double upload_ms = 0.0, sea_ms = 0.0, sky_ms = 0.0, show_ms = 0.0;  // on the GPU
+    double upload_ms = 0.0, sea_ms = 0.0, sky_ms = 0.0, show_ms = 0.0;  // on the GPU; drops are the sky's
     double submit_ms = 0.0;                                             // of draw() on the CPU
 };
 
@@ -59,8 +60,10 @@ class SeaRenderer {
     void set_sky(const Sky& sky, const WaterBody& water);
     // Under the same sky, as when the sea is another one.
     void set_water(const WaterBody& water);
-    // What the next pictures have between their eye and the sea; none before the first call.
-    void set_spray(const Spray& spray);
+    // What the next pictures have between their eye and the sea; none before the first call. drops: those that are seen one
+    // by one, which the map lacks, as they were so long ago.
+    void set_spray(const Spray& spray, std::shared_ptr<const std::vector<SprayDrop>> drops = {},
+                   double late_s = 0.0);
     // Sets the frame of the next pictures. A frame of another sea replaces that sea: textures are made again,
     // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
     // PreviewError if the driver's textures are too small for the sea.

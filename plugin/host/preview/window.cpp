@@ -35,6 +35,7 @@
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/seen_drops.h"
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
@@ -203,7 +204,7 @@ struct LiveSky {
 std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
     LiveSky made;
     made.sky = make_sky(scene);
-    made.foam_picture = make_foam_picture(scene);
+    made.foam_picture = kept_foam_picture(scene);
     return std::make_shared<const LiveSky>(std::move(made));
 }
 
@@ -530,7 +531,8 @@ class Preview {
             make_foam(controls_.scene, sky_ ? sky_->foam_picture : nullptr,
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
-        if (has_spray_) show_spray();
+        lacks_drops_ = false;
+        if (has_spray_) show_spray(view);
         renderer_.draw(view, *mesh, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
@@ -539,13 +541,25 @@ class Preview {
         readout_.times.gpu = renderer_.times();
     }
 
-    // The spray before the last camera for which it is ready.
-    void show_spray() {
+    // The spray before the last camera for which it is ready, and its drops.
+    void show_spray(const View& view) {
+        lacks_drops_ = are_drops_near(frame_->build->scene, view);
         const std::shared_ptr<const Spray> ready = sea_.newest_spray();
         if (!ready || !sky_) return;
         Spray spray = *ready;
         light_spray(spray, controls_.draw.lighting, sky_->sky, water_, law_coverage(controls_.scene));
-        renderer_.set_spray(spray);
+        // Drops fly on while later ones are computed, as long as that is nearly their way.
+        constexpr double kLongest_s = 0.5;
+        const std::shared_ptr<const LiveDrops> drops = sea_.newest_drops();
+        double late_s = drops ? frame_->packed->time_s() - drops->time_s : 0.0;
+        if (const double loop_s = frame_->build->sea->loop_s(); loop_s > 0.0)
+            late_s = std::remainder(late_s, loop_s);
+        if (drops && drops->build == frame_->build && std::abs(late_s) <= kLongest_s) {
+            renderer_.set_spray(spray, {drops, &drops->drops}, late_s);
+            lacks_drops_ = false;
+        } else {
+            renderer_.set_spray(spray);
+        }
     }
 
     // Persistent foam comes when it is ready. Until then a picture shows what there is.
@@ -581,6 +595,7 @@ class Preview {
     bool is_screenshot_due() {
         if (!options_.screenshot || frame_ == nullptr) return false;
         if (foam_worker_ && foam_worker_->is_busy()) return false;
+        if (lacks_drops_) return false;
         if (pictures_++ == 0) first_picture_ = Clock::now();
         return pictures_ >= options_.screenshot_after;
     }
@@ -623,7 +638,8 @@ class Preview {
     std::optional<FoamWorker> foam_worker_;  // of foam_of_, where its foam is persistent
     std::optional<View> foam_view_;          // what it was asked for last
     double foam_time_s_ = 0.0;
-    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false;
+    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false,
+         lacks_drops_ = false;  // that are still to come
     std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;
     LiveSea sea_{LiveLimits{.memory = machine::memory_limit_or(options_.max_memory_bytes),

@@ -70,7 +70,7 @@ struct GpuLight {
         map_size = sky.map.size();
         uniforms = light_uniforms(sky);
         atlas = sky_atlas(sky.map);
-        foam_picture = make_foam_picture(scene);
+        foam_picture = kept_foam_picture(scene);
     }
     bool serves(const Scene& scene) const { return light_content(scene) == made_from; }
 

@@ -531,6 +531,14 @@ TEST_F(StageLightTest, FoamCoversTheWater) {
     }
 }
 
+// A bake shows nothing of it, and doesn't read it.
+TEST_F(StageLightTest, NeedsNoPictureOfFoam) {
+    Scene scene = small_scene();
+    scene.effects.foam_pattern = folder_ / "none.exr";
+    EXPECT_FALSE(check_scene(scene).empty());
+    EXPECT_NE(baked(scene), "");
+}
+
 // A scene needn't come from a shot file, whose paths are looked at with it.
 TEST_F(StageLightTest, APipeInTheSkysPlaceIsNotWaitedFor) {
     Scene scene = small_scene();

@@ -83,8 +83,10 @@ TEST_P(BudgetOfPictures, HoldsAndHalfTheCostWouldNot) {
     scene.shot.last_frame = 9;
     scene.effects.foam_decay_s = 0.0;  // its past takes long, and settings don't change it
     shot.change(scene);
+    // As wide as the small picture that budgets measure: narrower ones err less (without foam, by 3 × 3 samples: 0.135 at 80 pixels,
+    // 0.154 at 96, 0.171 at 160).
     const char* width = std::getenv("PELAGIC_BUDGET_WIDTH");  // larger pictures, by hand
-    const int columns = width ? std::atoi(width) : 80;
+    const int columns = width ? std::atoi(width) : 96;
     scene.camera.resolution = {columns, columns * 9 / 16};
     scene.quality.max_error = shot.max_error;
     const Settled budget = settle(scene, Purpose::Pictures);

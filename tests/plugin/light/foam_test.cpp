@@ -1,6 +1,14 @@
 // How dense foam is while it breaks and afterwards: all of it together as Koepke found it.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "plugin/files/files.h"
+#include "plugin/format/exr/exr.h"
 #include "plugin/light/light.h"
 
 namespace pelagic {
@@ -46,6 +54,50 @@ TEST(FoamOfAllAges, IsWhatTheShotSays) {
     }
     scene.effects.foam_new_opaque = 1.0;
     EXPECT_EQ(make_foam(scene, nullptr, 0.25).fresh_opacity, 1.0f);
+}
+
+// Lines of brightness 0, 1 ... 15, to the right or upwards.
+void write_lines(const std::filesystem::path& file, bool upwards) {
+    constexpr int kSide = 16;
+    std::vector<float> texels;
+    for (int i = 0; i < kSide * kSide; ++i)
+        texels.push_back(static_cast<float>(upwards ? i / kSide : i % kSide));
+    files::write_atomically(
+        file, exr::encode_scanline(
+                  {}, {.width = kSide,
+                       .height = kSide,
+                       .channels = {{.name = "Y", .data = texels.data(), .type = exr::PixelType::Half}}}));
+}
+
+// While only the light changes it isn't read again; a file that has changed is.
+TEST(KeptFoamPicture, IsMadeAgainWhereItsFileHasChanged) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("pelagic_foam_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    Scene scene;
+    EXPECT_EQ(kept_foam_picture(scene), nullptr);
+    scene.effects.foam_pattern = folder / "lines.exr";
+    write_lines(scene.effects.foam_pattern, false);
+    const auto first = kept_foam_picture(scene);
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(first->texels, make_foam_picture(scene)->texels);
+    scene.light.sun_elevation_deg += 1.0;
+    EXPECT_EQ(kept_foam_picture(scene), first);
+
+    const auto changed = fs::last_write_time(scene.effects.foam_pattern);
+    write_lines(scene.effects.foam_pattern, true);
+    fs::last_write_time(scene.effects.foam_pattern, changed + std::chrono::seconds(1));
+    const auto second = kept_foam_picture(scene);
+    EXPECT_NE(second->texels, first->texels);
+    EXPECT_EQ(second->texels, make_foam_picture(scene)->texels);
+
+    // The same bytes elsewhere are another file.
+    fs::copy_file(folder / "lines.exr", folder / "copy.exr");
+    scene.effects.foam_pattern = folder / "copy.exr";
+    EXPECT_NE(kept_foam_picture(scene), second);
+    scene.effects.foam_pattern = folder / "none.exr";
+    EXPECT_THROW(kept_foam_picture(scene), std::invalid_argument);
+    fs::remove_all(folder);
 }
 
 }  // namespace

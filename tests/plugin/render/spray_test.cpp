@@ -96,6 +96,24 @@ TEST(SprayDropsSeen, ADiscHidesAsMuchAsItsSection) {
         }
 }
 
+// Those of a moment ago are where they fly, straight on.
+TEST(SprayDropsSeen, FlyOnFromWhereTheyWere) {
+    const View view = view_at(storm_of_drops(1.0).camera, 1);
+    SprayDrop drop{.position_m = view.position_m + 20.0 * view.forward,
+                   .velocity_mps = {3.0, 1.0, -2.0},
+                   .width_m = 1.0,
+                   .section_m2 = 1.0};
+    const Spray unlit;
+    const auto seen = [&](double late_s) {
+        return seen_drops({&drop, 1}, {.view = view, .spray = unlit, .late_s = late_s}).at(0);
+    };
+    const SeenDrop late = seen(0.25);
+    EXPECT_NE(late.at_px, seen(0.0).at_px);
+    drop.position_m += 0.25 * drop.velocity_mps;
+    EXPECT_EQ(late.at_px, seen(0.0).at_px);
+    EXPECT_EQ(late.distance_m, seen(0.0).distance_m);
+}
+
 // A place that drops have the more, the map has the less: their sum is the whole veil's.
 TEST(SprayDropsSeen, TheVeilHasWhatTheyLack) {
     const Scene scene = storm_of_drops(1.0);

@@ -26,6 +26,7 @@
 #include "core/surface/projected_grid.h"
 #include "plugin/host/gpu/foam_worker.h"
 #include "plugin/host/gpu/sea_layout.h"
+#include "plugin/render/seen_drops.h"
 
 namespace pelagic {
 namespace {
@@ -234,6 +235,33 @@ TEST(LiveSea, HasTheSprayBeforeTheLatestCamera) {
     EXPECT_TRUE(is_seen_from(2.0, 10.0));
     sea.show(2.0);
     EXPECT_EQ(sea.newest_spray(), nullptr);
+    EXPECT_EQ(sea.status().error, "");
+}
+
+// Drops follow it on a thread of their own.
+TEST(LiveSea, HasTheDropsRoundTheLatestCamera) {
+    Scene scene = small_scene(20.0);
+    scene.effects.foam_decay_s = 0.0;
+    scene.effects.spray = scene.effects.spray_drops = true;
+    LiveSea sea([](const Scene& asked) { return build_live(asked, {}); });
+    sea.ask(scene);
+    View view = view_at(scene.camera, 1);
+    std::shared_ptr<const LiveDrops> drops;
+    view.position_m = {1000.0, 0.0, 8.0};
+    const auto are_of = [&](double time_s) {
+        return wait_for([&] {
+            sea.show(time_s, {}, view);
+            drops = sea.newest_drops();
+            return drops && drops->time_s == time_s && drops->drops.size() > 100 &&
+                   std::abs(drops->drops.front().position_m.x - 1000.0) <= 0.5 * kDropsSquare_m;
+        });
+    };
+    EXPECT_TRUE(are_of(1.0));
+    EXPECT_TRUE(are_of(1.1));
+    // From so high none is seen, and none is asked for.
+    view.position_m.z = 2.0 * kDropsReach_m;
+    sea.show(1.1, {}, view);
+    EXPECT_EQ(sea.newest_drops(), nullptr);
     EXPECT_EQ(sea.status().error, "");
 }
 

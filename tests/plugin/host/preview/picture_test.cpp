@@ -6,21 +6,28 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <glm/common.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "plugin/host/gpu/foam_worker.h"
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
+#include "plugin/render/seen_drops.h"
 #include "tests/plugin/host/preview/compare.h"
 #include "tests/plugin/host/preview/gpu.h"
 
 namespace pelagic {
 namespace {
 
-void compare_frame(const char* name, Scene scene, glm::ivec2 size = {640, 360}) {
+struct BothPictures {
+    Picture cpu, gpu;
+};
+
+BothPictures compare_frame(const char* name, Scene scene, glm::ivec2 size = {640, 360}) {
     gpu::need_context();
     scene.camera.resolution = size;
     RenderOptions options = render_options(scene);
@@ -28,8 +35,8 @@ void compare_frame(const char* name, Scene scene, glm::ivec2 size = {640, 360}) 
     const Sky sky = make_sky(scene);
     Picture cpu;
     Renderer(scene, options, sky, std::array{5}).render(5, cpu);
-    const OffscreenPicture gpu = render_offscreen(plan_offscreen(scene, 5), sky);
-    ASSERT_EQ(gpu.picture.resolution, cpu.resolution);
+    OffscreenPicture gpu = render_offscreen(plan_offscreen(scene, 5), sky);
+    EXPECT_EQ(gpu.picture.resolution, cpu.resolution);
     const Difference difference = compare(cpu, gpu.picture);
     std::printf("    %s: median %.1e, 99th percentile %.1e, at silhouettes %.1f %% of the pixels\n", name,
                 difference.median, difference.last_percent, 100.0 * difference.silhouettes);
@@ -40,6 +47,7 @@ void compare_frame(const char* name, Scene scene, glm::ivec2 size = {640, 360}) 
     EXPECT_GT(difference.median, 0.0);  // two different implementations
     EXPECT_LE(difference.median, 1e-3);
     EXPECT_LE(difference.last_percent, 1e-2);
+    return {std::move(cpu), std::move(gpu.picture)};
 }
 
 Scene scene_of(glm::dvec3 position_m, glm::dvec3 look_at_m) {
@@ -123,6 +131,52 @@ TEST(PreviewsPicture, IsTheCpusOfSpray) {
 TEST(PreviewsPicture, IsTheCpusOfSprayFromAPlane) {
     compare_frame("of spray from a plane", sprayed_scene({1e6, -1e6, 400.0}, {1e6, -1e6 + 1500.0, 0.0}),
                   {320, 180});
+}
+
+// In each pixel: whether drops hide something of what is behind them.
+std::vector<bool> are_behind_drops(const Scene& scene, int frame) {
+    const View view = view_at(scene.camera, frame);
+    const auto sea =
+        std::make_shared<const Sea<float>>(picture_plan(scene, std::array{frame}, render_options(scene)));
+    std::vector<SprayDrop> drops;
+    SprayDrops<float>(*sea, kDropsSquare_m).at(scene.shot.time_s(frame), glm::dvec2(view.position_m), drops);
+    const Spray unlit;
+    const double curvature_per_m = projected_grid_options(*sea->plan().from).curvature_per_m;
+    std::vector<bool> behind(static_cast<std::size_t>(view.resolution.x * view.resolution.y));
+    for (const SeenDrop& drop :
+         seen_drops(drops, {.view = view, .curvature_per_m = curvature_per_m, .spray = unlit}))
+        for (int y = 0; y < view.resolution.y; ++y) {
+            if (std::abs(y + 0.5 - drop.at_px.y) > drop.radius_px) continue;
+            for (int x = 0; x < view.resolution.x; ++x)
+                if (drop.hides({x + 0.5, y + 0.5}, 1e30f) > 0.02f)
+                    behind[static_cast<std::size_t>(y * view.resolution.x + x)] = true;
+        }
+    return behind;
+}
+// Before the sky, before the sea, cut by it, and one before the other: in each layer.
+TEST(PreviewsPicture, IsTheCpusOfDropsOfSpray) {
+    Scene scene = scene_of({0.0, -60.0, 5.0}, {0.0, 0.0, 3.0});
+    scene.sea.wind_speed_mps = 18.0;
+    scene.effects.spray = scene.effects.spray_drops = true;
+    scene.waves.cascades = {{150.0, 128}, {31.0, 64}};
+    scene.effects.foam_decay_s = 0.0;  // its past takes long
+    scene.camera.resolution = {200, 112};
+    const BothPictures both = compare_frame("of drops", scene, scene.camera.resolution);
+    const std::vector<bool> behind = are_behind_drops(scene, 5);
+    double sum = 0.0, pixels = 0.0;
+    for (std::size_t i = 0; i < behind.size(); ++i) {
+        if (!behind[i] || both.cpu.sea[i] != both.gpu.sea[i]) continue;
+        const SeaRadiance &a = both.cpu.layers[i], &b = both.gpu.layers[i];
+        glm::vec3 apart(0.0f);
+        for (glm::vec3 SeaRadiance::*layer :
+             {&SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::sea, &SeaRadiance::foam, &SeaRadiance::air})
+            apart += glm::abs(a.*layer - b.*layer);
+        sum += static_cast<double>((apart / radiance_of(a)).y);
+        pixels += 1.0;
+    }
+    std::printf("    behind drops: %.0f pixels, mean difference %.1e\n", pixels, sum / pixels);
+    EXPECT_GT(pixels, 1000.0);
+    EXPECT_LE(sum / pixels, 1e-4);
 }
 
 // What waves that broke before have left, near and far, in both hosts alike.
@@ -253,6 +307,46 @@ TEST(PreviewsPicture, WithoutLayersIsTheirSum) {
         const glm::vec3 expected = radiance_of(layers.layers[i]);
         for (int c = 0; c < 3; ++c)  // rounding of three additions
             ASSERT_NEAR(radiance_of(sum.layers[i])[c], expected[c], 4e-7f * expected[c]);
+    }
+}
+
+// The nearer of two dense drops over the other, with and without layers, and what shows the sea still says so.
+TEST(PreviewsPicture, OfDropsHasTheNearestInFront) {
+    gpu::need_context();
+    Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
+    scene.camera.resolution = {64, 36};
+    Stage stage(scene);
+    DrawOptions options{.lighting = {}, .layers = true};
+    options.lighting.spray = true;
+    const Picture bare = stage.drawn(options);
+    // Spray that is drops alone, under a sky that is bright above.
+    Spray spray{.columns = 2, .rows = 2, .above = glm::vec3(1.0f)};
+    spray.texels.resize(4);
+    const glm::dvec3 eye = stage.view.position_m, forward = stage.view.forward, up = stage.view.up;
+    const std::vector<SprayDrop> drops{
+        {.position_m = eye + 3.0 * forward - 0.3 * up, .width_m = 1.0, .section_m2 = 3.0},
+        {.position_m = eye + 4.5 * forward + 0.3 * up, .width_m = 1.0, .section_m2 = 3.0}};
+    const Air air = make_sky(scene).air->seen_from(stage.view.position_m.z);
+    const std::vector<SeenDrop> seen =
+        seen_drops(drops, {.view = stage.view,
+                           .curvature_per_m = stage.mesh.points.curvature_per_m,
+                           .air = &air,
+                           .spray = spray});
+    ASSERT_EQ(seen.size(), 2u);
+    EXPECT_GT(seen[0].radiance.y, 1.1f * seen[1].radiance.y);  // so that the order counts
+    stage.renderer.set_spray(spray, std::make_shared<std::vector<SprayDrop>>(drops));
+    for (const bool layers : {true, false}) {
+        options.layers = layers;
+        const Picture picture = stage.drawn(options);
+        for (std::size_t i = 0; i < bare.layers.size(); ++i) {
+            const glm::dvec2 place(static_cast<double>(i % 64) + 0.5, static_cast<double>(i / 64) + 0.5);
+            glm::vec3 expected = radiance_of(bare.layers[i]);
+            for (const SeenDrop& drop : seen)
+                expected += drop.hides(place, 1e30f) * (drop.radiance - expected);
+            for (int c = 0; c < 3; ++c)  // the shader has places in single precision
+                ASSERT_NEAR(radiance_of(picture.layers[i])[c], expected[c], 1e-4f * expected[c]) << i;
+            ASSERT_EQ(picture.sea[i], bare.sea[i]);
+        }
     }
 }
 

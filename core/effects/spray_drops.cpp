@@ -49,6 +49,10 @@ constexpr std::uint32_t kStream = 0x64726f70u;  // of the shot's random numbers
 
 }  // namespace
 
+double SprayDrop::opacity() const {
+    return -std::expm1(-section_m2 / (0.25 * kPi * width_m * width_m));
+}
+
 template <class T>
 struct SprayDrops<T>::Parcel {
     glm::dvec3 from_m, start_mps, drift_mps;  // drift: that it comes to have

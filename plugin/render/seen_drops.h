@@ -16,6 +16,8 @@ namespace pelagic {
 // As far from the eye drops are seen one by one, to this share; what the rest holds is in the veil.
 inline constexpr double kDropsReach_m = 96.0;
 double drops_share(double distance_m);
+// Of a single one: those at the eye itself, which would fill the picture, aren't seen.
+double drop_share(double distance_m);
 
 struct SeenDrop {
     glm::dvec2 at_px{0.0};  // in the view's pixels, as View::direction() takes them

@@ -6,6 +6,8 @@ drops, as `pelagic render` shows it as a soft disc, and the material makes that 
 and go with the key, and one that nobody wants any more is removed.
 """
 
+from contextlib import suppress
+
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
@@ -91,7 +93,10 @@ def _make(obj):
 
 
 def _remove(each):
-    made = [each.data, *(modifier.node_group for modifier in each.modifiers if modifier.type == "NODES"), _material_of(each)]
+    material = _material_of(each)
+    made = [each.data, *(modifier.node_group for modifier in each.modifiers if modifier.type == "NODES"), material]
+    if material is not None and PICTURE in material.node_tree.nodes:
+        made.append(material.node_tree.nodes[PICTURE].image)
     bpy.data.objects.remove(each)
     for data in made:
         if data is not None and MARK in data and not data.users:
@@ -154,10 +159,11 @@ def _new_material():
 
 
 def _light(obj, bpy_scene):
-    """Brings the light of an ocean's drops to its scene's, once that is known."""
+    """Brings the light of an ocean's drops to its scene's. Where that isn't known, or refused, look.py does once it is."""
     scene = play.simulation_of(obj).scene
-    if scene is not None:
-        put_light(obj, scene, light.sky_picture(bpy_scene))
+    with suppress(ValueError, OSError):
+        if scene is not None:
+            put_light(obj, scene, light.sky_picture(bpy_scene))
 
 
 def put_light(obj, scene, sky):
@@ -174,7 +180,8 @@ def put_light(obj, scene, sky):
     nodes[OWN_LIGHT].outputs[0].default_value = 1.0 if sky else 0.0
     if sky:
         made = light.sky_of(scene).spray_image(scene, LIGHT_WIDTH)
-        nodes[PICTURE].image = light.packed_image("Pelagic Spray Light", made, nodes[PICTURE].image)
+        image = nodes[PICTURE].image = light.packed_image("Pelagic Spray Light", made, nodes[PICTURE].image)
+        image[MARK] = True
 
 
 # ---- A frame's drops

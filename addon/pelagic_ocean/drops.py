@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-from . import compat, handlers, light, links, meshes, ocean, play
+from . import compat, handlers, light, meshes, ocean, play
 from .module import pelagic
 from .nodes import Tree
 
@@ -23,9 +23,10 @@ LAYERS = 64  # parcels that one ray may go through: Blender's own 8 would leave 
 
 
 def are_on(obj):
-    """Whether the settings of an ocean ask for drops."""
+    """Whether the settings of an ocean ask for drops, and it is where they can be added."""
     effects = obj.pelagic.effects
-    return effects.spray_drops and effects.spray and effects.whitecaps and effects.spray_law == "andreas-1998"
+    return (effects.spray_drops and effects.spray and effects.whitecaps and effects.spray_law == "andreas-1998"
+            and bool(obj.users_scene) and not obj.library)
 
 
 def drops_of(obj):
@@ -37,39 +38,42 @@ def drops_of(obj):
 
 
 def _tidy():
-    """Makes the objects that are asked for, and removes the others."""
-    having = set()
+    """Makes the objects that are asked for, and removes the others. Returns those that it made."""
+    having, made = set(), []
     for each in [each for each in bpy.data.objects if MARK in each and not each.library]:
-        obj = links.alive(each.parent)
+        obj = each.parent
         if ocean.is_ocean(obj) and are_on(obj) and obj not in having and each.type == "MESH" and MARK in each.data:
             having.add(obj)
         else:
             _remove(each)
     for obj in ocean.oceans():
-        if are_on(obj) and obj not in having and not obj.library and links.alive(obj):
-            _make(obj)
+        if are_on(obj) and obj not in having:
+            made.append(_make(obj))
+    return made
 
 
 def _is_tidy():
     objects = [each for each in bpy.data.objects if MARK in each and not each.library]
-    wanting = [obj for obj in ocean.oceans() if are_on(obj) and not obj.library and links.alive(obj)]
+    wanting = [obj for obj in ocean.oceans() if are_on(obj)]
     return len(objects) == len(wanting) == len({each.parent for each in objects} & set(wanting))
 
 
 def _tidy_soon():
-    """In a window from a timer: handlers run where objects that are gone may still be looked at."""
+    """In a window from a timer: handlers run where objects that are gone may still be looked at. Returns what was made at once."""
     if _is_tidy():
-        return
+        return []
     if bpy.app.background:
-        _tidy()
-    elif not bpy.app.timers.is_registered(_tidy_later):
+        return _tidy()
+    if not bpy.app.timers.is_registered(_tidy_later):
         bpy.app.timers.register(_tidy_later, first_interval=0.0)
+    return []
 
 
 def _tidy_later():
     if play.is_rendering() or play.is_saving:
         return 0.5
-    _tidy()
+    for each in _tidy():
+        each.parent.update_tag()  # its handlers fill them
     return None
 
 
@@ -90,6 +94,7 @@ def _make(obj):
         if hasattr(bpy_scene, "cycles"):
             bpy_scene.cycles.transparent_max_bounces = max(bpy_scene.cycles.transparent_max_bounces, LAYERS)
         _light(obj, bpy_scene)
+    return made
 
 
 def _remove(each):
@@ -233,11 +238,12 @@ def _put(mesh, found, time_scale=1.0):
     compat.tell(mesh)
 
 
-def _show_all(bpy_scene, depsgraph):
+def _show_all(bpy_scene, depsgraph, new=()):
+    """new: objects that aren't in the depsgraph yet."""
     there = set()
     for each in [each for each in bpy_scene.objects if MARK in each]:
         there.add(each.name_full)
-        if ocean.is_ocean(each.parent) and each.type == "MESH" and not each.data.library and play.is_seen(each, depsgraph):
+        if ocean.is_ocean(each.parent) and each.type == "MESH" and not each.data.library and (each in new or play.is_seen(each, depsgraph)):
             _show(each.parent, each, bpy_scene, depsgraph)
     for name in set(_flying) - there:
         del _flying[name]
@@ -248,9 +254,7 @@ def _show_all(bpy_scene, depsgraph):
 
 @persistent
 def _on_frame(bpy_scene, depsgraph):
-    if not play.is_rendering():
-        _tidy_soon()
-    _show_all(bpy_scene, depsgraph)
+    _show_all(bpy_scene, depsgraph, [] if play.is_rendering() else _tidy_soon())
 
 
 @persistent
@@ -259,8 +263,7 @@ def _on_update(bpy_scene, depsgraph):
         return
     if any(isinstance(update.id, bpy.types.Scene) or isinstance(update.id, bpy.types.Object)
            and (update.id.type == "CAMERA" or ocean.is_ocean(update.id) or MARK in update.id) for update in depsgraph.updates):
-        _tidy_soon()
-        _show_all(bpy_scene, depsgraph)
+        _show_all(bpy_scene, depsgraph, _tidy_soon())
 
 
 @persistent

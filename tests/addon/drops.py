@@ -26,7 +26,7 @@ def stormy():
     fresh_file()
     camera = bpy.context.scene.camera
     camera.location, camera.rotation_euler = (3.0, -20.0, 5.0), (1.4, 0.0, 0.0)
-    sea = add_ocean(sea__wind_speed_mps=16.0, surface__size_m=40.0, effects__spray=True)
+    sea = add_ocean(sea__wind_speed_mps=11.0, surface__size_m=40.0, effects__spray=True)
     for size_m, resolution in ((150.0, 96), (31.0, 64)):
         row = sea.pelagic.waves.cascades.add()
         row.size_m, row.resolution = size_m, resolution

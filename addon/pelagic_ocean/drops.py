@@ -279,15 +279,8 @@ def _on_load(*_):
         _on_frame(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
-@persistent
-def _on_render(*_):
-    """Scripts may have set the key a moment ago. A window has been updated since, and renders in another thread."""
-    if bpy.app.background:
-        _tidy_soon()
-
-
 HANDLERS = (("frame_change_post", _on_frame), ("depsgraph_update_post", _on_update), ("undo_post", _on_other_data),
-            ("redo_post", _on_other_data), ("load_post", _on_load), ("render_init", _on_render))
+            ("redo_post", _on_other_data), ("load_post", _on_load))
 
 
 def register():

@@ -19,7 +19,7 @@ from .nodes import Tree
 MARK = "pelagic_drops"  # on objects, meshes, node groups and materials of the add-on
 OWN_LIGHT, PICTURE = "Sky's Own Light", "Spray's Light"  # nodes
 LIGHT_WIDTH = 256  # of the picture of that: 1.4° a pixel, where the light ahead of the sun is 3° wide
-LAYERS = 64  # parcels that one ray may go through: Blender's own 8 would leave a crest's drops black
+LAYERS = 256  # sides of spheres that one ray may go through: Blender's own 8 would leave a crest's drops dark
 
 
 def are_on(obj):
@@ -149,7 +149,9 @@ def _new_material():
     cosine = tree.add("ShaderNodeNewGeometry", output="Normal").dot(tree.add("ShaderNodeNewGeometry", output="Incoming"))
     inner = cosine * cosine
     left = (1.0 - tree.attribute("opacity", "Fac")).at_least(1e-4)
-    hidden = 1.0 - tree.math("POWER", left, 3.0 * inner * inner)
+    # Cycles of 3.4 meets the near side alone; of 4.3 and 5.2 the far one, too, where another sphere's is between.
+    near = 1.0 - tree.add("ShaderNodeNewGeometry", output="Backfacing")
+    hidden = near * (1.0 - tree.math("POWER", left, 3.0 * inner * inner))
     picture = tree.node("ShaderNodeTexEnvironment", {"Vector": -tree.add("ShaderNodeNewGeometry", output="Incoming")})
     picture.name = picture.label = PICTURE
     own = tree.node("ShaderNodeValue")
@@ -220,7 +222,11 @@ def _show(obj, each, bpy_scene, depsgraph):
         return
     if known != of:
         drops = pelagic.SprayDrops(*of)
-    _put(each.data, drops.in_air(moment.time_s, eye=eye), moment.time_scale)
+    try:
+        found = drops.in_air(moment.time_s, eye=eye)
+    except ValueError:  # a camera out of this world
+        found = None
+    _put(each.data, found, moment.time_scale)
     _flying[each.name_full] = of, drops, (moment, eye)
 
 
@@ -240,12 +246,11 @@ def _put(mesh, found, time_scale=1.0):
 
 def _show_all(bpy_scene, depsgraph, new=()):
     """new: objects that aren't in the depsgraph yet."""
-    there = set()
-    for each in [each for each in bpy_scene.objects if MARK in each]:
-        there.add(each.name_full)
+    objects = [each for each in bpy.data.objects if MARK in each]
+    for each in objects:
         if ocean.is_ocean(each.parent) and each.type == "MESH" and not each.data.library and (each in new or play.is_seen(each, depsgraph)):
             _show(each.parent, each, bpy_scene, depsgraph)
-    for name in set(_flying) - there:
+    for name in set(_flying) - {each.name_full for each in objects}:
         del _flying[name]
 
 

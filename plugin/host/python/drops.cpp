@@ -60,8 +60,8 @@ class PythonDrops {
 
     py::dict in_air(double t_s, std::array<double, 2> middle_m,
                     const std::optional<std::array<double, 3>>& eye_m) {
-        const glm::dvec3 eye =
-            eye_m ? glm::dvec3((*eye_m)[0], (*eye_m)[1], (*eye_m)[2]) : glm::dvec3(middle_m[0], middle_m[1], 0.0);
+        const glm::dvec3 eye = eye_m ? glm::dvec3((*eye_m)[0], (*eye_m)[1], (*eye_m)[2])
+                                     : glm::dvec3(middle_m[0], middle_m[1], 0.0);
         if (!std::isfinite(t_s)) throw py::value_error("t: accepted: a finite time [s]");
         for (const double each : {eye.x, eye.y, eye.z})
             if (!limits::kCameraCoordinate_m.holds(each))
@@ -71,8 +71,7 @@ class PythonDrops {
         beside_others(
             watch, [&] { find(t_s, glm::dvec2(eye), drops, watch.flag()); }, "finding drops was cancelled");
         if (eye_m) {
-            for (SprayDrop& drop : drops)
-                drop.section_m2 *= drop_share(glm::distance(drop.position_m, eye));
+            for (SprayDrop& drop : drops) drop.section_m2 *= drop_share(glm::distance(drop.position_m, eye));
             std::erase_if(drops, [](const SprayDrop& drop) { return !(drop.section_m2 > 0.0); });
         }
         return arrays_of(drops);
@@ -81,7 +80,8 @@ class PythonDrops {
     double size_m() const { return size_m_; }
 
   private:
-    void find(double t_s, glm::dvec2 middle_m, std::vector<SprayDrop>& drops, const std::atomic<bool>* cancel) {
+    void find(double t_s, glm::dvec2 middle_m, std::vector<SprayDrop>& drops,
+              const std::atomic<bool>* cancel) {
         const std::lock_guard lock(mutex_);
         // As for a frame: this thread takes up nobody else's work while it waits for its own.
         tbb::this_task_arena::isolate([&] {
@@ -106,10 +106,11 @@ void add_drops(py::module_& module) {
         "sea: of a scene with such drops; otherwise there are none. size_m: the side of the square over which they are, [m], "
         "which also says how fine they are; None: as far as pictures show them round an eye.");
     drops
-        .def(py::init<const PythonSea&, std::optional<double>>(), py::arg("sea"), py::arg("size_m") = py::none())
+        .def(py::init<const PythonSea&, std::optional<double>>(), py::arg("sea"),
+             py::arg("size_m") = py::none())
         .def(
-            "in_air", &PythonDrops::in_air, py::arg("t"), py::arg("middle") = std::array{0.0, 0.0}, py::kw_only(),
-            py::arg("eye") = py::none(),
+            "in_air", &PythonDrops::in_air, py::arg("t"), py::arg("middle") = std::array{0.0, 0.0},
+            py::kw_only(), py::arg("eye") = py::none(),
             "A dict of those in the air at time t [s], over the square round middle [m]: position, float64 (n, 3), in the "
             "world; velocity, float32 (n, 3), per second of the sea's time; width_m, across a parcel; section_m2, what its drops take of the "
             "light's cross-section, which comes and goes with its age; opacity, of a disc of that width that hides as much; id, int64, "

@@ -138,7 +138,7 @@ def _oceans_at_rest():
     """Frames change without the seas': only what carries the camera matters."""
     handlers = bpy.app.handlers.frame_change_post
     before = list(handlers)
-    costly = {f"{__package__}.{name}" for name in ("play", "look", "viewport", "baked")}
+    costly = {f"{__package__}.{name}" for name in ("play", "look", "drops", "viewport", "baked")}
     handlers[:] = [each for each in before if each.__module__ not in costly]
     try:
         yield

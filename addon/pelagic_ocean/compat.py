@@ -93,6 +93,12 @@ def eevee_mirrors_in_facets():
     return bpy.app.version < (4, 2)
 
 
+def blend_by_samples(material):
+    """Lets EEVEE mix a material that is transparent in part by chance, in no order; without shadows. Since 4.2 it does."""
+    if not hasattr(material, "surface_render_method"):
+        material.blend_method, material.shadow_method = "HASHED", "NONE"
+
+
 def reads_volumes_once():
     """Whether a volume's file that was read shows as it was then until Blender ends, though it is written anew: measured so in
     4.3.2 and 5.2.2, and in 3.4.1 not."""

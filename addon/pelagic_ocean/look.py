@@ -6,7 +6,7 @@ import traceback
 import bpy
 from bpy.app.handlers import persistent
 
-from . import handlers, light, material, meshes, ocean, play
+from . import drops, handlers, light, material, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
 from .query import first_ocean
@@ -16,7 +16,8 @@ PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or "clock" in field.key["feeds"]
           or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "surface.earth_curvature", "shot.loop_s",
                             "effects.foam_structure", "effects.foam_streaks", "effects.foam_pattern", "effects.foam_pattern_m", "effects.foam_new_albedo", "effects.foam_old_albedo",
-                            "effects.foam_new_opaque", "effects.foam_old_opaque")]
+                            "effects.foam_new_opaque", "effects.foam_old_opaque")
+          or "spray" in field.key["feeds"]]
 
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
@@ -44,6 +45,7 @@ def give(obj, bpy_scene, sun_and_sky):
     if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
     material.put_air(obj, scene, light.sky_picture(bpy_scene))
+    drops.put_light(obj, scene, light.sky_picture(bpy_scene))
 
 
 def try_to(operator, give):
@@ -114,6 +116,7 @@ def _follow(bpy_scene, depsgraph):
             if is_first:
                 light.update_light(bpy_scene, scene)
             material.put_air(obj, scene, light.sky_picture(bpy_scene))
+            drops.put_light(obj, scene, light.sky_picture(bpy_scene))
         except (ValueError, pelagic.ShotError) as error:
             print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
 
@@ -157,6 +160,7 @@ class PELAGIC_OT_add_light(bpy.types.Operator):
             scene = ocean.scene_of(context.object, context.scene)
             light.ensure_light(context.scene, scene, self.exposure)
             material.put_air(context.object, scene, light.sky_picture(context.scene))
+            drops.put_light(context.object, scene, light.sky_picture(context.scene))
         except (ValueError, pelagic.ShotError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

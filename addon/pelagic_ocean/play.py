@@ -26,6 +26,7 @@ from .sea import BuiltSea, Moment
 # A change of a key that feeds these is another sea. The rest only looks different; the clock matters to loops.
 SEA_FEEDS = {"waves", "gusts", "foam", "quality", "surface", "grid"}
 SEA_FIELDS = tuple(place for place, field in enumerate(FIELDS) if SEA_FEEDS & set(field.key["feeds"]))
+DROPS_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "spray" in field.key["feeds"])
 CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in field.key["feeds"])
 PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 BAKED_ALONE = {"planet": "A planet", "near-far": "A mesh from near to far"}  # kinds of surfaces that nobody plays
@@ -134,7 +135,8 @@ class Simulation:
             return None
         loop = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
         velocity = wants_velocity(obj, bpy_scene)
-        key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key, velocity)
+        drops = tuple(settings[place] for place in DROPS_FIELDS) if settings[PLACE["effects.spray_drops"]] else ()  # they are the sea's
+        key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key, velocity, drops)
         if key != self._key or (view is not None and self._built and not self._built.serves(view)):
             self._seek(key, make_surface, view, velocity, wait)
         return view
@@ -240,7 +242,7 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     return patch, lambda: surfaces.patch(*patch), None
 
 
-def _is_seen(obj, depsgraph):
+def is_seen(obj, depsgraph):
     """Whether anything in this depsgraph shows it; during renders that is another question than in a window."""
     if not obj.evaluated_get(depsgraph).is_evaluated or obj.mode == "EDIT":
         return False
@@ -253,7 +255,7 @@ def _driven(objects, depsgraph):
     """The oceans among the objects that are to be brought up to date: one for each mesh."""
     by_mesh = {}
     for obj in objects:
-        if is_ocean(obj) and obj.data.name_full not in by_mesh and _is_seen(obj, depsgraph):
+        if is_ocean(obj) and obj.data.name_full not in by_mesh and is_seen(obj, depsgraph):
             by_mesh[obj.data.name_full] = obj
     return list(by_mesh.values())
 

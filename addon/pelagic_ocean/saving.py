@@ -11,7 +11,7 @@ from contextlib import suppress
 import bpy
 from bpy.app.handlers import persistent
 
-from . import handlers, meshes, ocean, play
+from . import drops, handlers, meshes, ocean, play
 from .module import TITLE, VERSION, pelagic
 
 # The custom property of oceans of the name TITLE, which everybody can read.
@@ -39,6 +39,13 @@ def _marker(mesh, size_m):
     made.from_pydata([(x, y, 0.0) for y in places for x in places], [],
                      [(i, i + 1, i + row + 1, i + row) for i in range(row * SQUARES) if i % row < SQUARES and i % 2])
     made[meshes.SIGNATURE] = meshes.MARKER
+    return made
+
+
+def _emptied(mesh):
+    """The same for the drops of spray: nothing."""
+    made = bpy.data.meshes.new(mesh.name)
+    made[drops.MARK] = True
     return made
 
 
@@ -70,8 +77,9 @@ def _before_save(*_):
     if play.is_rendering():  # on another thread
         return
     for mesh, objects in users.items():
-        if _can_go(mesh, objects):
-            marker = _marker(mesh, objects[0].pelagic.surface.size_m)
+        is_drops = drops.MARK in mesh and not mesh.library
+        if is_drops or _can_go(mesh, objects):
+            marker = _emptied(mesh) if is_drops else _marker(mesh, objects[0].pelagic.surface.size_m)
             _swap(marker, mesh)
             _away.append((mesh, marker))
     if _away:

@@ -35,7 +35,7 @@ class SprayVeil {
 
     bool empty() const { return !(mean_breaking_ > 0.0); }
     const SprayLaw& law() const { return law_; }
-    bool is_torn() const { return law_.ribbons.extinction_per_m.x > 0.0; }
+    bool is_torn() const { return law_.is_torn(); }
 
     // Writes the places' shares at the three heights, each 1 on average. breaking: the query's there. mean_cell_m:
     // the side of a place's cell. The query holds Product::Breaking and Displacement, and places are those of the world, as

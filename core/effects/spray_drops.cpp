@@ -49,6 +49,10 @@ constexpr std::uint32_t kStream = 0x64726f70u;  // of the shot's random numbers
 
 }  // namespace
 
+double SprayDrop::opacity() const {
+    return -std::expm1(-section_m2 / (0.25 * kPi * width_m * width_m));
+}
+
 template <class T>
 struct SprayDrops<T>::Parcel {
     glm::dvec3 from_m, start_mps, drift_mps;  // drift: that it comes to have
@@ -81,8 +85,12 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
     : plan_(plan_spray_drops(*sea.plan().from, size_m)), size_m_(size_m) {
     const PreparedScene& from = *sea.plan().from;
     const SprayLaw law = spray_law(from.scene, from.extent.significant_height_m);
-    mean_breaking_ = mean_breaking(sea);
-    if (!(law.drops.optical_thickness > 0.0) || !(mean_breaking_ > 0.0)) return;
+    if (!(law.drops.optical_thickness > 0.0)) return;
+    frame_ = std::make_unique<Frame<T>>(
+        std::make_shared<const Sea<T>>(plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
+    // Its own: where foam lives, what counts as breaking depends on whether anybody asks for that.
+    mean_breaking_ = mean_breaking(frame_->sea());
+    if (!(mean_breaking_ > 0.0)) return;
     per_m2_ = law.drops.optical_thickness / plan_.parcels_per_s;
     seed_ = from.scene.shot.seed;
     const double towards = from.scene.sea.wind_direction_deg * kPi / 180.0;
@@ -91,8 +99,6 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
     wind_mps_ = wind.at(kFlight_m);
     friction_mps_ = wind.friction_mps();
     for (const double radius_um : law.drops.radii_um) settling_mps_.push_back(settling_mps(radius_um));
-    frame_ = std::make_unique<Frame<T>>(
-        std::make_shared<const Sea<T>>(plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
 }
 
 template <class T>

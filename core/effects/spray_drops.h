@@ -31,6 +31,9 @@ struct SprayDrop {
     double section_m2 = 0.0;       // extinction, > 0
     std::int64_t id =
         0;  // 0 … 2^53 − 1, the same at all times; in loops longer than a life no two share one but by chance
+
+    // Of a disc of that width that hides as much.
+    double opacity() const;
 };
 
 template <class T>

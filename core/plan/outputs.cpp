@@ -152,7 +152,7 @@ const std::array kOutputTable = std::to_array<OutputRow>({
     {OutputKind::Drops,
      key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality,
                KeyPart::Volumes, KeyPart::Spray),
-     1, add_drops},
+     2, add_drops},
 });
 
 }  // namespace

@@ -66,6 +66,7 @@ struct SprayLaw {
     SprayLayer haze{};
     SprayDropsLaw drops{};  // with effects.spray_drops; what they have, the ribbons lack
 
+    bool is_torn() const { return ribbons.extinction_per_m.x > 0.0; }
     double extinction_per_m() const {
         return over_foam.extinction_per_m + ribbons.extinction_per_m.x + haze.extinction_per_m;
     }

@@ -1,7 +1,6 @@
 // The spray's large drops over the patch's square, as points of USD.
 #include <cmath>
 
-#include "core/base/constants.h"
 #include "core/effects/spray_drops.h"
 #include "core/plan/spray_drops.h"
 #include "plugin/bake/output_part.h"
@@ -53,8 +52,7 @@ class DropsPart final : public OutputPart {
             slot.velocities[i] = glm::vec3(drop.velocity_mps * scene().shot.time_scale);
             slot.widths[i] = static_cast<float>(drop.width_m);
             slot.sections[i] = static_cast<float>(drop.section_m2);
-            const double disc_m2 = 0.25 * kPi * drop.width_m * drop.width_m;
-            slot.opacities[i] = static_cast<float>(-std::expm1(-drop.section_m2 / disc_m2));
+            slot.opacities[i] = static_cast<float>(drop.opacity());
             slot.ids[i] = drop.id;
         }
     }

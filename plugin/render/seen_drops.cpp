@@ -18,7 +18,6 @@ double eased(double x) {
     return x * x * (3.0 - 2.0 * x);
 }
 
-// Parcels at the eye itself would fill the picture.
 constexpr double kHidden_m = 0.5, kWhole_m = 2.0;
 // Where the disc is no narrower, its profile adds up over pixels to its integral.
 constexpr double kNarrowest_px = 1.5;
@@ -32,6 +31,10 @@ using namespace glm;
 
 double drops_share(double distance_m) {
     return 1.0 - eased(2.0 * distance_m / kDropsReach_m - 1.0);
+}
+
+double parcel_share(double distance_m) {
+    return drops_share(distance_m) * eased((distance_m - kHidden_m) / (kWhole_m - kHidden_m));
 }
 
 bool are_drops_near(const Scene& scene, const View& view) {
@@ -67,8 +70,7 @@ std::vector<SeenDrop> seen_drops(std::span<const SprayDrop> drops, const DropsEy
                          at_m = on_earth(flown_m - glm::dvec3(nadir_m, 0.0), curvature_per_m);
         const glm::dvec3 way = at_m - glm::dvec3(0.0, 0.0, view.position_m.z);
         const double distance_m = glm::length(way), ahead_m = glm::dot(way, view.forward);
-        const double share =
-            drops_share(distance_m) * eased((distance_m - kHidden_m) / (kWhole_m - kHidden_m));
+        const double share = parcel_share(distance_m);
         if (!(share > 0.0) || !(ahead_m > kHidden_m)) continue;
         const double px_a_m = 1.0 / (tangent * ahead_m);
         const double radius_px = std::max(0.5 * drop.width_m * px_a_m, kNarrowest_px);

@@ -19,6 +19,8 @@ namespace pelagic {
 inline constexpr double kDropsReach_m = 96.0;
 inline constexpr double kDropsSquare_m = 2.0 * kDropsReach_m;  // the side of what is asked of SprayDrops
 double drops_share(double distance_m);
+// Of a single one: those at the eye itself, which would fill the picture, aren't seen.
+double parcel_share(double distance_m);
 // Whether that camera sees some, in a picture that has spray: its map then lacks them.
 bool are_drops_near(const Scene& scene, const View& view);
 // What they hold, of a picture that has spray.

@@ -128,6 +128,14 @@ std::size_t spray_map_bytes(SprayMapSize size) {
            (40 * sizeof(double) + sizeof(glm::vec4));
 }
 
+Spray spray_by(const SprayLaw& law) {
+    return {.is_torn = law.is_torn(),
+            .scale_m = static_cast<float>((law.is_torn() ? law.haze : law.over_foam).scale_m),
+            .step_m = static_cast<float>(law.ribbons.step_m),
+            .haze_per_m = static_cast<float>(law.haze.extinction_per_m),
+            .forward = law.is_torn() ? kTornForward : Spray{}.forward};
+}
+
 template <class T>
 Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGridOptions& options,
                      SprayMapSize size, bool drops) {
@@ -138,19 +146,14 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     const Radii radii = radii_of(view, curvature);
     const double step = std::log(radii.last_m / radii.first_m) / (size.rows - 1);
     const double turn = span.rad / (size.columns - 1);
-    Spray spray{
-        .columns = size.columns,
-        .rows = size.rows,
-        .azimuth = glm::vec2(glm::dvec2(std::cos(span.first_rad), std::sin(span.first_rad))),
-        .columns_per_rad = static_cast<float>(1.0 / turn),
-        .first_m = static_cast<float>(radii.first_m),
-        .row_step = static_cast<float>(step),
-        .is_torn = veil.is_torn(),
-        .scale_m = static_cast<float>((veil.is_torn() ? veil.law().haze : veil.law().over_foam).scale_m),
-        .step_m = static_cast<float>(veil.law().ribbons.step_m),
-        .haze_per_m = static_cast<float>(veil.law().haze.extinction_per_m),
-        .forward = veil.is_torn() ? kTornForward : Spray{}.forward,
-        .eye_m = static_cast<float>(view.position_m.z)};
+    Spray spray = spray_by(veil.law());
+    spray.columns = size.columns;
+    spray.rows = size.rows;
+    spray.azimuth = glm::vec2(glm::dvec2(std::cos(span.first_rad), std::sin(span.first_rad)));
+    spray.columns_per_rad = static_cast<float>(1.0 / turn);
+    spray.first_m = static_cast<float>(radii.first_m);
+    spray.row_step = static_cast<float>(step);
+    spray.eye_m = static_cast<float>(view.position_m.z);
 
     const auto count = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
     using Vec = glm::vec<2, T>;

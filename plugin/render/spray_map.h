@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/lighting/spray.h"
+#include "core/plan/spray.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
@@ -18,6 +19,9 @@ SprayMapSize spray_map_size(int picture_width);
 
 // [bytes] of the map and of what it is made from.
 std::size_t spray_map_bytes(SprayMapSize size);
+
+// What the law alone says: no map, and without light.
+Spray spray_by(const SprayLaw& law);
 
 // Without light yet. Query 0 of the frame's plan is that of pictures (picture_plan()), with Product::Displacement; the footprints
 // of no texel are finer than the view's own pixels. Columns span what the view sees, or the whole circle where it sees its nadir or the zenith. Rows

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import play, sea
+from pelagic_ocean import drops, play, sea
 
 picture = sys.argv[-1] if sys.argv[-1].endswith(".png") else str(Path(tempfile.mkdtemp()) / "window.png")
 
@@ -72,6 +72,12 @@ def steps():
     with bpy.context.temp_override(**here):
         bpy.ops.ed.undo_push(message="64")
     yield lambda: np.ptp(numbers(obj.data)[:, 2]) > 0 and len(obj.data.vertices) == 65**2
+
+    with checking("drops of spray come from a timer, filled by the sea that has them, and go"):
+        obj.pelagic.effects.spray = obj.pelagic.effects.spray_drops = True
+        yield lambda: drops.drops_of(obj) and drops.drops_of(obj).data.vertices
+        obj.pelagic.effects.spray = obj.pelagic.effects.spray_drops = False
+        yield lambda: not drops.drops_of(obj) and not play.simulation_of(obj).is_building
 
     with checking("while another sea is built, the old one plays on; then the new one is shown"):
         before, is_done = height(obj), sea.Job.is_done

@@ -17,6 +17,7 @@ void add_task(pybind11::module_& module);
 void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
 void add_frame(pybind11::module_& module);
+void add_drops(pybind11::module_& module);
 void add_light(pybind11::module_& module);
 void add_picture(pybind11::module_& module);
 void add_bake(pybind11::module_& module);

@@ -9,17 +9,23 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/constants.h"
 #include "core/lighting/background.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/spray.h"
+#include "core/plan/spray.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/host/python/arrays.h"
 #include "plugin/host/python/bindings.h"
 #include "plugin/host/python/watch.h"
 #include "plugin/render/render.h"
+#include "plugin/render/spray_map.h"
 
 namespace pelagic::python {
 namespace {
@@ -61,6 +67,31 @@ PythonSky sky_of(const Scene& scene) {
 py::array image_of(const PythonSky& self, int width) {
     LatLong picture = beside_others([sky = self.sky, width] { return lat_long(*sky, width); });
     return array_of<float>(std::move(picture.radiance), {picture.height, picture.width});
+}
+
+// By the direction in which an eye looks, as lat_long() has directions.
+py::array spray_image_of(const PythonSky& self, const Scene& scene, int width) {
+    require_valid(scene);
+    if (width < kLeastLatLong || width > kLargestLatLong || width % 2 != 0)
+        throw py::value_error("width: accepted: even numbers from " + std::to_string(kLeastLatLong) + " to " +
+                              std::to_string(kLargestLatLong));
+    std::vector<glm::vec3> radiance = beside_others([sky = self.sky, scene, width] {
+        const auto prepared = prepare(scene);
+        Spray spray = spray_by(spray_law(scene, prepared->extent.significant_height_m));
+        light_spray(spray, {}, *sky, make_water(scene), law_coverage(scene));
+        std::vector<glm::vec3> made;
+        for (int row = 0; row < width / 2; ++row)
+            for (int column = 0; column < width; ++column) {
+                const double up = 0.5 * kPi - kTwoPi * (row + 0.5) / width;
+                const double azimuth = kPi - kTwoPi * (column + 0.5) / width;
+                const glm::dvec3 direction(std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth),
+                                           std::sin(up));
+                constexpr float kHeight_m = 2.0f;  // the haze above has next to none of the sun's light
+                made.push_back(spray_light(spray, glm::vec3(direction), kHeight_m));
+            }
+        return made;
+    });
+    return array_of<float>(std::move(radiance), {width / 2, width});
 }
 
 py::object foam_picture_of(const Scene& scene) {
@@ -127,6 +158,10 @@ void add_sky(py::module_& module) {
             "float32 (width/2, width, 3): the sky without the sun's disc as a lat-long picture, rows from the "
             "zenith down, the middle column +x, azimuth growing counter-clockwise, which is to the left: as "
             "light.sky reads one. Below the horizon: the sky's reflection in more sea. width: even, 8 … 16384.")
+        .def(
+            "spray_image", &spray_image_of, py::arg("scene"), py::arg("width"),
+            "float32 (width/2, width, 3): the radiance that the large drops of the scene's spray send on to an eye that looks in "
+            "each direction, where they hide all behind them; laid out as image(). The scene should be in this light.")
         .def("radiance", &radiance_towards, py::arg("directions"), py::kw_only(), py::arg("out") = py::none(),
              "float32 (n, 3): the sky without the sun's disc in these directions, float32 (n, 3), unit; into "
              "out, where that is given.");

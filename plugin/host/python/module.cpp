@@ -92,6 +92,7 @@ PYBIND11_MODULE(pelagic, module) {
     pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);
     pelagic::python::add_frame(module);
+    pelagic::python::add_drops(module);
     pelagic::python::add_light(module);
     pelagic::python::add_picture(module);
     pelagic::python::add_bake(module);

@@ -32,7 +32,7 @@ PARAMETERS_OF = {("__init__", "points"): "ArrayLike"} | {("shade", name): ARRAY 
 # Results that are objects, dictionaries and tuples to pybind11, by the name after the last dot.
 RESULTS = {
     "patch": f"tuple[{ARRAY}, NDArray[np.int32]]", "grid_quads": "NDArray[np.int32]", "quads": "NDArray[np.int32]",
-    "rest_m": ARRAY, "face_counts": "NDArray[np.int32]", "indices": "NDArray[np.int32]", "st": ARRAY, "cell_m": ARRAY, "pixel_m": ARRAY, "cell_axis_m": ARRAY, "pixel_axis_m": ARRAY, "image": ARRAY, "radiance": ARRAY, "faces": "NDArray[np.int32]",
+    "rest_m": ARRAY, "face_counts": "NDArray[np.int32]", "indices": "NDArray[np.int32]", "st": ARRAY, "cell_m": ARRAY, "pixel_m": ARRAY, "cell_axis_m": ARRAY, "pixel_axis_m": ARRAY, "image": ARRAY, "spray_image": ARRAY, "in_air": "dict[str, NDArray[Any]]", "radiance": ARRAY, "faces": "NDArray[np.int32]",
     "evaluate": f"dict[str, {ARRAY}]", "heights": f"dict[str, {ARRAY}]", "shade": f"dict[str, {ARRAY}]",
     "render": "dict[str, NDArray[Any]]", "read_mesh": "dict[str, NDArray[Any]]", "at": f"tuple[dict[str, {ARRAY}], "
     f"list[dict[str, {ARRAY}]]]", "keys": "list[dict[str, Any]]", "presets": "list[dict[str, Any]]",

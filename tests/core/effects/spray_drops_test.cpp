@@ -122,6 +122,18 @@ TEST(SprayDrops, AFrameAloneIsThatOfARun) {
 }
 
 // What a square shows of the sea beside another is what that one shows there.
+TEST(SprayDrops, DependOnNothingElseThatIsAskedOfTheSea) {
+    Scene scene = drops_scene();
+    scene.effects.foam_decay_s = 3.0;
+    const auto asked_for = [&](ProductSet what) {
+        SprayDrops<float> of(Sea<float>(make_plan(scene, {test::filtered(what, 1.0)})), scene.surface.size_m);
+        return drops_at(of, 1.0);
+    };
+    const std::vector<SprayDrop> alone = asked_for(products(Product::Displacement));
+    EXPECT_GT(alone.size(), 100u);
+    EXPECT_TRUE(are_same(alone, asked_for(products(Product::Displacement, Product::Coverage))));
+}
+
 TEST(SprayDrops, SquaresThatMeetShareThem) {
     SprayDrops<float> of = drops_over(drops_scene());
     std::map<std::int64_t, SprayDrop> here;

@@ -49,6 +49,23 @@ class Sky(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "accepted"):
                 self.sky.image(wrong)
 
+    def test_the_light_of_spray_is_brightest_towards_the_sun(self):
+        scene = scene_with_sun()
+        scene.sea.wind_speed_mps, scene.effects.spray = 20.0, True
+        image = self.sky.spray_image(scene, 64)
+        self.assertEqual(image.shape, (32, 64, 3))
+        row, column = divmod(int(image[..., 1].argmax()), 64)
+        pixel = 360.0 / 64
+        self.assertLess(abs(90.0 - (row + 0.5) * pixel - 25.0), pixel)
+        self.assertLess(abs(180.0 - (column + 0.5) * pixel - 40.0), pixel)
+        # Isotropic light comes out as it is: on average over all directions sky, sea and a sun spread over all of them.
+        weight = np.cos(np.pi / 2 - (np.arange(32) + 0.5) * np.pi / 32)[:, None]
+        mean = (image[..., 1] * weight).sum() / (weight.sum() * 64)
+        sun = self.sky.sun_irradiance[1] / self.sky.sun_direction[2] / (4 * np.pi)
+        self.assertTrue(0.9 * sun < mean < sun + self.sky.sky_irradiance[1] / np.pi + self.sky.sun_irradiance[1] / np.pi, (mean, sun))
+        with self.assertRaisesRegex(ValueError, "accepted"):
+            self.sky.spray_image(scene, 7)
+
     def test_radiance_is_written_into_the_callers_array(self):
         directions = vectors(1000, (0.0, 0.6, 0.8))
         wide = np.full((1000, 5), 9.0, np.float32)

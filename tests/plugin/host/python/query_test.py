@@ -113,5 +113,47 @@ class Heights(unittest.TestCase):
         self.assertLess(best_s, 0.02)
 
 
+class Drops(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scene = storm()
+        scene.waves.cascades = [pelagic.CascadeSize(150.0, 96), pelagic.CascadeSize(31.0, 64)]
+        cls.without = pelagic.Sea(scene, ["position"])
+        scene.effects.spray = scene.effects.spray_drops = True
+        cls.sea = pelagic.Sea(scene, ["position"])
+        cls.drops = pelagic.SprayDrops(cls.sea)
+
+    def test_a_moment_is_the_same_alone_and_in_a_run(self):
+        run = [self.drops.in_air(t) for t in (2.0, 2.1, 2.2)]
+        self.assertGreater(len(run[2]["id"]), 100)
+        alone = pelagic.SprayDrops(self.sea, self.drops.size_m).in_air(2.2)
+        for name, array in run[2].items():
+            np.testing.assert_array_equal(alone[name], array, name)
+        self.assertLess(np.abs(alone["position"][:, :2]).max(), 0.5 * self.drops.size_m)
+        np.testing.assert_allclose(alone["opacity"], -np.expm1(-alone["section_m2"] / (0.25 * np.pi * alone["width_m"] ** 2)), rtol=1e-5)
+        _, before, now = np.intersect1d(run[1]["id"], alone["id"], return_indices=True)
+        way = alone["position"][now] - run[1]["position"][before]
+        # Most fly nearly straight in a tenth of a second.
+        self.assertLess(np.median(np.abs(way - 0.05 * (alone["velocity"][now] + run[1]["velocity"][before]))), 2e-3)
+
+    def test_an_eye_sees_those_near_it(self):
+        eye = (10.0, 5.0, 3.0)
+        all_of_them, seen = self.drops.in_air(2.0, eye[:2]), self.drops.in_air(2.0, eye=eye)
+        away_m = np.linalg.norm(all_of_them["position"] - eye, axis=1)
+        part = np.clip(2.0 * away_m / 96.0 - 1.0, 0.0, 1.0)
+        share = 1.0 - part**2 * (3.0 - 2.0 * part)
+        kept = share > 0.0
+        self.assertTrue(2.0 < away_m.min() and not kept.all())
+        np.testing.assert_array_equal(seen["id"], all_of_them["id"][kept])
+        np.testing.assert_allclose(seen["section_m2"], (share * all_of_them["section_m2"])[kept], rtol=1e-5)
+
+    def test_none_and_refused(self):
+        self.assertEqual(pelagic.SprayDrops(self.without).in_air(2.0)["position"].shape, (0, 3))
+        for wrong in (lambda: self.drops.in_air(math.nan), lambda: self.drops.in_air(1.0, (math.inf, 0.0)),
+                      lambda: self.drops.in_air(1.0, eye=(0.0, 0.0, math.nan)), lambda: pelagic.SprayDrops(self.sea, 0.0)):
+            with self.assertRaisesRegex(ValueError, "accepted"):
+                wrong()
+
+
 if __name__ == "__main__":
     unittest.main()

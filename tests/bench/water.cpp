@@ -1,5 +1,5 @@
 // The water's formulas (core/lighting/water.glsl) beside Monte Carlo programs that know only Fresnel, Snell, and what
-// scatters and absorbs: `bench_water [transmission]`.
+// scatters and absorbs: `bench_water [transmission] [column]`, without an argument all of them.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,10 +11,14 @@
 #include <glm/vec3.hpp>
 #include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/lighting/water.h"
+#include "pelagic/scene.h"
+#include "plugin/light/light.h"
 #include "tests/bench/timing.h"
 #include "tests/core/lighting/optics.h"
 
@@ -215,12 +219,357 @@ void transmission() {
     }
 }
 
+// ---- Light in the water
+
+// A unit vector at this angle from an axis.
+glm::dvec3 turned(glm::dvec3 axis, double cosine, double round) {
+    const glm::dvec3 other = std::abs(axis.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+    const glm::dvec3 x = glm::normalize(glm::cross(other, axis)), y = glm::cross(axis, x);
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    return glm::normalize(axis * cosine + (x * std::cos(round) + y * std::sin(round)) * sine);
+}
+
+// Fournier and Forand's phase function in Mobley's form (2002), particles of index 1.10 and slope 3.5835: backscatters
+// 0.018. What it scatters by less than 2° counts as not scattered.
+class Particles {
+  public:
+    Particles() {
+        std::vector<double> sum{0.0};
+        for (int i = 0; i <= kFine; ++i) density_.push_back(whole(half_sine2(i)));
+        for (int i = 1; i <= kFine; ++i)
+            sum.push_back(sum.back() + 2.0 * kTwoPi * 0.5 * (density_[i - 1] + density_[i]) *
+                                           (half_sine2(i) - half_sine2(i - 1)));
+        part = sum.back();
+        for (double& density : density_) density /= part;
+        for (int i = 0, k = 1; i <= kSteps; ++i) {
+            const double wanted = part * i / kSteps;
+            while (k < kFine && sum[k] < wanted) ++k;
+            const double between = std::clamp((wanted - sum[k - 1]) / (sum[k] - sum[k - 1]), 0.0, 1.0);
+            cosines_.push_back(1.0 - 2.0 * std::lerp(half_sine2(k - 1), half_sine2(k), between));
+        }
+    }
+    double operator()(double cosine) const {
+        const double place = (1.0 + std::log(std::max(0.5 * (1.0 - cosine), 1e-30)) / kRange) * kFine;
+        if (place <= 0.0) return 0.0;
+        const int i = std::min(static_cast<int>(place), kFine - 1);
+        return std::lerp(density_[i], density_[i + 1], place - i);
+    }
+    double cosine(double lot) const {
+        const int i = std::min(static_cast<int>(lot * kSteps), kSteps - 1);
+        return std::lerp(cosines_[i], cosines_[i + 1], lot * kSteps - i);
+    }
+
+    // The mean over azimuths between directions of that cosine and others, which has no peaks; by the others' angle from the vertical.
+    std::vector<double> over_azimuths(double cosine) const {
+        constexpr int kAzimuths = 600;
+        const double sine = std::sqrt(1.0 - cosine * cosine);
+        std::vector<double> mean(kAngles + 1, 0.0);
+        for (int i = 0; i <= kAngles; ++i)
+            for (int k = 0; k < kAzimuths; ++k) {
+                const double x = (k + 0.5) / kAzimuths, angle = kPi * i / kAngles;
+                mean[i] +=
+                    3.0 * x * x / kAzimuths *
+                    (*this)(std::cos(angle) * cosine + std::sin(angle) * sine * std::cos(kPi * x * x * x));
+            }
+        return mean;
+    }
+    static double at(const std::vector<double>& mean, double cosine) {
+        const double place = std::acos(std::clamp(cosine, -1.0, 1.0)) / kPi * kAngles;
+        const int i = std::min(static_cast<int>(place), kAngles - 1);
+        return std::lerp(mean[i], mean[i + 1], place - i);
+    }
+
+    double part = 0.0;  // of what is scattered
+
+  private:
+    static constexpr int kAngles = 2000;
+    static constexpr int kFine = 1 << 13, kSteps = 1 << 14;
+    static constexpr double kRange = 8.0966;  // −ln sin² of half of 2°
+    static double half_sine2(int i) { return std::exp(kRange * (static_cast<double>(i) / kFine - 1.0)); }
+    static double whole(double half_sine2) {
+        constexpr double kN = 1.10, kSlope = 3.5835, kNu = 0.5 * (3.0 - kSlope);
+        const double delta = 4.0 / (3.0 * (kN - 1.0) * (kN - 1.0)) * half_sine2, power = std::pow(delta, kNu);
+        const double back = 4.0 / (3.0 * (kN - 1.0) * (kN - 1.0)), back_power = std::pow(back, kNu);
+        const double cosine = 1.0 - 2.0 * half_sine2;
+        return (kNu * (1.0 - delta) - (1.0 - power) +
+                (delta * (1.0 - power) - kNu * (1.0 - delta)) / half_sine2) /
+                   (4.0 * kPi * (1.0 - delta) * (1.0 - delta) * power) +
+               (1.0 - back_power) / (16.0 * kPi * (back - 1.0) * back_power) * (3.0 * cosine * cosine - 1.0);
+    }
+
+    std::vector<double> density_, cosines_;
+};
+
+// Water at one wavelength.
+class Medium {
+  public:
+    Medium(double absorption, double backscatter, double wavelength_nm)
+        : water_(0.00288 * std::pow(wavelength_nm / 500.0, -4.32)),
+          particles_((backscatter - 0.5 * water_) / 0.018 * of_particles().part),
+          extinction(absorption + water_ + particles_),
+          albedo((water_ + particles_) / extinction) {}
+
+    double phase(double cosine) const {
+        return (water_ * 0.06225 * (1.0 + 0.835 * cosine * cosine) + particles_ * of_particles()(cosine)) /
+               (water_ + particles_);
+    }
+    // Of directions of that cosine and of one of which over_azimuths() is given.
+    double phase(double cosine, double other, const std::vector<double>& mean) const {
+        const double cosine2 =
+            cosine * cosine * other * other + 0.5 * (1.0 - cosine * cosine) * (1.0 - other * other);
+        return (water_ * 0.06225 * (1.0 + 0.835 * cosine2) + particles_ * Particles::at(mean, cosine)) /
+               (water_ + particles_);
+    }
+    glm::dvec3 scattered(glm::dvec3 direction, Lot& lot) const {
+        double cosine;
+        if (lot() * (water_ + particles_) < particles_) {
+            cosine = of_particles().cosine(lot());
+        } else {
+            do cosine = 2.0 * lot() - 1.0;
+            while (lot() * 1.835 > 1.0 + 0.835 * cosine * cosine);
+        }
+        return turned(direction, cosine, kTwoPi * lot());
+    }
+
+    static const Particles& of_particles() {
+        static const Particles particles;
+        return particles;
+    }
+
+  private:
+    double water_, particles_;
+
+  public:
+    double extinction, albedo;  // [1/m]; of one collision
+};
+
+struct NamedWater {
+    const char* name;
+    WaterBands absorption, backscatter;
+};
+
+std::vector<NamedWater> waters() {
+    std::vector<NamedWater> all;
+    for (const auto& [name, type, chlorophyll] : {std::tuple{"ocean, C 0.1", WaterType::Ocean, 0.1},
+                                                  std::tuple{"jerlov-II", WaterType::JerlovII, 0.1},
+                                                  std::tuple{"coastal, C 1", WaterType::Coastal, 1.0},
+                                                  std::tuple{"jerlov-3C", WaterType::Jerlov3C, 0.1},
+                                                  std::tuple{"jerlov-5C", WaterType::Jerlov5C, 0.1}}) {
+        Scene scene;
+        scene.water.body = true;
+        scene.water.type = type;
+        scene.water.chlorophyll_mg_m3 = chlorophyll;
+        const WaterBody body = make_water(scene);
+        all.push_back({name, body.absorption, body.backscatter});
+    }
+    return all;
+}
+
+constexpr std::array kBands_nm{440.0, 480.0, 520.0, 555.0, 590.0, 630.0};
+
+double of_band(const WaterBands& bands, std::size_t i) {
+    const int place = static_cast<int>(i % 3);
+    return static_cast<double>(i < 3 ? bands.shorter[place] : bands.longer[place]);
+}
+
+double refracted(double cosine) {
+    return std::sqrt(1.0 - (1.0 - cosine * cosine) / (kIndex * kIndex));
+}
+
+// ---- A column over a floor
+
+constexpr std::array kColumnSuns{60.0, 30.0, 15.0};
+constexpr std::array kViews{0.0, 40.0, 75.0};
+constexpr std::array kDepths{0.5, 2.0, 5.0, 20.0, 100.0, 1e7};
+constexpr std::array kFloors{0.0, 0.3, 0.8};
+constexpr std::size_t kLights = kColumnSuns.size() + 1;  // the last one: a uniform sky
+constexpr std::size_t kMostBounces = 16;
+
+// By light and by how often it met the floor: radiance just below a level surface over the irradiance that enters there.
+using ColumnLight = std::array<std::array<double, kMostBounces>, kLights>;
+
+// Backwards from an eye that looks down at this angle in the air; azimuths averaged.
+ColumnLight column(const Medium& medium, double depth, double view, int paths, Lot& lot) {
+    ColumnLight sum{};
+    static const auto kAround = [] {
+        std::array<std::vector<double>, kColumnSuns.size()> all;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = Medium::of_particles().over_azimuths(refracted(std::sin(kColumnSuns[i] * kDegree)));
+        return all;
+    }();
+    const double c = medium.extinction;
+    const double start = refracted(std::cos(view)), open = std::exp(-c * depth / start);
+    const double to_floor = open < 1e-12 ? 0.0 : std::clamp(open, 0.1, 0.7);
+    // Light that comes down directly: its cosine, and its weight.
+    const auto light_from = [&](std::size_t light, double& cosine) {
+        if (light < kColumnSuns.size()) {
+            cosine = refracted(std::sin(kColumnSuns[light] * kDegree));
+            return 1.0;
+        }
+        constexpr double kReflected = 0.06751;  // of a uniform sky
+        const double outside = std::sqrt(1.0 - lot());
+        cosine = refracted(outside);
+        return (1.0 - fresnel(outside, kIndex)) / (1.0 - kReflected);
+    };
+    for (int path = 0; path < paths; ++path) {
+        glm::dvec3 to(std::sqrt(1.0 - start * start), 0.0, -start);
+        double height = 0.0, weight = 1.0;
+        std::size_t bounces = 0;
+        // The first flight is drawn so that thin and thick water are alike.
+        const bool falls = lot() < to_floor;
+        weight = falls ? open / to_floor : (1.0 - open) / (1.0 - to_floor);
+        double flight = falls ? 1e300 : -std::log(1.0 - lot() * (1.0 - open)) / c;
+        while (true) {
+            const double next = height + flight * to.z;
+            if (to.z < 0.0 && (next < -depth || flight > 1e299)) {
+                height = -depth;
+                if (++bounces == kMostBounces) break;
+                for (std::size_t light = 0; light < kLights; ++light) {
+                    double cosine;
+                    const double part = light_from(light, cosine);
+                    sum[light][bounces] += weight * part / kPi * std::exp(-c * depth / cosine);
+                }
+                to = turned({0.0, 0.0, 1.0}, std::sqrt(1.0 - lot()), kTwoPi * lot());
+            } else if (to.z > 0.0 && next > 0.0) {
+                height = 0.0;
+                weight *= fresnel(to.z, 1.0 / kIndex);
+                to.z = -to.z;
+            } else {
+                height = next;
+                weight *= medium.albedo;
+                for (std::size_t light = 0; light < kLights; ++light) {
+                    double cosine;
+                    double part = light_from(light, cosine);
+                    if (light < kColumnSuns.size()) {
+                        part *= medium.phase(to.z, cosine, kAround[light]);
+                    } else {
+                        const double sine = std::sqrt(1.0 - cosine * cosine);
+                        part *= medium.phase(to.z * cosine +
+                                             std::hypot(to.x, to.y) * sine * std::cos(kTwoPi * lot()));
+                    }
+                    sum[light][bounces] += weight * part / cosine * std::exp(c * height / cosine);
+                }
+                to = medium.scattered(to, lot);
+            }
+            if (weight < 0.02) {
+                if (lot() > 0.1) break;
+                weight *= 10.0;
+            }
+            flight = -std::log(1.0 - lot()) / c;
+        }
+    }
+    for (auto& light : sum)
+        for (double& part : light) part /= paths;
+    return sum;
+}
+
+struct Errors {
+    double square = 0.0, worst = 0.0, noise = 0.0;
+    int count = 0;
+    void add(double error, double deviation) {
+        square += error * error;
+        noise += deviation * deviation;
+        if (std::abs(error) > std::abs(worst)) worst = error;
+        ++count;
+    }
+    double rms() const { return std::sqrt(square / std::max(count, 1)); }
+    double rms_noise() const { return std::sqrt(noise / std::max(count, 1)); }
+};
+
+void columns() {
+    constexpr int kBatches = 8, kPaths = 5000;
+    const std::vector<NamedWater> all = waters();
+    struct Row {
+        std::size_t water, band, depth, view;
+        std::array<ColumnLight, kBatches> found;
+    };
+    std::vector<Row> rows;
+    for (std::size_t water = 0; water < all.size(); ++water)
+        for (std::size_t band = 0; band < kBands_nm.size(); ++band)
+            for (std::size_t depth = 0; depth < kDepths.size(); ++depth)
+                for (std::size_t view = 0; view < kViews.size(); ++view)
+                    rows.push_back({water, band, depth, view, {}});
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+        Row& row = rows[i];
+        const NamedWater& water = all[row.water];
+        const Medium medium(of_band(water.absorption, row.band), of_band(water.backscatter, row.band),
+                            kBands_nm[row.band]);
+        Lot lot(1 + i);
+        for (ColumnLight& one : row.found)
+            one = column(medium, kDepths[row.depth], kViews[row.view] * kDegree, kPaths, lot);
+    });
+
+    std::vector<std::array<Errors, kDepths.size()>> by_depth(all.size() * kFloors.size());
+    std::array<std::array<std::array<Errors, kLights>, kViews.size()>, 2>
+        by_view{};  // of deep water, and with a floor
+    Errors sun, sky;
+    optics::Optics shading;
+    for (const Row& row : rows)
+        for (std::size_t light = 0; light < kLights; ++light)
+            for (std::size_t floor = 0; floor < kFloors.size(); ++floor) {
+                const bool deep = kDepths[row.depth] > 1e6;
+                if (deep && floor > 0) continue;
+                double mean = 0.0, square = 0.0;
+                for (const ColumnLight& found : row.found) {
+                    double one = 0.0;
+                    for (std::size_t k = kMostBounces; k-- > 0;) one = one * kFloors[floor] + found[light][k];
+                    mean += one / kBatches;
+                    square += one * one / kBatches;
+                }
+                optics::Optics::WaterWay way{};
+                const bool is_sky = light == kColumnSuns.size();
+                way.sun = is_sky
+                              ? 1.0f
+                              : static_cast<float>(1.0 / refracted(std::sin(kColumnSuns[light] * kDegree)));
+                way.eye = static_cast<float>(1.0 / refracted(std::cos(kViews[row.view] * kDegree)));
+                way.returned = 1.0f - shading.entering_from_sky(glm::vec3(0.0f)) / (1.34f * 1.34f);
+                way.floor_m = static_cast<float>(kDepths[row.depth]);
+                const NamedWater& water = all[row.water];
+                const bool shorter = row.band < 3;
+                const auto back =
+                    shading.water_back(shorter ? water.absorption.shorter : water.absorption.longer,
+                                       shorter ? water.backscatter.shorter : water.backscatter.longer,
+                                       glm::vec3(static_cast<float>(kFloors[floor])), way);
+                const double said =
+                    static_cast<double>((is_sky ? back.sky : back.sun)[static_cast<int>(row.band % 3)]);
+                const double error = said / mean - 1.0,
+                             noise = std::sqrt(std::max(0.0, square - mean * mean) / (kBatches - 1)) / mean;
+                (is_sky ? sky : sun).add(error, noise);
+                by_view[deep ? 0 : 1][row.view][light].add(error, noise);
+                if (!is_sky) by_depth[row.water * kFloors.size() + floor][row.depth].add(error, noise);
+            }
+    std::printf(
+        "Radiance below the surface over the irradiance that enters: water_back() over the traced one, rms [worst], %%\n"
+        "  suns 60, 30, 15°, views 0, 40, 75° in the air, six wavelengths; depths 0.5, 2, 5, 20, 100 m, and deep\n");
+    for (std::size_t water = 0; water < all.size(); ++water)
+        for (std::size_t floor = 0; floor < kFloors.size(); ++floor) {
+            std::printf("    %-13s floor %.1f: ", all[water].name, kFloors[floor]);
+            for (const Errors& of : by_depth[water * kFloors.size() + floor])
+                if (of.count > 0) std::printf("  %4.1f [%+5.1f]", 100.0 * of.rms(), 100.0 * of.worst);
+            std::printf("\n");
+        }
+    for (const bool floors : {false, true}) {
+        std::printf("  %s, by view; suns 60, 30, 15°, and a uniform sky\n", floors ? "over a floor" : "deep");
+        for (std::size_t view = 0; view < kViews.size(); ++view) {
+            std::printf("    %2.0f°: ", kViews[view]);
+            for (const Errors& of : by_view[floors][view])
+                std::printf("  %4.1f [%+5.1f]", 100.0 * of.rms(), 100.0 * of.worst);
+            std::printf("\n");
+        }
+    }
+    std::printf(
+        "    suns: rms %.1f %% (4: %s), worst %+.1f %% (12: %s); sky: rms %.1f, worst %+.1f %%; noise %.2f %%\n",
+        100.0 * sun.rms(), verdict(sun.rms() <= 0.04), 100.0 * sun.worst,
+        verdict(std::abs(sun.worst) <= 0.12), 100.0 * sky.rms(), 100.0 * sky.worst, 100.0 * sun.rms_noise());
+}
+
 }  // namespace
 }  // namespace pelagic::bench
 
 int main(int argc, char** argv) {
     using Table = std::pair<std::string, void (*)()>;
-    const std::vector<Table> tables{{"transmission", pelagic::bench::transmission}};
+    const std::vector<Table> tables{{"transmission", pelagic::bench::transmission},
+                                    {"column", pelagic::bench::columns}};
     for (const auto& [name, print] : tables) {
         const bool asked =
             argc < 2 || std::any_of(argv + 1, argv + argc, [&](const char* said) { return name == said; });

@@ -1,5 +1,5 @@
 // The water's formulas (core/lighting/water.glsl) beside Monte Carlo programs that know only Fresnel, Snell, and what
-// scatters and absorbs: `bench_water [transmission] [column] [furnace]`, without an argument all of them.
+// scatters and absorbs: `bench_water [transmission] [column] [furnace] [crest]`, without an argument all of them.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <random>
@@ -622,6 +623,355 @@ void furnaces() {
     furnace(9);
 }
 
+// ---- Light through crests
+
+// Stokes' wave to third order, crests along y, at x = 0.
+class SteepWave {
+  public:
+    SteepWave(double steepness, double wavelength_m) : length(wavelength_m), k(kTwoPi / wavelength_m) {
+        const double s = steepness;
+        for (int i = 0; i <= kPieces; ++i) {
+            const double phase = kTwoPi * i / kPieces;
+            heights_.push_back((s * std::cos(phase) + 0.5 * s * s * std::cos(2.0 * phase) +
+                                0.375 * s * s * s * std::cos(3.0 * phase)) /
+                               k);
+            slopes_.push_back(-s * std::sin(phase) - s * s * std::sin(2.0 * phase) -
+                              1.125 * s * s * s * std::sin(3.0 * phase));
+            if (i == kPieces) continue;
+            height2 += heights_.back() * heights_.back() / kPieces;
+            slope2 += slopes_.back() * slopes_.back() / kPieces;
+        }
+        const auto [least, most] = std::ranges::minmax_element(heights_);
+        trough = *least;
+        crest = *most;
+    }
+    double height(double x) const { return at(heights_, x); }
+    double slope(double x) const { return at(slopes_, x); }
+    glm::dvec3 normal(double x) const { return glm::normalize(glm::dvec3(-slope(x), 0.0, 1.0)); }
+
+    // How far a ray goes on its side of the surface, at most `most`. Below: starts in the water.
+    double way(glm::dvec3 from, glm::dvec3 to, bool below, double most) const {
+        const double side = below ? 1.0 : -1.0;
+        const auto beyond = [&](double t) {
+            const double z = from.z + t * to.z;
+            return side * (z - height(from.x + t * to.x)) > 0.0;
+        };
+        const double edge = below ? trough : crest, other = below ? crest : trough;
+        double t = 1e-6 * length;
+        if (side * (from.z - edge) < 0.0) {
+            if (side * to.z <= 0.0) return most;
+            t = std::max(t, (edge - from.z) / to.z);
+        }
+        const double step = length / 64.0 / std::max(std::hypot(to.x, to.z), 1e-9);
+        while (t < most) {
+            const double z = from.z + t * to.z;
+            if (side * (z - edge) < -1e-12 * length && side * to.z < 0.0) return most;
+            if (side * (z - other) > 0.0) break;
+            if (beyond(t + step)) break;
+            t += step;
+        }
+        if (t >= most) return most;
+        double open = t, shut = t + step;
+        for (int i = 0; i < 40; ++i) {
+            const double middle = 0.5 * (open + shut);
+            (beyond(middle) ? shut : open) = middle;
+        }
+        return std::min(open, most);
+    }
+
+    double length, k, height2 = 0.0, slope2 = 0.0, trough = 0.0, crest = 0.0;
+
+  private:
+    static constexpr int kPieces = 2048;
+    double at(const std::vector<double>& table, double x) const {
+        const double place = (x / length - std::floor(x / length)) * kPieces;
+        const auto i = std::min(static_cast<std::size_t>(place), std::size_t{kPieces - 1});
+        return std::lerp(table[i], table[i + 1], place - static_cast<double>(i));
+    }
+    std::vector<double> heights_, slopes_;
+};
+
+glm::dvec3 into_water(glm::dvec3 to, glm::dvec3 normal) {
+    const double cosine = -glm::dot(to, normal);
+    return glm::normalize(to / kIndex + (cosine / kIndex - refracted(cosine)) * normal);
+}
+
+// The sun's rays below a steep wave, at even steps along it; per irradiance across the sun's beam.
+class Beams {
+  public:
+    Beams(const SteepWave& wave, glm::dvec3 to_sun) : wave_(wave), exact_to_(-0.4 * wave.length) {
+        for (int i = 0; i < kRays; ++i) {
+            const double x = wave.length * i / kRays;
+            Ray ray{{x, 0.0, wave.height(x)}, {}, 0.0};
+            const glm::dvec3 normal = wave.normal(x);
+            const double cosine = glm::dot(to_sun, normal);
+            const glm::dvec3 above = ray.from + 1e-9 * wave.length * normal;
+            if (cosine > 0.0 && !(wave.way(above, to_sun, false, 40.0 * wave.length) < 39.0 * wave.length)) {
+                ray.to = into_water(-to_sun, normal);
+                ray.flux = (1.0 - fresnel(cosine, kIndex)) * cosine / normal.z * wave.length / kRays;
+                least_ = std::min(least_, -ray.to.x / ray.to.z);
+                most_ = std::max(most_, -ray.to.x / ray.to.z);
+                lit_.push_back(i);
+            }
+            rays_.push_back(ray);
+        }
+    }
+
+    // Sunlight there over its beam's irradiance, times the phase function for light that goes on along −to; what is lost on its way included.
+    double scattered(const Medium& medium, glm::dvec3 place, glm::dvec3 to, Lot& lot) const {
+        if (lit_.empty()) return 0.0;
+        if (place.z < exact_to_) {  // so deep that waves hardly matter: one ray, at any place
+            const Ray& ray = rays_[lit_[static_cast<std::size_t>(lot() * static_cast<double>(lit_.size()))]];
+            const double far = (place.z - ray.from.z) / ray.to.z;
+            return static_cast<double>(lit_.size()) * ray.flux / wave_.length / -ray.to.z *
+                   std::exp(-medium.extinction * far) * medium.phase(-glm::dot(ray.to, to));
+        }
+        double sum = 0.0;
+        const double high = wave_.crest - place.z, low = std::max(wave_.trough - place.z, 0.0);
+        const double each = wave_.length / kRays;
+        const double first = place.x - std::max(most_ * high, most_ * low),
+                     last = place.x - std::min(least_ * high, least_ * low);
+        const int start = static_cast<int>(std::floor(first / each)) - 1,
+                  end = static_cast<int>(std::ceil(last / each)) + 1;
+        for (int i = start; i < end; ++i) {
+            const Ray &one = rays_[wrapped(i)], &next = rays_[wrapped(i + 1)];
+            if (!(one.flux > 0.0 && next.flux > 0.0)) continue;
+            const double x = place.x - each * i, x_next = x - each;
+            const double off = x * one.to.z - (place.z - one.from.z) * one.to.x,
+                         off_next = x_next * next.to.z - (place.z - next.from.z) * next.to.x;
+            if (off * off_next > 0.0 || off == off_next) continue;
+            const double part = off / (off - off_next);
+            const glm::dvec3 from(each * (i + part), 0.0, std::lerp(one.from.z, next.from.z, part));
+            const glm::dvec3 way = glm::dvec3(place.x, 0.0, place.z) - from;
+            const glm::dvec3 direction = glm::normalize(one.to + part * (next.to - one.to));
+            const double far = glm::dot(way, direction);
+            if (far <= 0.0) continue;
+            bool leaves = false;
+            for (int j = 1; j < 6 && !leaves; ++j) {
+                const glm::dvec3 between = from + way * (j / 6.0);
+                leaves = between.z > wave_.height(between.x) + 1e-6 * wave_.length;
+            }
+            if (leaves) continue;
+            sum += std::lerp(one.flux, next.flux, part) / std::abs(off - off_next) *
+                   std::exp(-medium.extinction * far) * medium.phase(-glm::dot(direction, to));
+        }
+        return sum;
+    }
+
+  private:
+    struct Ray {
+        glm::dvec3 from, to;
+        double flux;
+    };
+    static constexpr int kRays = 256;
+    static std::size_t wrapped(int i) { return static_cast<std::size_t>(i & (kRays - 1)); }
+
+    const SteepWave& wave_;
+    double exact_to_;
+    std::vector<Ray> rays_;
+    std::vector<std::size_t> lit_;
+    double least_ = 1e9, most_ = -1e9;
+};
+
+struct CrestSun {
+    double elevation_deg;
+    bool is_before;
+    glm::dvec3 to() const {
+        const double e = elevation_deg * kDegree;
+        return {(is_before ? 1.0 : -1.0) * std::cos(e), 0.0, std::sin(e)};
+    }
+};
+constexpr std::array<CrestSun, 6> kCrestSuns{
+    {{5.0, true}, {15.0, true}, {35.0, true}, {5.0, false}, {15.0, false}, {35.0, false}}};
+using CrestValues = std::array<double, kCrestSuns.size()>;
+
+// Radiance that comes up to a place just below the surface, against `to`, by sun.
+CrestValues below(const SteepWave& wave, const std::vector<Beams>& beams, const Medium& medium,
+                  glm::dvec3 place, glm::dvec3 to, int paths, Lot& lot) {
+    CrestValues sum{};
+    for (int path = 0; path < paths; ++path) {
+        glm::dvec3 at = place, along = to;
+        double weight = 1.0;
+        for (int first = 1;; first = 0) {
+            const double drawn = first ? (path + lot()) / paths : lot();
+            const double flight = std::min(-std::log(1.0 - drawn) / medium.extinction, 1e6);
+            const double open = wave.way(at, along, true, flight);
+            at += open * along;
+            if (open < flight) {
+                const glm::dvec3 normal = wave.normal(at.x);
+                const double cosine = glm::dot(along, normal);
+                if (cosine <= 0.0) break;
+                weight *= fresnel(cosine, 1.0 / kIndex);
+                along -= 2.0 * cosine * normal;
+                at.z = std::min(at.z, wave.height(at.x) - 1e-9 * wave.length);
+            } else {
+                weight *= medium.albedo;
+                for (std::size_t i = 0; i < beams.size(); ++i)
+                    sum[i] += weight * beams[i].scattered(medium, at, along, lot) / paths;
+                along = medium.scattered(along, lot);
+            }
+            if (weight < 0.05) {
+                if (lot() > 0.2) break;
+                weight *= 5.0;
+            }
+        }
+    }
+    return sum;
+}
+
+struct CrestPoint {
+    double steepness, length_m;
+    std::size_t water, band;
+    double x, slope, height;       // what the eye sees there
+    CrestValues traced{}, flat{};  // radiance above the surface before its transmission
+    CrestValues noise{};           // of ln traced
+    CrestValues said{}, without{}, level{};
+};
+
+constexpr double kEyeElevation = 5.0 * kDegree;
+constexpr int kCrestPlaces = 10;
+
+void crests() {
+    constexpr int kPaths = 1500, kBatches = 4;
+    const std::vector<NamedWater> every = waters();
+    const std::vector<NamedWater> all{every[0], every[3]};
+    constexpr std::array<std::size_t, 3> kSomeBands{0, 3, 5};
+    std::vector<CrestPoint> points;
+    const glm::dvec3 looks(std::cos(kEyeElevation), 0.0, -std::sin(kEyeElevation));
+    for (std::size_t water = 0; water < all.size(); ++water)
+        for (const std::size_t band : kSomeBands)
+            for (const double length : {10.0, 40.0, 100.0})
+                for (const double steepness : {0.2, 0.3, 0.4})
+                    for (int i = 0; i < kCrestPlaces; ++i) {
+                        const SteepWave wave(steepness, length);
+                        const glm::dvec3 eye(length * (i + 0.5) / kCrestPlaces, 0.0, wave.crest + 1e-6);
+                        const double x = eye.x + looks.x * wave.way(eye, looks, false, 1e9);
+                        points.push_back({steepness, length, water, band, x, wave.slope(x), wave.height(x)});
+                    }
+    // The level sea's, by water and band.
+    std::array<std::array<CrestValues, 6>, 2> level{};
+    const auto medium_of = [&](std::size_t water, std::size_t band) {
+        return Medium(of_band(all[water].absorption, band), of_band(all[water].backscatter, band),
+                      kBands_nm[band]);
+    };
+    const auto trace = [&](const SteepWave& wave, double x, const Medium& medium, int count,
+                           std::uint64_t seed) {
+        std::vector<Beams> beams;
+        for (const CrestSun& sun : kCrestSuns) beams.emplace_back(wave, sun.to());
+        Lot lot(seed);
+        const glm::dvec3 place(x, 0.0, wave.height(x) - 1e-9 * wave.length);
+        CrestValues seen = below(wave, beams, medium, place, into_water(looks, wave.normal(x)), count, lot);
+        for (double& value : seen) value /= kIndex * kIndex;
+        return seen;
+    };
+    tbb::parallel_for(std::size_t{0}, points.size() + 6, [&](std::size_t i) {
+        if (i < 6) {
+            const std::size_t water = i / 3, band = kSomeBands[i % 3];
+            level[water][band] = trace(SteepWave(0.0, 10.0), 0.0, medium_of(water, band), 60 * kPaths, i);
+            return;
+        }
+        CrestPoint& point = points[i - 6];
+        CrestValues square{};
+        for (std::uint64_t batch = 0; batch < kBatches; ++batch) {
+            const CrestValues one = trace(SteepWave(point.steepness, point.length_m), point.x,
+                                          medium_of(point.water, point.band), kPaths, kBatches * i + batch);
+            for (std::size_t sun = 0; sun < one.size(); ++sun) {
+                point.traced[sun] += one[sun] / kBatches;
+                square[sun] += one[sun] * one[sun] / kBatches;
+            }
+        }
+        for (std::size_t sun = 0; sun < square.size(); ++sun)
+            point.noise[sun] = std::sqrt(
+                std::max(0.0, square[sun] / (point.traced[sun] * point.traced[sun]) - 1.0) / (kBatches - 1));
+    });
+
+    optics::Optics shading;
+    for (CrestPoint& point : points) {
+        point.flat = level[point.water][point.band];
+        const SteepWave wave(point.steepness, point.length_m);
+        optics::Optics::WaterLook look{};
+        look.has_body = true;
+        look.floor_m = 1e9f;
+        const glm::vec3 a(static_cast<float>(of_band(all[point.water].absorption, point.band))),
+            b(static_cast<float>(of_band(all[point.water].backscatter, point.band)));
+        look.absorption = {a, a};
+        look.backscatter = {b, b};
+        look.crest_per_m = static_cast<float>(std::sqrt(wave.slope2 / wave.height2));
+        const auto said = [&](const CrestSun& sun, bool is_level, float gain) {
+            optics::Optics::WaterLook here = look;
+            here.crest_light = gain;
+            here.waves = is_level ? glm::vec3(1e-10f, 1e-10f, 0.0f)
+                                  : glm::vec3(static_cast<float>(wave.slope2), 1e-10f, 0.0f);
+            optics::Optics::SeenBody seen{};
+            if (!is_level)
+                seen.crest =
+                    glm::vec3(static_cast<float>(point.slope), 0.0f, static_cast<float>(point.height));
+            const glm::vec3 irradiance(static_cast<float>(sun.to().z));
+            const glm::vec3 normal(glm::normalize(glm::dvec3(is_level ? 0.0 : -point.slope, 0.0, 1.0)));
+            return static_cast<double>(shading
+                                           .body_radiance(glm::vec3(-looks), normal, glm::vec3(sun.to()),
+                                                          irradiance, glm::vec3(1.0f), glm::vec3(0.0f), here,
+                                                          seen)
+                                           .y);
+        };
+        for (std::size_t i = 0; i < kCrestSuns.size(); ++i) {
+            point.said[i] = said(kCrestSuns[i], false, 1.0f);
+            point.without[i] = said(kCrestSuns[i], false, 0.0f);
+            point.level[i] = said(kCrestSuns[i], true, 0.0f);
+        }
+    }
+
+    const auto print = [&](const char* what,
+                           const std::function<bool(const CrestPoint&, std::size_t)>& is_in) {
+        std::printf("    %-22s", what);
+        for (std::size_t i = 0; i < kCrestSuns.size(); ++i) {
+            Errors with, without;
+            double mean = 0.0, within = 0.0, seen = 0.0;
+            for (const CrestPoint& point : points) {
+                if (!is_in(point, i)) continue;
+                const double traced = std::log(point.traced[i] / point.flat[i]);
+                const double error = std::log(point.said[i] / point.level[i]) - traced;
+                with.add(error, point.noise[i]);
+                without.add(std::log(point.without[i] / point.level[i]) - traced, 0.0);
+                mean += error;
+                seen += traced;
+                within += std::abs(error) <= 0.35 ? 1.0 : 0.0;
+            }
+            std::printf(" | %.2f; %.2f (%+.2f, %2.0f %%; %.2f)", std::exp(seen / with.count), with.rms(),
+                        mean / with.count, 100.0 * within / with.count, without.rms());
+        }
+        std::printf("\n");
+    };
+    std::printf(
+        "Light through crests: radiance before the surface's transmission over a level sea's; the traced one's mean, and\n"
+        "body_radiance()'s error in ln: rms (mean, share within 0.35; rms without the crests' light)\n"
+        "    suns before the eye at 5, 15, 35°, behind it at 5, 15, 35°\n");
+    print("all", [](const CrestPoint&, std::size_t) { return true; });
+    for (const double steepness : {0.2, 0.3, 0.4})
+        print(("kA " + std::to_string(steepness).substr(0, 3)).c_str(),
+              [&](const CrestPoint& point, std::size_t) { return point.steepness == steepness; });
+    for (const double length : {10.0, 40.0, 100.0})
+        print((std::to_string(static_cast<int>(length)) + " m").c_str(),
+              [&](const CrestPoint& point, std::size_t) { return point.length_m == length; });
+    for (std::size_t water = 0; water < all.size(); ++water)
+        for (const std::size_t band : kSomeBands)
+            print((std::string(all[water].name) + ", " + std::to_string(static_cast<int>(kBands_nm[band])))
+                      .c_str(),
+                  [&](const CrestPoint& point, std::size_t) {
+                      return point.water == water && point.band == band;
+                  });
+    print("upper half, facing",
+          [](const CrestPoint& point, std::size_t) { return point.height > 0.0 && point.slope > 0.0; });
+    print("lower half, facing",
+          [](const CrestPoint& point, std::size_t) { return point.height <= 0.0 && point.slope > 0.0; });
+    print("more than a third",
+          [](const CrestPoint& point, std::size_t sun) { return point.traced[sun] > point.flat[sun] / 3.0; });
+    Errors noise;
+    for (const CrestPoint& point : points)
+        for (const double one : point.noise) noise.add(0.0, one);
+    std::printf("    noise: rms %.2f in ln\n", noise.rms_noise());
+}
+
 }  // namespace
 }  // namespace pelagic::bench
 
@@ -629,7 +979,8 @@ int main(int argc, char** argv) {
     using Table = std::pair<std::string, void (*)()>;
     const std::vector<Table> tables{{"transmission", pelagic::bench::transmission},
                                     {"column", pelagic::bench::columns},
-                                    {"furnace", pelagic::bench::furnaces}};
+                                    {"furnace", pelagic::bench::furnaces},
+                                    {"crest", pelagic::bench::crests}};
     for (const auto& [name, print] : tables) {
         const bool asked =
             argc < 2 || std::any_of(argv + 1, argv + argc, [&](const char* said) { return name == said; });

@@ -101,6 +101,7 @@ glm::vec3 reflectance_of(const WaterBody& water) {
                                          .eye = 1.0f / shading.refracted_cosine(0.70710678f),
                                          .returned = 0.0f,
                                          .crest_m = 0.0f,
+                                         .crest_per_m = 0.0f,
                                          .fresh_bubbles = 0.0f,
                                          .old_bubbles = 0.0f,
                                          .bubbles_m = 0.0f,

@@ -78,18 +78,21 @@ struct WaterWay {
     float sun;        // 1/cosine below the surface: of the sun's light on its way down, and of what the eye sees
     float eye;
     float returned;   // of what comes up, the part that the surface sends down again
-    float crest_m;    // through a crest
+    float crest_m;    // through a crest, and the wavenumber of waves that have such
+    float crest_per_m;
     float fresh_bubbles;  // ¾ of their cross-section over the volume: b_g L [-], of each kind of foam times its coverage
     float old_bubbles;
     float bubbles_m;
     float floor_m;
 };
 
-// Upward radiance just below the surface over the irradiance that enters there: of the sun, of the sky, and of the sun through a crest.
+// Upward radiance just below the surface over the irradiance that enters there: of the sun, of the sky, of the sun through a crest, and
+// the part of the sun's that entered so near that waves' shape shows.
 struct WaterBack {
     vec3 sun;
     vec3 sky;
     vec3 crest;
+    vec3 near;
 };
 
 // 1/cosine of the light of a uniform sky below the surface, in the mean.
@@ -145,33 +148,41 @@ WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_col
         diffuse += more;
     }
     vec3 again = 1.0f / (1.0f - way.returned * diffuse);
-    return WaterBack(sun * again, sky * again, sun * again * exp(-0.3f * way.crest_m * absorption));
+    sun *= again;
+    return WaterBack(sun, sky * again, sun * exp(-way.crest_m * (0.4f * absorption + 0.9f * backscatter)),
+                     sun * (both / (both + 0.75f * way.crest_per_m)));
 }
 
-// Light of a low sun that enters a crest behind and leaves it before the eye: how much of the sun's light in the water is such light,
-// how far it goes in the crest, and its irradiance over that across the sun's beam. After a Monte Carlo of steep waves in two dimensions,
-// rms 0.31 in ln.
+// Sunlight that enters a wave with crests, over its irradiance across the sun's beam: at the place itself, which is what comes back where
+// light goes less far than waves are long, and on a crest's other side, for the eye that looks through it towards a low sun: how
+// much of such a face the place is, and how far that light goes in the crest. Fitted to a Monte Carlo of steep waves in two dimensions
+// (tests/bench/README.md, the water).
 struct CrestLight {
+    float here;
+    float through;
     float share;
     float way_m;
-    float entering;
 };
 
-CrestLight light_through_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m) {
+CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec3 variance) {
     float level = sqrt(to_sun.x * to_sun.x + to_sun.y * to_sun.y);
-    if (!(per_m > 0.0f && level > 1.0e-3f && to_sun.z > 0.0f)) return CrestLight(0.0f, 0.0f, 0.0f);
+    if (!(level > 1.0e-3f)) level = 1.0e-3f;
     vec2 ahead = vec2(to_sun.x, to_sun.y) / level;
     float slope = crest.x * ahead.x + crest.y * ahead.y;
     float height = per_m * crest.z;
-    float steepness = sqrt(slope * slope + height * height);
-    if (!(steepness > 1.0e-4f)) return CrestLight(0.0f, 0.0f, 0.0f);
-    float phase = atan(abs(slope), height);  // from the crest, as of a sine
-    float behind = 0.5f * steepness;         // slope of the face that the sun enters
-    float cosine = (behind * level + to_sun.z) * inversesqrt(1.0f + behind * behind);
+    float steepness = max(sqrt(slope * slope + height * height), 1.0e-4f);
+    float phase = atan(abs(slope), height + 1.0e-6f);  // from the crest, as of a sine
+    float behind = 0.5f * steepness;                   // slope of the face that the sun enters
+    float there = (behind * level + to_sun.z) * inversesqrt(1.0f + behind * behind);
+    float here = (to_sun.z - slope * level) * inversesqrt(1.0f + crest.x * crest.x + crest.y * crest.y);
+    float lit = 0.0f;
+    if (here > 0.0f) {
+        float across = sqrt(max(1.0f - here * here, 0.0f));
+        lit = here * entering(vec3(ahead * across, here), variance);
+    }
     float towards = max(-(to_eye.x * ahead.x + to_eye.y * ahead.y), 0.0f);
-    float share = smoothstep(0.0f, 0.15f, steepness) * towards * smoothstep(-0.5f, 0.5f, slope / steepness) *
-                  smoothstep(-0.5f, 0.5f, height / steepness);
-    return CrestLight(share, 2.0f * phase / per_m, 1.4f * (1.0f - fresnel_exact(cosine, kWaterIndex)) * cosine);
+    float share = smoothstep(0.0f, 0.15f, steepness) * towards * smoothstep(-0.5f, 0.5f, slope / steepness);
+    return CrestLight(lit, 1.25f * (1.0f - fresnel_exact(there, kWaterIndex)) * there, share, 2.0f * phase / per_m);
 }
 
 // Bubbles of clean air, larger ones first gone: ¾ of their cross-section over the volume at the surface [1/m], by the age of the foam
@@ -198,17 +209,23 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     way.bubbles_m = look.bubbles_m;
     way.fresh_bubbles = look.bubbles * seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) * look.bubbles_m;
     way.old_bubbles = look.bubbles * seen.old * bubbles_per_m(seen.age_s, look.bubbles_m) * look.bubbles_m;
-    CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f);
-    if (look.crest_light > 0.0f) crest = light_through_crest(to_eye, to_sun, seen.crest, look.crest_per_m);
+    bool has_crests = look.crest_light > 0.0f && look.crest_per_m > 0.0f && to_sun.z > 0.0f;
+    CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f, 0.0f);
+    if (has_crests) crest = light_at_crest(to_eye, to_sun, seen.crest, look.crest_per_m, look.waves);
     way.crest_m = crest.way_m;
+    way.crest_per_m = look.crest_per_m;
 
     WaterBack shorter = water_back(look.absorption.shorter, look.backscatter.shorter, kOwnShorter, look.floor_colour.shorter, way);
     WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, kOwnLonger, look.floor_colour.longer, way);
-    vec3 level = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves) *
-                 colour_of(WaterBands(shorter.sun, longer.sun));
-    vec3 up = level + sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
-    if (crest.share > 0.0f)
-        up += look.crest_light * crest.share *
-              (sun_beam * crest.entering * colour_of(WaterBands(shorter.crest, longer.crest)) - level);
+    vec3 into = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves);
+    vec3 back = colour_of(WaterBands(shorter.sun, longer.sun));
+    vec3 up = into * back + sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
+    if (has_crests) {
+        vec3 near = colour_of(WaterBands(shorter.near, longer.near));
+        vec3 through = colour_of(WaterBands(shorter.crest, longer.crest));
+        up += look.crest_light *
+              (sun_beam * (crest.here * near + crest.share * crest.through * through) -
+               into * (near + crest.share * (back - near)));
+    }
     return max(up, vec3(0.0f)) / square(kWaterIndex);
 }

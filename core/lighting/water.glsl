@@ -111,11 +111,11 @@ const vec3 kOwnLonger = vec3(9.17e-4f, 7.04e-4f, 5.31e-4f);
 
 // Radiance out of deep water, by 1/cosine of both ways less 1. Water itself scatters as much back as on, particles mostly on: the part
 // of the backscatter that is water's own weighs the two. The same if sun and eye change places. Fitted to a Monte Carlo
-// (tests/bench/README.md, the water), rms 3 %.
+// (tests/bench/README.md, the water), rms 2 %.
 vec3 out_of_deep(vec3 u, vec3 own, float sun, float eye) {
-    float particles = 0.076f * (1.0f + 0.44f * (sun + eye) + 2.66f * sun * eye);
-    float water = 0.106f * (1.0f - 0.28f * (sun + eye) + 1.05f * sun * eye);
-    return u * (particles + (water - particles) * own + 0.16f * u);
+    vec3 particles = (0.072f + 0.21f * u) * (1.0f + 0.418f * (sun + eye) + 2.26f * sun * eye);
+    vec3 water = (0.113f + 0.017f * u) * (1.0f - 0.207f * (sun + eye) + 1.1f * sun * eye);
+    return u * mix(particles, water, own);
 }
 
 // At three wavelengths. own: of the backscatter that of sea water itself. A column: Lee et al. 1998 and 1999, with constants of the same
@@ -129,8 +129,8 @@ WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_col
     vec3 diffuse = (0.33f * kSkySlant) * u;
     if (way.floor_m < kNoFloor_m) {
         vec3 depth = both * way.floor_m;
-        float scattered = 0.94f;
-        vec3 reflected = 1.025f * sqrt(1.0f + 4.6f * u);
+        float scattered = 0.954f;
+        vec3 reflected = 1.02f * sqrt(1.0f + 4.7f * u);
         vec3 bare = floor_colour / kPi;
         sun = sun * (1.0f - exp(-depth * (way.sun + way.eye * scattered))) +
               bare * exp(-depth * (way.sun + way.eye * reflected));

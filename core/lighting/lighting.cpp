@@ -103,12 +103,14 @@ glm::vec3 reflectance_of(const WaterBody& water) {
     way.sun = 1.0f;
     way.eye = 1.0f / shading.refracted_cosine(kSeenFrom);
     way.floor_m = water.floor_m;
-    const auto back = [&](const glm::vec3& absorption, const glm::vec3& backscatter, const glm::vec3& floor) {
-        return shading.water_back(absorption, backscatter, floor, way).sky;
+    const auto back = [&](const glm::vec3& absorption, const glm::vec3& backscatter, const glm::vec3& own,
+                          const glm::vec3& floor) {
+        return shading.water_back(absorption, backscatter, own, floor, way).sky;
     };
-    const glm::vec3 seen = shading.colour_of(
-        {back(water.absorption.shorter, water.backscatter.shorter, water.floor_colour.shorter),
-         back(water.absorption.longer, water.backscatter.longer, water.floor_colour.longer)});
+    const glm::vec3 seen = shading.colour_of({back(water.absorption.shorter, water.backscatter.shorter,
+                                                   shading.kOwnShorter, water.floor_colour.shorter),
+                                              back(water.absorption.longer, water.backscatter.longer,
+                                                   shading.kOwnLonger, water.floor_colour.longer)});
     return glm::clamp(shading.kPi * seen, vec3(0.0f), vec3(1.0f));
 }
 

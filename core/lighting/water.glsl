@@ -78,18 +78,21 @@ struct WaterWay {
     float sun;        // 1/cosine below the surface: of the sun's light on its way down, and of what the eye sees
     float eye;
     float returned;   // of what comes up, the part that the surface sends down again
-    float crest_m;    // through a crest
+    float crest_m;    // through a crest, and the wavenumber of waves that have such
+    float crest_per_m;
     float fresh_bubbles;  // ¾ of their cross-section over the volume: b_g L [-], of each kind of foam times its coverage
     float old_bubbles;
     float bubbles_m;
     float floor_m;
 };
 
-// Upward radiance just below the surface over the irradiance that enters there: of the sun, of the sky, and of the sun through a crest.
+// Upward radiance just below the surface over the irradiance that enters there: of the sun, of the sky, of the sun through a crest, and
+// the part of the sun's that entered so near that waves' shape shows.
 struct WaterBack {
     vec3 sun;
     vec3 sky;
     vec3 crest;
+    vec3 near;
 };
 
 // 1/cosine of the light of a uniform sky below the surface, in the mean.
@@ -102,19 +105,32 @@ vec3 bubbles_add(float bubbles, vec3 dim) {
     return t / (1.0f + 0.7f * t);
 }
 
-// At three wavelengths. Deep water and column: Lee et al. 1998 and 1999, with the rise towards low suns and level views fitted to a Monte
-// Carlo (9 % at worst); the floor reflects diffusely.
-WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 floor_colour, WaterWay way) {
+// Backscatter of sea water itself at the six wavelengths [1/m] (Morel 1974).
+const vec3 kOwnShorter = vec3(2.501e-3f, 1.718e-3f, 1.216e-3f);
+const vec3 kOwnLonger = vec3(9.17e-4f, 7.04e-4f, 5.31e-4f);
+
+// Radiance out of deep water, by 1/cosine of both ways less 1. Water itself scatters as much back as on, particles mostly on: the part
+// of the backscatter that is water's own weighs the two. The same if sun and eye change places. Fitted to a Monte Carlo
+// (tests/bench/README.md, the water), rms 2 %.
+vec3 out_of_deep(vec3 u, vec3 own, float sun, float eye) {
+    vec3 particles = (0.072f + 0.21f * u) * (1.0f + 0.418f * (sun + eye) + 2.26f * sun * eye);
+    vec3 water = (0.113f + 0.017f * u) * (1.0f - 0.207f * (sun + eye) + 1.1f * sun * eye);
+    return u * mix(particles, water, own);
+}
+
+// At three wavelengths. own: of the backscatter that of sea water itself. A column: Lee et al. 1998 and 1999, with constants of the same
+// Monte Carlo; the floor reflects diffusely.
+WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_colour, WaterWay way) {
     vec3 both = absorption + backscatter;
     vec3 u = backscatter / both;
-    vec3 deep = (0.084f + 0.17f * u) * u;
-    vec3 sun = deep * (1.0f + (way.eye - 1.0f) * (0.25f + 1.6f * (way.sun - 1.0f)));
-    vec3 sky = deep * (1.0f + (way.eye - 1.0f) * (0.25f + 1.6f * (kSkySlant - 1.0f)));
+    vec3 part = min(own / backscatter, vec3(1.0f));
+    vec3 sun = out_of_deep(u, part, way.sun - 1.0f, way.eye - 1.0f);
+    vec3 sky = out_of_deep(u, part, kSkySlant - 1.0f, way.eye - 1.0f);
     vec3 diffuse = (0.33f * kSkySlant) * u;
     if (way.floor_m < kNoFloor_m) {
         vec3 depth = both * way.floor_m;
-        vec3 scattered = 1.03f * sqrt(1.0f + 2.4f * u);
-        vec3 reflected = 1.04f * sqrt(1.0f + 5.4f * u);
+        float scattered = 0.954f;
+        vec3 reflected = 1.02f * sqrt(1.0f + 4.7f * u);
         vec3 bare = floor_colour / kPi;
         sun = sun * (1.0f - exp(-depth * (way.sun + way.eye * scattered))) +
               bare * exp(-depth * (way.sun + way.eye * reflected));
@@ -132,33 +148,41 @@ WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 floor_colour, Water
         diffuse += more;
     }
     vec3 again = 1.0f / (1.0f - way.returned * diffuse);
-    return WaterBack(sun * again, sky * again, sun * again * exp(-0.3f * way.crest_m * absorption));
+    sun *= again;
+    return WaterBack(sun, sky * again, sun * exp(-way.crest_m * (0.4f * absorption + 0.9f * backscatter)),
+                     sun * (both / (both + 0.75f * way.crest_per_m)));
 }
 
-// Light of a low sun that enters a crest behind and leaves it before the eye: how much of the sun's light in the water is such light,
-// how far it goes in the crest, and its irradiance over that across the sun's beam. After a Monte Carlo of steep waves in two dimensions,
-// rms 0.31 in ln.
+// Sunlight that enters a wave with crests, over its irradiance across the sun's beam: at the place itself, which is what comes back where
+// light goes less far than waves are long, and on a crest's other side, for the eye that looks through it towards a low sun: how
+// much of such a face the place is, and how far that light goes in the crest. Fitted to a Monte Carlo of steep waves in two dimensions
+// (tests/bench/README.md, the water).
 struct CrestLight {
+    float here;
+    float through;
     float share;
     float way_m;
-    float entering;
 };
 
-CrestLight light_through_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m) {
+CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec3 variance) {
     float level = sqrt(to_sun.x * to_sun.x + to_sun.y * to_sun.y);
-    if (!(per_m > 0.0f && level > 1.0e-3f && to_sun.z > 0.0f)) return CrestLight(0.0f, 0.0f, 0.0f);
+    if (!(level > 1.0e-3f)) level = 1.0e-3f;
     vec2 ahead = vec2(to_sun.x, to_sun.y) / level;
     float slope = crest.x * ahead.x + crest.y * ahead.y;
     float height = per_m * crest.z;
-    float steepness = sqrt(slope * slope + height * height);
-    if (!(steepness > 1.0e-4f)) return CrestLight(0.0f, 0.0f, 0.0f);
-    float phase = atan(abs(slope), height);  // from the crest, as of a sine
-    float behind = 0.5f * steepness;         // slope of the face that the sun enters
-    float cosine = (behind * level + to_sun.z) * inversesqrt(1.0f + behind * behind);
+    float steepness = max(sqrt(slope * slope + height * height), 1.0e-4f);
+    float phase = atan(abs(slope), height + 1.0e-6f);  // from the crest, as of a sine
+    float behind = 0.5f * steepness;                   // slope of the face that the sun enters
+    float there = (behind * level + to_sun.z) * inversesqrt(1.0f + behind * behind);
+    float here = (to_sun.z - slope * level) * inversesqrt(1.0f + crest.x * crest.x + crest.y * crest.y);
+    float lit = 0.0f;
+    if (here > 0.0f) {
+        float across = sqrt(max(1.0f - here * here, 0.0f));
+        lit = here * entering(vec3(ahead * across, here), variance);
+    }
     float towards = max(-(to_eye.x * ahead.x + to_eye.y * ahead.y), 0.0f);
-    float share = smoothstep(0.0f, 0.15f, steepness) * towards * smoothstep(-0.5f, 0.5f, slope / steepness) *
-                  smoothstep(-0.5f, 0.5f, height / steepness);
-    return CrestLight(share, 2.0f * phase / per_m, 1.4f * (1.0f - fresnel_exact(cosine, kWaterIndex)) * cosine);
+    float share = smoothstep(0.0f, 0.15f, steepness) * towards * smoothstep(-0.5f, 0.5f, slope / steepness);
+    return CrestLight(lit, 1.25f * (1.0f - fresnel_exact(there, kWaterIndex)) * there, share, 2.0f * phase / per_m);
 }
 
 // Bubbles of clean air, larger ones first gone: ¾ of their cross-section over the volume at the surface [1/m], by the age of the foam
@@ -185,17 +209,23 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     way.bubbles_m = look.bubbles_m;
     way.fresh_bubbles = look.bubbles * seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) * look.bubbles_m;
     way.old_bubbles = look.bubbles * seen.old * bubbles_per_m(seen.age_s, look.bubbles_m) * look.bubbles_m;
-    CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f);
-    if (look.crest_light > 0.0f) crest = light_through_crest(to_eye, to_sun, seen.crest, look.crest_per_m);
+    bool has_crests = look.crest_light > 0.0f && look.crest_per_m > 0.0f && to_sun.z > 0.0f;
+    CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f, 0.0f);
+    if (has_crests) crest = light_at_crest(to_eye, to_sun, seen.crest, look.crest_per_m, look.waves);
     way.crest_m = crest.way_m;
+    way.crest_per_m = look.crest_per_m;
 
-    WaterBack shorter = water_back(look.absorption.shorter, look.backscatter.shorter, look.floor_colour.shorter, way);
-    WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, look.floor_colour.longer, way);
-    vec3 level = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves) *
-                 colour_of(WaterBands(shorter.sun, longer.sun));
-    vec3 up = level + sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
-    if (crest.share > 0.0f)
-        up += look.crest_light * crest.share *
-              (sun_beam * crest.entering * colour_of(WaterBands(shorter.crest, longer.crest)) - level);
+    WaterBack shorter = water_back(look.absorption.shorter, look.backscatter.shorter, kOwnShorter, look.floor_colour.shorter, way);
+    WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, kOwnLonger, look.floor_colour.longer, way);
+    vec3 into = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves);
+    vec3 back = colour_of(WaterBands(shorter.sun, longer.sun));
+    vec3 up = into * back + sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
+    if (has_crests) {
+        vec3 near = colour_of(WaterBands(shorter.near, longer.near));
+        vec3 through = colour_of(WaterBands(shorter.crest, longer.crest));
+        up += look.crest_light *
+              (sun_beam * (crest.here * near + crest.share * crest.through * through) -
+               into * (near + crest.share * (back - near)));
+    }
     return max(up, vec3(0.0f)) / square(kWaterIndex);
 }

@@ -591,7 +591,8 @@ void add_light_and_water(Built& out) {
                                    .key_parts = kWater}),
         row<&Water::crest_light>({.name = "crest_light",
                                   .help =
-                                      "how much light a low sun sends through crests to the eye; 1 is as computed, 0 none",
+                                      "how much waves shape the light in the water: a low sun shines through crests, and their far sides "
+                                      "are dark; 1 is as computed, 0 none",
                                   .range = limits::kWaterGain,
                                   .soft = SoftRange{0.0, 3.0},
                                   .key_parts = kWater}),

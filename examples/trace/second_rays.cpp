@@ -211,6 +211,7 @@ void Tracer::Impl::light_second_sea(std::span<const RayQuery> rays, std::span<co
         seen.distance_m[i] = answer.distance_m;
     }
     std::vector<SeaRadiance> lit(sea.size());
+    light_.find_crests(seen.origin_m, seen.rest, seen.pixel_m, seen.pixel_axis_m, seen.crest);
     light_.answer(seen);
     light_.light(seen, light_.sky(), air_below_, {}, lit);
     // The sun that waves mirror onto the object is left out: few of the rays find it, and those would be white dots.

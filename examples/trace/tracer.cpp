@@ -203,6 +203,7 @@ void Tracer::Impl::find_places() {
 void Tracer::Impl::light_sea() {
     if (on_sea_.empty()) return;
     lit_.resize(on_sea_.size());
+    light_.find_crests(seen_.origin_m, seen_.rest, seen_.pixel_m, seen_.pixel_axis_m, seen_.crest);
     light_.answer(seen_);
     light_.light(seen_, light_.sky(), air_, spray_, lit_);
     if (options_.traced) {

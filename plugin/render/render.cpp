@@ -276,33 +276,13 @@ class RendererOf final : public Impl {
                  results);
     }
 
-    // The shape of the long waves, where light goes through crests.
+    // The shape of the long waves, where it shapes the light in the water.
     void find_crests() {
-        const WaterBody& water = sea_.water();
-        const bool has_crests = water.crest_light > 0.0f && water.crest_per_m > 0.0f && mesh_.normal.empty();
-        const std::size_t count = has_crests ? mesh_.points.rest_m.size() : 0;
-        crest_.resize(count);
-        if (count == 0) return;
+        crest_.clear();
+        if (!mesh_.normal.empty()) return;
         std::vector<T> width_m = cell_m_;
-        for (T& width : width_m)
-            width = std::max({width, static_cast<T>(kCrestFootprint_m), first_pixel_m_});
-        std::vector<glm::vec<3, T>> normal(count), position(count);
-        Results<T> results;
-        results.set(Product::Normal, {normal.data()});
-        results.set(Product::Position, {position.data()});
-        evaluate(sea_.frame(), kQuery,
-                 Points<T>{.origin_m = mesh_.points.origin_m,
-                           .count = count,
-                           .rest_m = {rest_.data()},
-                           .cell_m = {width_m.data()},
-                           .pixel_m = {width_m.data()},
-                           .cell_axis_m = {cell_axis_m_.data()},
-                           .pixel_axis_m = {cell_axis_m_.data()}},
-                 results);
-        for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 n(normal[i]);
-            crest_[i] = glm::vec3(-glm::vec2(n) / std::max(n.z, 0.1f), static_cast<float>(position[i].z));
-        }
+        for (T& width : width_m) width = std::max(width, first_pixel_m_);
+        sea_.find_crests(mesh_.points.origin_m, rest_, std::move(width_m), cell_axis_m_, crest_);
     }
 
     // Which triangle each sample of the rows shows.

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/lighting/background.h"
@@ -46,6 +47,34 @@ SeaRadiance SeaLight<T>::behind(const Air& air, const glm::vec3& direction, floa
     if (choice_.sky) light.sky += air.has_sky ? sky_through(air, direction) : seen.sky;
     if (choice_.sun) light.sky += seen.sun;
     return light;
+}
+
+template <class T>
+void SeaLight<T>::find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest,
+                              std::vector<T> width_m, const std::vector<glm::vec<2, T>>& axis_m,
+                              std::vector<glm::vec3>& crest) const {
+    const bool has_crests = water_.crest_light > 0.0f && water_.crest_per_m > 0.0f;
+    const std::size_t count = has_crests ? rest.size() : 0;
+    crest.resize(count);
+    if (count == 0) return;
+    for (T& width : width_m) width = std::max(width, static_cast<T>(kCrestFootprint_m));
+    std::vector<glm::vec<3, T>> normal(count), position(count);
+    Results<T> results;
+    results.set(Product::Normal, {normal.data()});
+    results.set(Product::Position, {position.data()});
+    evaluate(frame(), kQuery,
+             Points<T>{.origin_m = origin_m,
+                       .count = count,
+                       .rest_m = {rest.data()},
+                       .cell_m = {width_m.data()},
+                       .pixel_m = {width_m.data()},
+                       .cell_axis_m = {axis_m.data()},
+                       .pixel_axis_m = {axis_m.data()}},
+             results);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 n(normal[i]);
+        crest[i] = glm::vec3(-glm::vec2(n) / std::max(n.z, 0.1f), static_cast<float>(position[i].z));
+    }
 }
 
 template <class T>

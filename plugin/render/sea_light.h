@@ -38,7 +38,7 @@ struct SeenSea {
     // Of the slopes that the surface on which places were found lacks, at rest, along the view; 0: it lacks none that the
     // pixel shows.
     std::vector<float> mesh_variance;
-    // As SeaPoint::crest; empty: no light comes through crests.
+    // As SeaPoint::crest, by find_crests(); empty: the water is lit as level water.
     std::vector<glm::vec3> crest;
     // Normals of the surface at rest, of any length, as in Points; empty: it is flat everywhere.
     std::vector<glm::vec<3, T>> rest_normal;
@@ -92,6 +92,10 @@ class SeaLight {
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
+
+    // SeaPoint::crest at places of a flat sea at rest, by their footprints [m], width and long axis; empty where the water knows no crests.
+    void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,
+                     const std::vector<glm::vec<2, T>>& axis_m, std::vector<glm::vec3>& crest) const;
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);

@@ -184,7 +184,7 @@ class Draw {
     }
 
     std::vector<double> point(const Key& key) {
-        if (key.unit.empty()) return {anywhere(*key.range), anywhere(*key.range), anywhere(*key.range)};  // a colour
+        if (key.unit.empty()) return {number(key), number(key), number(key)};  // a colour
         // Near the origin, where most cameras are, or anywhere; above the sea more often than below.
         const bool is_near = chance(0.6);
         std::vector<double> place;

@@ -45,6 +45,7 @@ def flat_sea(**settings):
     obj = bpy.data.objects.new("Sea", mesh)
     bpy_scene.collection.objects.link(obj)
     scene = pelagic.Scene()
+    scene.water.bubbles = 0.0  # the material has none
     scene.light.sun_elevation_deg, scene.light.sun_azimuth_deg = 30.0, 20.0
     light.ensure_light(bpy_scene, scene)
     made = material.ensure_material(obj, scene)

@@ -45,8 +45,8 @@ def ends(key):
 
 # Names and abbreviations, which German writes as they are.
 SAME = {"JONSWAP", "TMA", "FFT", "USDA", "USDC", "Elfouhaily", "Phillips", "Hasselmann", "Omega 2", "Monahan 1980", "Monahan 1986", "Andreas 1998",
-        "Callaghan 2008", "Planet", "Chlorophyll", "Voxel", "Pelagic", "Presets", "Level Set", "Jerlov i", "Jerlov ia", "Jerlov ib", "Jerlov ii", "Jerlov iii", "Jerlov 1c",
-        "Jerlov 3c", "Jerlov 5c", "Jerlov 7c", "Jerlov 9c"}
+        "Callaghan 2008", "Planet", "Chlorophyll", "Voxel", "Pelagic", "Presets", "Level Set", "Jerlov I", "Jerlov IA", "Jerlov IB", "Jerlov II", "Jerlov III", "Jerlov 1C",
+        "Jerlov 3C", "Jerlov 5C", "Jerlov 7C", "Jerlov 9C"}
 with checking("each label, operator and sentence has German words, with the same numbers in them; Blender says them while it is on"):
     def names(rna):
         shown = [each for each in rna.properties if not each.is_hidden and each.name != each.identifier

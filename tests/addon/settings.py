@@ -35,6 +35,8 @@ def ends(key):
         return low, min(high, properties.INTEGER_LIMIT) if key["type"] == "integer" else high
     if key["type"] == "truth":
         return False, True
+    if key["type"] == "point":
+        return tuple((bound,) * 3 for bound in key["range"])
     words = key["choices"]
     if key["type"] == "word":
         return words

@@ -80,7 +80,7 @@ def _set_floor(obj, scene):
     is_seen = scene.water.body and scene.sea.depth_m < FLOOR_DEPTH_M
     depth_m, colour = (scene.sea.depth_m, scene.water.floor_colour) if is_seen else (FLOOR_DEPTH_M, (0.0, 0.0, 0.0))
     for floor in [child for child in obj.children if MARK in child]:
-        floor.scale = (1.0, 1.0, depth_m)
+        floor.scale = (1.0, 1.0, -depth_m / floor.data.vertices[0].co.z)
         for node in floor.data.materials[0].node_tree.nodes if floor.data.materials else ():
             if node.type == "BSDF_DIFFUSE":
                 node.inputs["Color"].default_value = (*colour, 1.0)

@@ -269,10 +269,12 @@ def migrate(obj):
         for name in ("uv_map", "velocity"):
             if not obj.pelagic.is_property_set(name):
                 setattr(obj.pelagic, name, True)
-    if obj.pelagic.version < 3:  # before there were editions: what nobody changed keeps the first one's value
-        for field in FIELDS:
-            group = getattr(obj.pelagic, field.table)
-            if field.key["defaults_before"] and not group.is_property_set(field.name):
-                field.write(group, field.key["defaults_before"][0][1])
+    # What nobody changed keeps the value of its time: before version 3 there were no editions, version 3 is the second one's.
+    edition = 1 if obj.pelagic.version < 3 else 2
+    for field in FIELDS if obj.pelagic.version < VERSION else ():
+        group = getattr(obj.pelagic, field.table)
+        before = next((value for until, value in field.key["defaults_before"] if until > edition), None)
+        if before is not None and not group.is_property_set(field.name):
+            field.write(group, before)
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION

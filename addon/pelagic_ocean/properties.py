@@ -17,16 +17,17 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
 from . import cages
 from .module import pelagic
 
-VERSION = 3  # of the settings in a file; ocean.migrate() brings older ones here
+VERSION = 4  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps",  # and the camera's: they come from the scene
                 "shot.edition"}  # the newest: all settings have values, and a file keeps those of its time (ocean.migrate)
 
-# Keys that the core refuses unless another key has a value: they are shown, and count, only then.
-ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", "file"), "sea.spectrum_time": ("sea.spectrum", "file"),
-             "surface.cage_file": ("surface.kind", "cage"), "surface.cage_level": ("surface.kind", "cage"),
-             "waves.trains": ("waves.model", "trochoid"), "waves.shortest_m": ("waves.model", "trochoid"),
-             "waves.longest_m": ("waves.model", "trochoid")}
+# Keys that the core refuses unless another key has one of some values: they are shown, and count, only then.
+ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", ("file",)), "sea.spectrum_time": ("sea.spectrum", ("file",)),
+             "surface.cage_file": ("surface.kind", ("cage",)), "surface.cage_level": ("surface.kind", ("cage",)),
+             "waves.trains": ("waves.model", ("trochoid",)), "waves.shortest_m": ("waves.model", ("trochoid",)),
+             "waves.longest_m": ("waves.model", ("trochoid",)),
+             "water.chlorophyll_mg_m3": ("water.type", ("ocean", "coastal", "turbid"))}
 
 # A unit of the table → arguments of a property. Degrees stay degrees: Blender's angles would be radians in scripts.
 UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCITY"},
@@ -149,8 +150,8 @@ _ENTRY_FIELDS = {field.path: tuple(_field(key) for key in field.key["keys"]) for
 
 def counts(field, settings):
     """Whether a key counts with the other settings of an ocean, obj.pelagic."""
-    other, value = ONLY_WITH.get(field.path, (None, None))
-    return other is None or getattr(getattr(settings, BY_PATH[other].table), BY_PATH[other].name) == value
+    other, values = ONLY_WITH.get(field.path, (None, ()))
+    return other is None or getattr(getattr(settings, BY_PATH[other].table), BY_PATH[other].name) in values
 
 
 def entry_fields(field):

@@ -1,4 +1,4 @@
-// Reflectance of the water body: R = 0.33 b_b/a (Morel and Prieur 1977; Darles et al. 2007), here as
+// The water body, by what it holds. Its reflectance where it is no more than that: R = 0.33 b_b/a (Morel and Prieur 1977; Darles et al. 2007), here as
 // R = 0.33 b_b/(a + b_b), which stays below 0.33 where scattering outweighs absorption. Absorption a and
 // backscattering b_b:
 //
@@ -60,9 +60,9 @@ double at(const std::array<double, kSpectrumBands>& table, double wavelength) {
 Optics optics_at(double wavelength, const WaterChoice& water) {
     const double c =
         std::max(water.chlorophyll_mg_m3, 0.01);  // the clearest natural water; 0 has no logarithm
-    const double a_clear = (at(kWaterAbsorption, wavelength) +
-                            0.06 * at(kPlanktonAbsorption, wavelength) * std::pow(c, 0.65)) *
-                           (1.0 + 0.2 * std::exp(-0.014 * (wavelength - 440.0)));
+    const double a_clear =
+        (at(kWaterAbsorption, wavelength) + 0.06 * at(kPlanktonAbsorption, wavelength) * std::pow(c, 0.65)) *
+        (1.0 + 0.2 * std::exp(-0.014 * (wavelength - 440.0)));
     const double a = a_clear + water.yellow_per_m * std::exp(-0.014 * (wavelength - 440.0)) +
                      0.041 * water.minerals_g_m3 * std::exp(-0.0123 * (wavelength - 443.0));
     const double sea_water = 0.5 * 0.00288 * std::pow(wavelength / 500.0, -4.32);
@@ -70,7 +70,8 @@ Optics optics_at(double wavelength, const WaterChoice& water) {
     const double few = 0.5 - 0.25 * std::log10(c);
     const double plankton =
         water.has_body
-            ? (0.002 + 0.01 * few * std::pow(wavelength / 550.0, std::min(0.5 * (std::log10(c) - 0.3), 0.0))) *
+            ? (0.002 +
+               0.01 * few * std::pow(wavelength / 550.0, std::min(0.5 * (std::log10(c) - 0.3), 0.0))) *
                   0.416 * std::pow(c, 0.766)
             : (0.002 + 0.02 * few * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
     return {a, sea_water + plankton + 0.018 * 0.51 * water.minerals_g_m3};
@@ -127,8 +128,8 @@ WaterBody water_body(const WaterChoice& choice) {
         band(water.absorption, i) = static_cast<float>(at.absorption);
         band(water.backscatter, i) = static_cast<float>(at.backscatter);
         const auto [red, green, blue] = kBandsOfColour[i];
-        band(water.floor_colour, i) = static_cast<float>(std::clamp(
-            glm::dot(choice.floor_colour, glm::dvec3(red, green, blue)), 0.0, 1.0));
+        band(water.floor_colour, i) = static_cast<float>(
+            std::clamp(glm::dot(choice.floor_colour, glm::dvec3(red, green, blue)), 0.0, 1.0));
     }
     return water;
 }

@@ -29,7 +29,7 @@ struct WaterLook {
     WaterBands floor_colour;    // reflectance of the floor, diffuse
     float floor_m;              // how deep it lies; kNoFloor_m and more: there is none
     vec3 waves;                 // slope variances (xx, yy, xy) of all waves
-    float crest_light;          // times the light through crests; 0: none
+    float crest_light;          // times what waves' shape does to the sun's light in the water; 0: it is as level water's
     float crest_per_m;          // wavenumber of the waves that have crests [1/m], 0: none
     float bubbles;              // times the backscatter of bubbles; 0: none
     float bubbles_m;            // their depth, e-folding
@@ -80,8 +80,7 @@ struct WaterWay {
     float returned;   // of what comes up, the part that the surface sends down again
     float crest_m;    // through a crest, and the wavenumber of waves that have such
     float crest_per_m;
-    float fresh_bubbles;  // ¾ of their cross-section over the volume: b_g L [-], of each kind of foam times its coverage
-    float old_bubbles;
+    float bubbles;    // ¾ of their cross-section over the volume: b_g L [-], times the coverage of the foam over them
     float bubbles_m;
     float floor_m;
 };
@@ -98,11 +97,11 @@ struct WaterBack {
 // 1/cosine of the light of a uniform sky below the surface, in the mean.
 const float kSkySlant = 1.17f;
 
-// What bubbles of that b_g L add to a reflectance, t/(1 + 0.7 t) of what is left of 1. dim: 1.1 κ/µ L, light that is lost among them. Fitted to
-// a Monte Carlo of clean bubbles (g = 0.655) in an exponential profile: rms 10 %.
+// What bubbles of that b_g L add to a reflectance, t/(1 + 0.7 t) of what is left of 1. dim: 1.1 κ/µ L, light that is lost among them. A fit of
+// clean bubbles (g = 0.655) in an exponential profile, for b_g L of 0.02 … 9, which no bench of ours judges: beyond, all comes back.
 vec3 bubbles_add(float bubbles, vec3 dim) {
     vec3 t = 0.17f * bubbles / (1.0f + 4.0f * dim);
-    return t / (1.0f + 0.7f * t);
+    return min(t / (1.0f + 0.7f * t), vec3(1.0f));
 }
 
 // Backscatter of sea water itself at the six wavelengths [1/m] (Morel 1974).
@@ -140,9 +139,9 @@ WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_col
         diffuse = diffuse * (1.0f - exp(-depth * (kSkySlant + 2.0f * scattered))) +
                   floor_colour * exp(-depth * (kSkySlant + 2.0f * reflected));
     }
-    if (way.fresh_bubbles + way.old_bubbles > 0.0f) {
+    if (way.bubbles > 0.0f) {
         vec3 dim = (1.1f * way.sun * way.bubbles_m) * both;
-        vec3 more = (1.0f - diffuse) * (bubbles_add(way.fresh_bubbles, dim) + bubbles_add(way.old_bubbles, dim));
+        vec3 more = (1.0f - diffuse) * bubbles_add(way.bubbles, dim);
         sun += more / kPi;
         sky += more / kPi;
         diffuse += more;
@@ -207,8 +206,8 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     way.eye = 1.0f / clamp(down, 0.3f, 1.0f);
     way.floor_m = look.floor_m;
     way.bubbles_m = look.bubbles_m;
-    way.fresh_bubbles = look.bubbles * seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) * look.bubbles_m;
-    way.old_bubbles = look.bubbles * seen.old * bubbles_per_m(seen.age_s, look.bubbles_m) * look.bubbles_m;
+    way.bubbles = look.bubbles * look.bubbles_m *
+                  (seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) + seen.old * bubbles_per_m(seen.age_s, look.bubbles_m));
     bool has_crests = look.crest_light > 0.0f && look.crest_per_m > 0.0f && to_sun.z > 0.0f;
     CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f, 0.0f);
     if (has_crests) crest = light_at_crest(to_eye, to_sun, seen.crest, look.crest_per_m, look.waves);
@@ -219,13 +218,14 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, kOwnLonger, look.floor_colour.longer, way);
     vec3 into = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves);
     vec3 back = colour_of(WaterBands(shorter.sun, longer.sun));
-    vec3 up = into * back + sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
+    vec3 of_sun = into * back;
     if (has_crests) {
         vec3 near = colour_of(WaterBands(shorter.near, longer.near));
         vec3 through = colour_of(WaterBands(shorter.crest, longer.crest));
-        up += look.crest_light *
-              (sun_beam * (crest.here * near + crest.share * crest.through * through) -
-               into * (near + crest.share * (back - near)));
+        of_sun += look.crest_light *
+                  (sun_beam * (crest.here * near + crest.share * crest.through * through) -
+                   into * (near + crest.share * (back - near)));
     }
-    return max(up, vec3(0.0f)) / square(kWaterIndex);
+    vec3 of_sky = sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
+    return (max(of_sun, vec3(0.0f)) + max(of_sky, vec3(0.0f))) / square(kWaterIndex);
 }

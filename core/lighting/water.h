@@ -11,7 +11,8 @@ struct WaterBands {
 };
 
 struct WaterBody {
-    glm::vec3 reflectance{0.0f};  // diffuse, just below the surface, linear Rec. 709; of a body under a sky, with its floor
+    glm::vec3 reflectance{
+        0.0f};  // diffuse, just below the surface, linear Rec. 709; of a body under a sky, with its floor
     // For hosts that trace light through the water [1/m], at the dominant wavelengths of the primaries of Rec. 709: a
     // broader mean of such steep spectra has no colour that a display shows. Isotropic scattering of twice the
     // backscatter sends as much back.
@@ -24,7 +25,7 @@ struct WaterBody {
     WaterBands floor_colour{};               // its reflectance
     float floor_m = 1e9f;                    // how deep it lies; 1e6 and more: there is none
     glm::vec3 waves{1e-10f, 1e-10f, 0.0f};   // slope variances of all waves: xx, yy, xy
-    float crest_light = 0.0f;                // times what comes through crests
+    float crest_light = 0.0f;                // times what waves' shape does to the sun's light in the water
     float crest_per_m = 0.0f;                // wavenumber of the waves that have crests [1/m]; 0: none
     float bubbles = 0.0f;                    // times the bubbles' backscatter
     float bubbles_m = 0.0f;                  // their depth, e-folding

@@ -569,38 +569,41 @@ void add_light_and_water(Built& out) {
                                .key_parts = kLight}));
     add_table<&Scene::water>(
         out.tables, out.keys, {"water", "the water body", {}, {}},
-        row<&Water::type>({.name = "type",
-                           .help =
-                               "what the water holds besides plankton: nothing, some silt, much of it; or one of "
-                               "Jerlov's types, of the open sea and of coasts, clear to murky",
-                           .key_parts = kWater}),
+        row<&Water::type>(
+            {.name = "type",
+             .help = "what the water holds besides plankton: nothing, some silt, much of it; or one of "
+                     "Jerlov's types, of the open sea and of coasts, clear to murky",
+             .key_parts = kWater}),
         row<&Water::chlorophyll_mg_m3>({.name = "chlorophyll_mg_m3",
                                         .help = "plankton: greens the water",
                                         .unit = "mg/m³",
                                         .range = limits::kChlorophyll_mg_m3,
                                         .soft = SoftRange{0.01, 30.0, true},
                                         .key_parts = kWater}),
-        row<&Water::body>({.name = "body",
-                           .help =
-                               "light in the water by the ways of sun and eye, with the floor at sea.depth_m; off: one "
-                               "colour for the whole sea",
-                           .key_parts = kWater}),
-        row<&Water::floor_colour>({.name = "floor_colour",
-                                   .help = "what the floor reflects: red, green, blue; pale sand, 0.36, 0.31, 0.23",
-                                   .range = limits::kFloorColour,
-                                   .key_parts = kWater}),
-        row<&Water::crest_light>({.name = "crest_light",
-                                  .help =
-                                      "how much waves shape the light in the water: a low sun shines through crests, and their far sides "
-                                      "are dark; 1 is as computed, 0 none",
-                                  .range = limits::kWaterGain,
-                                  .soft = SoftRange{0.0, 3.0},
-                                  .key_parts = kWater}),
-        row<&Water::bubbles>({.name = "bubbles",
-                              .help = "how much the bubbles under foam brighten the water; 1 is as computed, 0 none",
-                              .range = limits::kWaterGain,
-                              .soft = SoftRange{0.0, 3.0},
-                              .key_parts = kWater}));
+        row<&Water::body>(
+            {.name = "body",
+             .help = "light in the water by the ways of sun and eye, with the floor at sea.depth_m; off: one "
+                     "colour for the whole sea",
+             .key_parts = kWater}),
+        row<&Water::floor_colour>(
+            {.name = "floor_colour",
+             .help = "what the floor reflects: red, green, blue; pale sand, 0.36, 0.31, 0.23",
+             .range = limits::kFloorColour,
+             .key_parts = kWater}),
+        row<&Water::crest_light>(
+            {.name = "crest_light",
+             .help =
+                 "how much waves shape the light in the water: a low sun shines through crests, and their far sides "
+                 "are dark; 1 is as computed, 0 none",
+             .range = limits::kWaterGain,
+             .soft = SoftRange{0.0, 3.0},
+             .key_parts = kWater}),
+        row<&Water::bubbles>(
+            {.name = "bubbles",
+             .help = "how much the bubbles under foam brighten the water; 1 is as computed, 0 none",
+             .range = limits::kWaterGain,
+             .soft = SoftRange{0.0, 3.0},
+             .key_parts = kWater}));
 }
 
 void add_effects_and_quality(Built& out) {

@@ -519,9 +519,10 @@ void check_light(SceneChecker& check, const Light& light) {
 void check_water(SceneChecker& check, const Water& water) {
     if (water.type <= WaterType::Turbid || !check.is_good("water.chlorophyll_mg_m3")) return;
     if (water.chlorophyll_mg_m3 == Water{}.chlorophyll_mg_m3) return;
-    check.refuse({"water.chlorophyll_mg_m3", number_text(water.chlorophyll_mg_m3),
-                  "is plankton beside that of water.type = " + choice_text(water.type),
-                  number_text(Water{}.chlorophyll_mg_m3) + ", or water.type = \"ocean\", \"coastal\", \"turbid\""});
+    check.refuse(
+        {"water.chlorophyll_mg_m3", number_text(water.chlorophyll_mg_m3),
+         "is plankton beside that of water.type = " + choice_text(water.type),
+         number_text(Water{}.chlorophyll_mg_m3) + ", or water.type = \"ocean\", \"coastal\", \"turbid\""});
 }
 
 // The fit needs a regular grid, whose limit surface is a spline.

@@ -215,7 +215,8 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
     constexpr double kLeast = 1e-10;  // of variances: their density needs a determinant
     const SpectralMoments all = moments(spectrum, 0.0, kViscousWavenumber),
                           crests = moments(spectrum, 0.0, kTwoPi / kShortestCrest_m);
-    const double xx = std::max(all.xx, kLeast), yy = std::max(all.yy, kLeast), most = 0.9999 * std::sqrt(xx * yy);
+    const double xx = std::max(all.xx, kLeast), yy = std::max(all.yy, kLeast),
+                 most = 0.9999 * std::sqrt(xx * yy);
     water.waves = glm::vec3(glm::dvec3(xx, yy, std::clamp(all.xy, -most, most)));
     water.crest_light = static_cast<float>(scene.water.crest_light);
     // Of a sine of the crests' height and slope.
@@ -224,21 +225,16 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
     // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003); most whitecaps are those of waves much shorter than the
     // peak's, some 0.4 of its speed and 0.3 of its height.
     constexpr double kBreakerOverHs = 0.3;
-    water.bubbles_m = static_cast<float>(0.25 * kBreakerOverHs * all.significant_height_m());
+    SeaState wind = scene.sea;  // swell doesn't break in the open sea
+    wind.swell.clear();
+    const double m0 =
+        scene.sea.swell.empty() ? spectrum.m0() : DirectionalSpectrum(wind, scene.waves.band_gains).m0();
+    water.bubbles_m = static_cast<float>(0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0));
     return water;
 }
 
 std::string light_content(const Scene& scene) {
-    Scene light = scene;
-    const Effects usual;
-    light.effects.foam_structure = usual.foam_structure;
-    light.effects.foam_streaks = usual.foam_streaks;
-    light.effects.foam_pattern_m = usual.foam_pattern_m;
-    light.effects.foam_new_albedo = usual.foam_new_albedo;
-    light.effects.foam_old_albedo = usual.foam_old_albedo;
-    light.effects.foam_new_opaque = usual.foam_new_opaque;
-    light.effects.foam_old_opaque = usual.foam_old_opaque;
-    return canonical(light, key_parts(KeyPart::Light, KeyPart::Water));
+    return canonical(scene, key_parts(KeyPart::Light)) + scene.effects.foam_pattern;
 }
 
 double active_foam(const Scene& scene, double residual_coverage) {

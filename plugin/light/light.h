@@ -39,8 +39,7 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg 
 // What is in the shot's water. Of a body some milliseconds, since it needs the sea's spectrum (prepare()); who has that passes it on.
 WaterBody make_water(const Scene& scene);
 WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum);
-// The keys on which the light depends, as text: while it stays the same, sky, make_foam_picture() and, over the same sea, water do. How foam looks
-// beside that is no part of it.
+// What the light depends on, as text: while it stays the same, sky and make_foam_picture() do. Water and how foam looks are no part of it.
 std::string light_content(const Scene& scene);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without
 // persistent foam.

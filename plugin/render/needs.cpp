@@ -98,15 +98,16 @@ constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 4;
 // need more room while their vector grows, as many as there are triangles.
 template <class T>
 constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(float)) + 2 * sizeof(double) +
-                                    6 * sizeof(std::uint32_t) + 19 * sizeof(T) + sizeof(glm::vec3) + sizeof(glm::dvec4) +
+                                    6 * sizeof(std::uint32_t) + 19 * sizeof(T) + sizeof(glm::vec3) +
+                                    sizeof(glm::dvec4) +
                                     2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) +
                                      sizeof(std::size_t) + 5 * sizeof(T) + 2 * sizeof(glm::vec3) +
-                                     2 * sizeof(float) + sizeof(glm::vec3) + sizeof(SeaPoint) + 12 * sizeof(float) +
-                                     (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
+                                     2 * sizeof(float) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     12 * sizeof(float) + (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
 }  // namespace
 

@@ -126,13 +126,25 @@ with checking("a file of the first version gets today's number, and keeps what e
         obj.pelagic.sea.property_unset("growth")
         obj.pelagic.light.turbidity = 4.5
         obj.pelagic.effects.property_unset("whitecap_law")
+        obj.pelagic.water.property_unset("body")
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "old.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(folder / "old.blend"))
     assert [obj.pelagic.version for obj in ocean.oceans()] == [properties.VERSION] * len(names_of_old)
     assert all(obj.pelagic.uv_map and obj.pelagic.velocity for obj in ocean.oceans())
     for obj in ocean.oceans():  # the first edition's where nobody had chosen
-        got = (obj.pelagic.sea.growth, obj.pelagic.effects.whitecap_law, obj.pelagic.light.turbidity)
-        assert got == ("height", "monahan-1980", 4.5), got
+        got = (obj.pelagic.sea.growth, obj.pelagic.effects.whitecap_law, obj.pelagic.light.turbidity, obj.pelagic.water.body)
+        assert got == ("height", "monahan-1980", 4.5, False), got
+
+with checking("a file of the second edition has its water, and today's waves"):
+    for obj in ocean.oceans():
+        obj.pelagic.version = 3
+        obj.pelagic.sea.property_unset("growth")
+        obj.pelagic.water.property_unset("body")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "second.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "second.blend"))
+    for obj in ocean.oceans():
+        got = (obj.pelagic.sea.growth, obj.pelagic.water.body)
+        assert got == (pelagic.Scene().sea.growth, False), got
 
 with checking("appended into another file, it plays there"):
     fresh_file()

@@ -404,7 +404,8 @@ class Drawing {
         if (!is("light.sky", std::string(kSkyName)))
             for (const char* key : {"light.sky_rotation_deg", "light.sky_gain"}) leave_out(key);
         if (!is("effects.foam_pattern", std::string(kFoamName))) leave_out("effects.foam_pattern_m");
-        if (const KeyValue* type = made_.value("water.type"); type && std::get<std::string>(*type).starts_with("jerlov"))
+        if (const KeyValue* type = made_.value("water.type");
+            type && std::get<std::string>(*type).starts_with("jerlov"))
             leave_out("water.chlorophyll_mg_m3");
         mend();
     }

@@ -214,8 +214,8 @@ struct Water {
     // Light in the water by the ways of sun and eye, with a floor at sea.depth_m; false: one colour for the whole sea.
     bool body = true;
     glm::dvec3 floor_colour{0.36, 0.31, 0.23};  // of that floor, 0 … 1, linear Rec. 709
-    double crest_light = 1.0;                   // ≥ 0, times what waves' shape does to that light, crests above all
-    double bubbles = 1.0;                       // ≥ 0, times the bubbles below foam
+    double crest_light = 1.0;  // ≥ 0, times what waves' shape does to that light, crests above all
+    double bubbles = 1.0;      // ≥ 0, times the bubbles below foam
 };
 
 // [effects]

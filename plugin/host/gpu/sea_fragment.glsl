@@ -26,11 +26,11 @@ void main() {
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white,
                                      foam_pattern_image),
                          rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
-    WaterLook water = WaterLook(water_reflectance, water_crests.x > 0.0,
+    WaterLook water = WaterLook(water_reflectance, water_body_look.x > 0.0,
                                 WaterBands(water_absorption_shorter, water_absorption_longer),
                                 WaterBands(water_backscatter_shorter, water_backscatter_longer),
-                                WaterBands(water_floor_shorter, water_floor_longer), water_crests.y, water_waves,
-                                water_crests.z, water_crests.w, water_bubbles.x, water_bubbles.y);
+                                WaterBands(water_floor_shorter, water_floor_longer), water_body_look.y, water_waves,
+                                water_body_look.z, water_body_look.w, water_bubbles.x, water_bubbles.y);
     SeenBody body = SeenBody(point_crest(), 0.0, 0.0, 0.0);
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);

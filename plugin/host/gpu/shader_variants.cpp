@@ -98,8 +98,9 @@ const std::vector<std::string_view>& query_files() {
 }
 
 std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped) {
-    return constant("kShaped", is_shaped) + "const float kCrestFootprint_m = " +
-           std::to_string(kCrestFootprint_m) + ";\n" + constant("kCascades", layout.cascades()) +
+    return constant("kShaped", is_shaped) +
+           "const float kCrestFootprint_m = " + std::to_string(kCrestFootprint_m) + ";\n" +
+           constant("kCascades", layout.cascades()) +
            constant("kTileCascades", std::max(layout.cascades(), 1)) +
            constant("kCellLevels", static_cast<int>(layout.cells().footprints_m.size())) +
            constant("kPixelLevels", static_cast<int>(layout.pixels().footprints_m.size())) +
@@ -158,22 +159,23 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
-    return {
-        query_constants(layout, coverage, options.is_shaped) + lighting_constants(lighting, sky_map_size) +
-            picture_constants(options) + (lives ? foam_constants() : std::string()),
-        is_lit_afterwards(options)
-            ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
-            : joined({query_files(), {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
-        joined({query_files(),
-                {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-                {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-                lighting_files(),
-                {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
-                spray_files(lighting),
-                {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
-                output_files(options),
-                {"plugin/host/gpu/false_colour.glsl", points_file(options),
-                 shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
+    return {query_constants(layout, coverage, options.is_shaped) +
+                lighting_constants(lighting, sky_map_size) + picture_constants(options) +
+                (lives ? foam_constants() : std::string()),
+            is_lit_afterwards(options)
+                ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
+                : joined({query_files(),
+                          {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
+            joined({query_files(),
+                    {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+                    lighting_files(),
+                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
+                    output_files(options),
+                    {"plugin/host/gpu/false_colour.glsl", points_file(options),
+                     shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {

@@ -51,18 +51,17 @@ std::vector<Uniform> light_uniforms(const Sky& sky) {
 }
 
 std::vector<Uniform> water_uniforms(const WaterBody& water) {
-    return {
-        vector("water_reflectance", water.reflectance),
-        vector("water_absorption_shorter", water.absorption.shorter),
-        vector("water_absorption_longer", water.absorption.longer),
-        vector("water_backscatter_shorter", water.backscatter.shorter),
-        vector("water_backscatter_longer", water.backscatter.longer),
-        vector("water_floor_shorter", water.floor_colour.shorter),
-        vector("water_floor_longer", water.floor_colour.longer),
-        vector("water_waves", water.waves),
-        {"water_crests", 4,
-         glm::vec4(water.has_body ? 1.0f : 0.0f, water.floor_m, water.crest_light, water.crest_per_m)},
-        {"water_bubbles", 2, glm::vec4(water.bubbles, water.bubbles_m, 0.0f, 0.0f)}};
+    return {vector("water_reflectance", water.reflectance),
+            vector("water_absorption_shorter", water.absorption.shorter),
+            vector("water_absorption_longer", water.absorption.longer),
+            vector("water_backscatter_shorter", water.backscatter.shorter),
+            vector("water_backscatter_longer", water.backscatter.longer),
+            vector("water_floor_shorter", water.floor_colour.shorter),
+            vector("water_floor_longer", water.floor_colour.longer),
+            vector("water_waves", water.waves),
+            {"water_body_look", 4,
+             glm::vec4(water.has_body ? 1.0f : 0.0f, water.floor_m, water.crest_light, water.crest_per_m)},
+            {"water_bubbles", 2, glm::vec4(water.bubbles, water.bubbles_m, 0.0f, 0.0f)}};
 }
 
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {

@@ -221,7 +221,8 @@ void key_controls(Scene& scene, const PanelSection& section) {
 
 const PanelSection& keys_of(std::string_view title) {
     const std::vector<PanelSection>& all = panel_sections();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const PanelSection& s) { return s.title == title; });
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const PanelSection& s) { return s.title == title; });
     if (found == all.end()) throw std::logic_error("the panel has no section " + std::string(title));
     return *found;
 }
@@ -257,7 +258,10 @@ void sky_section(Scene& scene, const Readout& readout) {
 }
 
 void water_section(Scene& scene) {
-    if (section(keys_of("Water").title)) key_controls(scene, keys_of("Water"));
+    if (!section(keys_of("Water").title)) return;
+    key_controls(scene, keys_of("Water"));
+    // Jerlov's types have plankton of their own.
+    if (scene.water.type > WaterType::Turbid) scene.water.chlorophyll_mg_m3 = Water{}.chlorophyll_mg_m3;
 }
 
 void light_section(LightingChoice& choice) {
@@ -516,8 +520,7 @@ const std::vector<PanelSection>& panel_sections() {
           "effects.foam_old_albedo", "effects.foam_new_opaque", "effects.foam_old_opaque"}},
         {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
         {"Water",
-         {"water.type", "water.chlorophyll_mg_m3", "water.body", "water.crest_light",
-          "water.bubbles"}},
+         {"water.type", "water.chlorophyll_mg_m3", "water.body", "water.crest_light", "water.bubbles"}},
         {"Picture", {"surface.cell_px"}}};
     return sections;
 }

@@ -93,7 +93,7 @@ constexpr std::size_t kPointBytes = 3 * sizeof(glm::vec2) + 2 * sizeof(float) + 
                                     2 * (2 * sizeof(glm::vec4) + 6 * sizeof(std::uint32_t)) +
                                     sizeof(glm::vec3);
 // [bytes/pixel] of the driver's pictures of five terms, the points and their depth; of what is read back from it.
-constexpr std::size_t kDrawnBytes = 7 * sizeof(glm::vec4) + sizeof(float),
+constexpr std::size_t kDrawnBytes = 8 * sizeof(glm::vec4) + sizeof(float),
                       kReadBytes = sizeof(SeaRadiance) + 1 + sizeof(glm::vec4);
 // Mesa's driver in software, with its compiler and the programs of this sea.
 constexpr std::size_t kDriverBytes = std::size_t{64} << 20;

@@ -272,8 +272,9 @@ void SeaRenderer::Implementation::make_pictures(glm::ivec2 size, bool layers) {
                                points[i].name(), 0);
     }
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
-    glDrawBuffers(static_cast<GLsizei>(points.size()),
-                  std::array<GLenum, 3>{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2}.data());
+    glDrawBuffers(
+        static_cast<GLsizei>(points.size()),
+        std::array<GLenum, 3>{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2}.data());
     require_framebuffer();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     picture_size = size;

@@ -429,10 +429,16 @@ class Preview {
     }
 
     void show_sky(const std::shared_ptr<const LiveSky>& sky) {
-        water_ = make_water(controls_.scene);
-        renderer_.set_sky(sky->sky, water_);
         sky_ = sky;
+        take_water();
+        renderer_.set_sky(sky->sky, water_);
         meter();
+    }
+
+    std::string water_content() const { return canonical(controls_.scene, key_parts(KeyPart::Water)); }
+    void take_water() {
+        water_ = make_water(controls_.scene);
+        water_from_ = water_content();
     }
 
     void meter() {
@@ -456,9 +462,10 @@ class Preview {
         sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_));
         const std::shared_ptr<const LiveBuild> before = frame_ ? frame_->build : nullptr;
         frame_ = sea_.newest();
-        if (frame_ && frame_->build != before) {
-            water_ = make_water(controls_.scene);
+        if ((frame_ && frame_->build != before) || water_content() != water_from_) {
+            take_water();
             renderer_.set_water(water_);
+            meter();
         }
         const LiveStatus status = sea_.status();
         if (!std::exchange(readout_.building_sea, status.building)) asked_at_ = Clock::now();
@@ -532,7 +539,10 @@ class Preview {
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
         lacks_drops_ = false;
-        if (has_spray_) show_spray(view);
+        if (has_spray_)
+            show_spray(view);
+        else
+            renderer_.set_spray({});
         renderer_.draw(view, *mesh, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
@@ -628,6 +638,7 @@ class Preview {
     double metered_wind_mps_ = 0.0;
     float exposure_ = 1.0f;
     WaterBody water_;
+    std::string water_from_;
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
     long uploaded_ = 0;  // the frame's number

@@ -53,7 +53,7 @@ py::dict arrays_of(const std::vector<SprayDrop>& drops) {
 class PythonDrops {
   public:
     PythonDrops(const PythonSea& sea, std::optional<double> size_m)
-        : sea_(sea.sea), size_m_(size_m.value_or(2.0 * kDropsReach_m)) {
+        : sea_(sea.sea), size_m_(size_m.value_or(kDropsSquare_m)) {
         if (!limits::kSurfaceSize_m.holds(size_m_))
             throw py::value_error("size_m: accepted: " + text_of(limits::kSurfaceSize_m) + ", or None");
     }
@@ -71,7 +71,8 @@ class PythonDrops {
         beside_others(
             watch, [&] { find(t_s, glm::dvec2(eye), drops, watch.flag()); }, "finding drops was cancelled");
         if (eye_m) {
-            for (SprayDrop& drop : drops) drop.section_m2 *= parcel_share(glm::distance(drop.position_m, eye));
+            for (SprayDrop& drop : drops)
+                drop.section_m2 *= parcel_share(glm::distance(drop.position_m, eye));
             std::erase_if(drops, [](const SprayDrop& drop) { return !(drop.section_m2 > 0.0); });
         }
         return arrays_of(drops);

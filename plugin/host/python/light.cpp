@@ -245,7 +245,7 @@ void add_light(py::module_& module) {
              py::arg("scene"))
         .def_property_readonly(
             "reflectance", [](const WaterBody& self) { return tuple_of(self.reflectance); },
-            "Diffuse, just below the surface, linear Rec. 709.")
+            "Diffuse, just below the surface, linear Rec. 709; of a body of water under an even sky, with its floor, seen from 45 degrees.")
         .def_property_readonly(
             "absorption_per_m", [](const WaterBody& self) { return tuple_of(self.absorption_per_m); },
             "[1/m], at the dominant wavelengths of red, green and blue.")

@@ -121,7 +121,6 @@ TEST(SprayDrops, AFrameAloneIsThatOfARun) {
     EXPECT_FALSE(are_same(alone, drops_at(other, 0.75)));
 }
 
-// What a square shows of the sea beside another is what that one shows there.
 TEST(SprayDrops, DependOnNothingElseThatIsAskedOfTheSea) {
     Scene scene = drops_scene();
     scene.effects.foam_decay_s = 3.0;
@@ -134,6 +133,7 @@ TEST(SprayDrops, DependOnNothingElseThatIsAskedOfTheSea) {
     EXPECT_TRUE(are_same(alone, asked_for(products(Product::Displacement, Product::Coverage))));
 }
 
+// What a square shows of the sea beside another is what that one shows there.
 TEST(SprayDrops, SquaresThatMeetShareThem) {
     SprayDrops<float> of = drops_over(drops_scene());
     std::map<std::int64_t, SprayDrop> here;

@@ -41,12 +41,14 @@ Sky sunny(double elevation) {
 
 vec3 sea_of(const Sky& sky, const WaterBody& water, SeaPoint point, bool foam = false) {
     SeaRadiance lit;
-    shade_sea({.sun = false, .sky = false, .whitecaps = foam, .air = false}, sky, water, {&point, 1}, {&lit, 1});
+    shade_sea({.sun = false, .sky = false, .whitecaps = foam, .air = false}, sky, water, {&point, 1},
+              {&lit, 1});
     return lit.sea;
 }
 
 vec3 from(double theta, double azimuth = -oracle::kPi / 2.0) {
-    return vec3(dvec3(std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth), std::cos(theta)));
+    return vec3(
+        dvec3(std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth), std::cos(theta)));
 }
 
 constexpr double kDegree = oracle::kPi / 180.0;
@@ -70,10 +72,11 @@ TEST(Water, OverAWhiteFloorIsAFurnace) {
             water.waves = vec3(s, s, 0.0f);
             SeaRadiance lit;
             const SeaPoint point{.to_eye = from(theta * kDegree), .slope_variance = vec3(s, s, 0.0f)};
-            shade_sea({.whitecaps = false, .air = false, .sky_quality = SkyQuality::One}, sky, water, {&point, 1},
-                      {&lit, 1});
+            shade_sea({.whitecaps = false, .air = false, .sky_quality = SkyQuality::One}, sky, water,
+                      {&point, 1}, {&lit, 1});
             // A sky of 1 is mirrored by a map of 1; its lookups are blurred at grazing angles by less than this.
-            for (int c = 0; c < 3; ++c) EXPECT_NEAR(lit.sky[c] + lit.sea[c], 1.0f, 5e-3f) << s << ' ' << theta;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(lit.sky[c] + lit.sea[c], 1.0f, 5e-3f) << s << ' ' << theta;
         }
 }
 
@@ -83,12 +86,15 @@ TEST(Water, TakesInMoreOfALowSunWhereItIsRough) {
     Optics optics;
     for (const double elevation : {1.0, 5.0, 20.0, 60.0}) {
         const double level = 1.0 - oracle::fresnel(std::sin(elevation * kDegree));
-        EXPECT_NEAR(optics.entering(sunny(elevation * kDegree).sun_direction, vec3(kLevel, kLevel, 0.0f)), level, 0.01)
+        EXPECT_NEAR(optics.entering(sunny(elevation * kDegree).sun_direction, vec3(kLevel, kLevel, 0.0f)),
+                    level, 0.01)
             << elevation;
     }
     const float up = 0.0316f, cross = 0.0222f;  // Cox and Munk 1954 at 10 m/s
-    for (const auto& [elevation, entering] : {std::pair{1.0, 0.752f}, {5.0, 0.783f}, {10.0, 0.821f}, {20.0, 0.892f}, {30.0, 0.939f}})
-        EXPECT_NEAR(optics.entering(sunny(elevation * kDegree).sun_direction, vec3(cross, up, 0.0f)), entering, 0.02f)
+    for (const auto& [elevation, entering] :
+         {std::pair{1.0, 0.752f}, {5.0, 0.783f}, {10.0, 0.821f}, {20.0, 0.892f}, {30.0, 0.939f}})
+        EXPECT_NEAR(optics.entering(sunny(elevation * kDegree).sun_direction, vec3(cross, up, 0.0f)),
+                    entering, 0.02f)
             << elevation;
 }
 
@@ -153,11 +159,12 @@ TEST(Water, BubblesBrightenItUnderFoam) {
     const auto seen = [&](float coverage, float active, float age_s) {
         const SeaPoint point{.to_eye = from(0.6), .coverage = coverage, .active = active, .age_s = age_s};
         // As it would be without the foam before it.
-        const float clear = sea_of(sky, without, point, true).y / sea_of(sky, without, {.to_eye = from(0.6)}, true).y;
+        const float clear =
+            sea_of(sky, without, point, true).y / sea_of(sky, without, {.to_eye = from(0.6)}, true).y;
         return sea_of(sky, water, point, true) / clear;
     };
-    const vec3 none = seen(0.0f, 0.0f, 0.0f), fresh = seen(0.5f, 0.5f, 0.0f), some_s = seen(0.5f, 0.0f, 10.0f),
-               minute = seen(0.5f, 0.0f, 60.0f);
+    const vec3 none = seen(0.0f, 0.0f, 0.0f), fresh = seen(0.5f, 0.5f, 0.0f),
+               some_s = seen(0.5f, 0.0f, 10.0f), minute = seen(0.5f, 0.0f, 60.0f);
     for (int c = 0; c < 3; ++c) {
         EXPECT_EQ(none[c], sea_of(sky, without, {.to_eye = from(0.6)}, true)[c]);
         EXPECT_GT(fresh[c], some_s[c]);
@@ -167,13 +174,23 @@ TEST(Water, BubblesBrightenItUnderFoam) {
     EXPECT_GT(some_s.y, 1.5f * some_s.x);
     EXPECT_GT(fresh.y, 5.0f * none.y);
     EXPECT_LT(fresh.y, 1.0f / 1.34f / 1.34f);
+    // However deep they are, no more comes back than came in: from a sky of 1, 1.
+    for (const float gain : {1.0f, 10.0f})
+        for (const float active : {0.0f, 0.5f, 1.0f}) {
+            water.bubbles = gain;
+            water.bubbles_m = 2.0f;
+            const vec3 most =
+                sea_of(even_sky(), water, {.to_eye = from(0.6), .coverage = 1.0f, .active = active}, true);
+            for (int c = 0; c < 3; ++c) EXPECT_LE(most[c], 1.0f) << gain << ' ' << active;
+        }
 }
 
 TEST(Water, BodysHardCasesStayFinite) {
     for (const double elevation : {-90.0, -1.0, -1e-6, 0.0, 1e-6, 0.3, 45.0, 90.0})
         for (const double depth : {1e-12, 1e-3, 1.0, 1e6, 1e9})
             for (const double chlorophyll : {0.0, 100.0})
-                for (const vec3 waves : {vec3(1e-10f, 1e-10f, 0.0f), vec3(0.3f, 1e-10f, 0.0f), vec3(2.0f, 2.0f, 1.999f)})
+                for (const vec3 waves :
+                     {vec3(1e-10f, 1e-10f, 0.0f), vec3(0.3f, 1e-10f, 0.0f), vec3(2.0f, 2.0f, 1.999f)})
                     for (const vec3 crest : {vec3(0.0f), vec3(1e6f, -1e6f, 1e6f), vec3(0.0f, 1e-30f, -1e4f)})
                         for (const float bubbles_m : {0.0f, 1e-6f, 10.0f})
                             for (const double theta : {0.0, 60.0, 90.0, 120.0}) {
@@ -193,7 +210,8 @@ TEST(Water, BodysHardCasesStayFinite) {
                                                           .age_s = 1e9f,
                                                           .crest = crest},
                                                          true);
-                                ASSERT_TRUE(std::isfinite(seen.x + seen.y + seen.z)) << elevation << ' ' << depth;
+                                ASSERT_TRUE(std::isfinite(seen.x + seen.y + seen.z))
+                                    << elevation << ' ' << depth;
                                 ASSERT_GE(std::min({seen.x, seen.y, seen.z}), 0.0f);
                                 ASSERT_LT(std::max({seen.x, seen.y, seen.z}), 100.0f);
                             }

@@ -107,17 +107,15 @@ TEST(Foam, IsKoepkesAndShowsTheWater) {
 TEST(Foam, HidesWhatItsOpacitySays) {
     Optics optics;
     Inputs inputs(33);
-    const Optics::SeaLight light{normalize(vec3(0.5f, 0.0f, 0.3f)),
-                                 vec3(1e4f),
-                                 float(kFoamRadius),
-                                 vec3(0.7f),
-                                 vec3(1.0f),
-                                 plain_water(vec3(0.02f))};
+    const Optics::SeaLight light{
+        normalize(vec3(0.5f, 0.0f, 0.3f)), vec3(1e4f), float(kFoamRadius), vec3(0.7f), vec3(1.0f),
+        plain_water(vec3(0.02f))};
     for (int i = 0; i < 1000; ++i) {
         const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.1, 0.9);
         const vec3 up(0.0f, 0.0f, 1.0f);
         const auto terms = [&](float opacity) {
-            return optics.sea_radiance(v, up, s, {opacity, 0.55f, 0.0f}, optics.no_crest_nor_bubbles(), light);
+            return optics.sea_radiance(v, up, s, {opacity, 0.55f, 0.0f}, optics.no_crest_nor_bubbles(),
+                                       light);
         };
         const auto none = terms(0.0f), some = terms(0.25f), all = terms(1.0f);
         EXPECT_EQ(none.foam, vec3(0.0f));

@@ -48,8 +48,7 @@ TEST(WaterBody, PlanktonTurnsBlueIntoGreen) {
 }
 
 TEST(WaterBody, RiversMakeItBrighterAndBrowner) {
-    const glm::vec3 ocean = colour(kNone, 1.0), coastal = colour(kCoast, 1.0),
-                    turbid = colour(kEstuary, 1.0);
+    const glm::vec3 ocean = colour(kNone, 1.0), coastal = colour(kCoast, 1.0), turbid = colour(kEstuary, 1.0);
     EXPECT_GT(coastal.g, coastal.b);
     EXPECT_GT(coastal.g, coastal.r);
     EXPECT_GT(turbid.g, turbid.b);
@@ -61,8 +60,7 @@ TEST(WaterBody, RiversMakeItBrighterAndBrowner) {
 // Pope and Fry 1997 at 610 nm: 0.2644 1/m, all but alone in clear water; in blue the light goes on for tens of metres.
 // Rivers dim it within metres. At each wavelength 0.33 b_b/(a + b_b) is near the reflectance's channel.
 TEST(WaterBody, CoefficientsAreThoseOfTheReflectance) {
-    const WaterBody clear = body_of(kNone, 0.03),
-                    turbid = body_of(kEstuary, 3.0);
+    const WaterBody clear = body_of(kNone, 0.03), turbid = body_of(kEstuary, 3.0);
     EXPECT_NEAR(clear.absorption_per_m.r, 0.2644f, 0.01f);
     EXPECT_LT(clear.absorption_per_m.b, 0.03f);
     EXPECT_GT(turbid.absorption_per_m.b, 0.3f);

@@ -369,7 +369,8 @@ TEST_F(StageLightTest, WaterAndFoamHaveTheCoresColours) {
             // Through the surface, the water and its underside, and into the narrower cone below; of a body the surface is rough, and what
             // it sends down again is told by that.
             const glm::dvec3 expected = below * (1.0 - 0.06751) / (1.0 - 0.48 * below) / (1.34 * 1.34);
-            EXPECT_LT(largest(glm::abs(color - expected)), scene.water.body ? 0.05 * largest(expected) : 1e-6);
+            EXPECT_LT(largest(glm::abs(color - expected)),
+                      scene.water.body ? 0.05 * largest(expected) : 1e-6);
             EXPECT_LT(largest(glm::abs(foam - (0.22 + 0.6 * color))), 1e-6);
             for (const char* shader : {"def Shader \"Preview\"", "def Shader \"Surface\""}) {
                 const Prim prim = prim_of(stage, shader);
@@ -393,7 +394,8 @@ TEST_F(StageLightTest, WaterAndFoamHaveTheCoresColours) {
             shade_sea({}, even, without_bubbles, points, seen);
             // At 45° the parallel part is the square of the other one.
             const double below_rad = std::asin(std::sqrt(0.5) / 1.34), above_rad = kPi / 4.0,
-                         across = std::pow(std::sin(above_rad - below_rad) / std::sin(above_rad + below_rad), 2.0),
+                         across =
+                             std::pow(std::sin(above_rad - below_rad) / std::sin(above_rad + below_rad), 2.0),
                          fresnel = 0.5 * across * (1.0 + across);
             EXPECT_LT(largest(glm::abs(glm::dvec3(seen[0].sea) - (1.0 - fresnel) * color)), 1e-5);
             // The core's foam is rough: its facets see 0.956 of the sky.

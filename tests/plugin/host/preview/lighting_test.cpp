@@ -145,15 +145,16 @@ struct Functions {
                  FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 10.0f * cc, 0.0f);
                  return vec4(foam_opacity_in(noise, ww, bb), noise.shown, noise.variance, 0.0f);)
     PELAGIC_BOTH(whole_sea,
-                 SeaTerms t = sea_radiance(vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),
-                                           SeenBody(vec3(0.3f * nn.x, 0.3f * nn.y, aa), 0.2f * ww, 0.3f * bb, 20.0f * cc),
-                                           SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f,
-                                                    vec3(80.0f, 70.0f, 60.0f), vec3(10.0f, 12.0f, 15.0f),
-                                                    WaterLook(vec3(0.01f, 0.03f, 0.05f), cc > 0.3f,
-                                                              WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
-                                                              WaterBands(vec3(0.004f), vec3(0.003f)),
-                                                              WaterBands(vec3(0.2f), vec3(0.3f)), bb > 0.5f ? 3.0f : 1.0e9f,
-                                                              vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f)));
+                 SeaTerms t = sea_radiance(
+                     vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),
+                     SeenBody(vec3(0.3f * nn.x, 0.3f * nn.y, aa), 0.2f * ww, 0.3f * bb, 20.0f * cc),
+                     SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f, vec3(80.0f, 70.0f, 60.0f),
+                              vec3(10.0f, 12.0f, 15.0f),
+                              WaterLook(vec3(0.01f, 0.03f, 0.05f), cc > 0.3f,
+                                        WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
+                                        WaterBands(vec3(0.004f), vec3(0.003f)),
+                                        WaterBands(vec3(0.2f), vec3(0.3f)), bb > 0.5f ? 3.0f : 1.0e9f,
+                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f)));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(screen, return vec4(display_colour(vec3(aa, bb, ww), 2.0f), 0.0f);)
     PELAGIC_BOTH(disc,

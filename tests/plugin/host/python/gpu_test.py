@@ -137,6 +137,20 @@ class Seas(unittest.TestCase):
         self.assertTrue(sea.serves(scene) and light.serves(scene))
         self.assertNotEqual(sea.foam(scene, (0.0, 0.0), light), before)
 
+    def test_water_follows_the_scene_over_the_same_sea_and_sky(self):
+        scene = pelagic.Scene()
+        sea, light = pelagic.GpuSea(scene), pelagic.GpuLight(scene)
+        before = sea.water(scene)
+        self.assertEqual(sea.water(scene), before)
+        scene.water.type, scene.water.bubbles = "jerlov-3C", 0.0
+        self.assertTrue(sea.serves(scene) and light.serves(scene))
+        after = sea.water(scene)
+        self.assertEqual(after.keys(), before.keys())
+        self.assertNotEqual(after["water_absorption_shorter"], before["water_absorption_shorter"])
+        self.assertEqual(after["water_bubbles"][0], 0.0)
+        fragment = sea.shaders(light)["sea"][1]
+        self.assertTrue(all(name in fragment for name in after), after.keys())
+
 
 class LivingFoam(unittest.TestCase):
     @staticmethod

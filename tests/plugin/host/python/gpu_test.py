@@ -138,8 +138,8 @@ class Seas(unittest.TestCase):
         self.assertNotEqual(sea.foam(scene, (0.0, 0.0), light), before)
 
     def test_water_follows_the_scene_over_the_same_sea_and_sky(self):
-        scene = pelagic.Scene()
-        sea, light = pelagic.GpuSea(scene), pelagic.GpuLight(scene)
+        scene = small_scene()
+        sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)
         before = sea.water(scene)
         self.assertEqual(sea.water(scene), before)
         scene.water.type, scene.water.bubbles = "jerlov-3C", 0.0

@@ -185,10 +185,11 @@ CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec
 }
 
 // Bubbles of clean air, larger ones first gone: ¾ of their cross-section over the volume at the surface [1/m], by the age of the foam
-// above them. Deane and Stokes' sizes (2002), by the speeds at which they rise; the decay at the end is a guess.
+// above them. Deane and Stokes' sizes (2002), by the speeds at which they rise. Clouds begin with a void fraction of 3e-3, which is known to
+// an order of magnitude (1e-3 … 1e-2): more makes storms milk. The decay at the end is a guess.
 float bubbles_per_m(float age_s, float depth_m) {
     float risen = age_s / (4.0f * max(depth_m, 1.0e-3f));
-    return 12.5f * (0.82f * exp(-risen) + 0.18f * pow(1.0f + risen, -0.75f)) * exp(-0.01f * age_s);
+    return 3.75f * (0.82f * exp(-risen) + 0.18f * pow(1.0f + risen, -0.75f)) * exp(-0.01f * age_s);
 }
 
 // The radiance just above the surface, before the factor (1 − F̄) of transmission outwards: level axes, the normal facing the eye.

@@ -94,7 +94,7 @@ struct WaterBack {
     vec3 near;
 };
 
-// 1/cosine of the light of a uniform sky below the surface, in the mean.
+// 1/cosine of the light of a uniform sky below a level surface, in the mean over what enters.
 const float kSkySlant = 1.17f;
 
 // What bubbles of that b_g L add to a reflectance, t/(1 + 0.7 t) of what is left of 1. dim: 1.1 κ/µ L, light that is lost among them. A fit of
@@ -180,6 +180,7 @@ CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec
         lit = here * entering(vec3(ahead * across, here), variance);
     }
     float towards = max(-(to_eye.x * ahead.x + to_eye.y * ahead.y), 0.0f);
+    // Waves less steep than some 0.1 have no crests to look through; faces that lean from the eye show none: both by eye.
     float share = smoothstep(0.0f, 0.15f, steepness) * towards * smoothstep(-0.5f, 0.5f, slope / steepness);
     return CrestLight(lit, 1.25f * (1.0f - fresnel_exact(there, kWaterIndex)) * there, share, 2.0f * phase / per_m);
 }

@@ -1,4 +1,4 @@
-// The shape of long waves at a vertex, for light through crests: their slopes and height [m]; 0 where the water has no such light.
+// The shape of long waves at a vertex, for the light in the water: their slopes and height [m]; 0 where they don't shape it.
 uniform vec4 water_body_look;
 
 vec3 crest_at(vec2 rest_m, vec3 cell) {

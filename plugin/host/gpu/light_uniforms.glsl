@@ -16,5 +16,5 @@ uniform vec3 water_backscatter_longer;
 uniform vec3 water_floor_shorter;
 uniform vec3 water_floor_longer;
 uniform vec3 water_waves;
-uniform vec4 water_body_look;   // has_body, floor_m, crest_light, crest_per_m of WaterLook
-uniform vec2 water_bubbles;  // bubbles, bubbles_m
+uniform vec4 water_body_look;  // has_body, floor_m, crest_light, crest_per_m of WaterLook
+uniform vec2 water_bubbles;    // bubbles, bubbles_m

@@ -94,7 +94,8 @@ struct WaterBack {
     vec3 near;
 };
 
-// 1/cosine of the light of a uniform sky below a level surface, in the mean over what enters.
+// 1/cosine that stands for all light of a uniform sky below the surface. Its mean there is 2n²(1 − √(1 − 1/n²)) = 1.20; slanted light is
+// lost first, so that less serves a column better.
 const float kSkySlant = 1.17f;
 
 // What bubbles of that b_g L add to a reflectance, t/(1 + 0.7 t) of what is left of 1. dim: 1.1 κ/µ L, light that is lost among them. A fit of

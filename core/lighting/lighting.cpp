@@ -20,10 +20,11 @@ using namespace glm;
 template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 struct Shading {
     explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = {},
-                     const FoamImage* of_foam = nullptr)
+                     const FoamImage* of_foam = nullptr, std::span<const float> of_floor = {})
         : map(sky_map),
           seen_air(of_air),
           foam_image(of_foam),
+          floor_values(of_floor),
           kSkyMapSize(static_cast<float>(sky_map.size())),
           kSun(choice.sun),
           kSky(choice.sky),
@@ -42,6 +43,7 @@ struct Shading {
     const SkyMap& map;
     const Air* seen_air;
     const FoamImage* foam_image;
+    const std::span<const float> floor_values;
     const float kSkyMapSize;
     const bool kSun, kSky, kWater, kWhitecaps, kSecondReflection, kMeshMasking;
 
@@ -50,6 +52,7 @@ struct Shading {
         return foam_image->texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(foam_image->side) +
                                   static_cast<std::size_t>(x)];
     }
+    float floor_value(int i) const { return floor_values[static_cast<std::size_t>(i)]; }
     vec4 air_texel(int column, int row) const {
         return seen_air
             ->texels[static_cast<std::size_t>(row) * Air::kWidth + static_cast<std::size_t>(column)];
@@ -63,6 +66,7 @@ struct Shading {
 #include "core/lighting/slopes.glsl"
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
+#include "core/lighting/floor.glsl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
@@ -120,29 +124,36 @@ SeaAlbedo albedo(const WaterBody& body) {
     Variant shading(none);
     // Of irradiance π the radiance is the albedo.
     const vec3 up(0.0f, 0.0f, 1.0f), dark(0.0f), sky(shading.kPi);
-    const glm::vec3 water =
-        body.has_body ? shading.body_radiance({kSeenFrom, 0.0f, kSeenFrom}, up, up, dark, dark, sky,
-                                              look_of<Variant>(body), shading.no_crest_nor_bubbles())
-                      : shading.water_radiance(up, dark, sky, body.reflectance);
+    const glm::vec3 water = body.has_body
+                                ? shading.body_radiance({kSeenFrom, 0.0f, kSeenFrom}, up, up, dark, dark, sky,
+                                                        look_of<Variant>(body), typename Variant::FloorView{},
+                                                        dark, shading.no_crest_nor_bubbles())
+                                : shading.water_radiance(up, dark, sky, body.reflectance);
     return {.water = water,
             .foam = glm::mix(water, vec3(shading.kWhiteFoam), shading.kFoamOpacity),
             .water_index = shading.kWaterIndex};
 }
 
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
-                       std::span<SeaRadiance>, const Air*, const FoamPattern&);
+                       std::span<SeaRadiance>, const Air*, const FoamPattern&, const FloorSeen&);
 
 template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                  std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
-                 const FoamPattern& foam) {
+                 const FoamPattern& foam, const FloorSeen& floor) {
     using Variant = Shading<kFresnel, kSkyQuality>;
     const bool by_place = air && air->by_place > 0.0f;
-    Variant shading(sky.map, air, choice, foam.picture);
+    Variant shading(sky.map, air, choice, foam.picture, floor.values);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
-    const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
-                                           sky.sun_irradiance, sky.sky_irradiance, look_of<Variant>(water)};
+    const typename Variant::SeaLight light{sky.sun_direction,
+                                           sky.sun_radiance,
+                                           sky.sun_angular_radius,
+                                           sky.sun_irradiance,
+                                           sky.sky_irradiance,
+                                           look_of<Variant>(water),
+                                           {floor.is_seen, floor.z_m, floor.depths, floor.depths_per_m,
+                                            floor.colours, floor.colours_first, floor.light, floor.coarse}};
     const typename Variant::FoamPattern pattern{foam.cell, foam.rest,  foam.axes,
                                                 foam.look, foam.white, foam.image};
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -154,7 +165,8 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         const bool has_bubbles = choice.whitecaps && water.bubbles > 0.0f;
         const float covered = has_bubbles ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
                     fresh = std::min(covered, std::max(p.active, 0.0f));
-        const typename Variant::SeenBody body{p.crest, fresh, covered - fresh, p.age_s};
+        const typename Variant::SeenBody body{
+            p.from_eye_m, shading.pixel_over(p.pixel_m), p.crest, fresh, covered - fresh, p.age_s};
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
@@ -167,6 +179,12 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
 
 SeaAlbedo sea_albedo(const WaterBody& water) {
     return sea_shading::albedo(water);
+}
+
+WaterBands bands_of(const glm::vec3& colour) {
+    const SkyMap none;
+    const auto of = sea_shading::Shading<FresnelFit::Exact, SkyQuality::One>(none).bands_of(colour);
+    return {of.shorter, of.longer};
 }
 
 float water_entering(const WaterBody& water, glm::vec3 from) {
@@ -183,7 +201,7 @@ glm::vec3 body_reflectance(const WaterBody& water) {
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
-               const FoamPattern& foam) {
+               const FoamPattern& foam, const FloorSeen& floor) {
     if (points.size() != radiance.size()) {
         throw std::invalid_argument("shade_sea: give one SeaRadiance for each SeaPoint");
     }
@@ -200,7 +218,7 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
          sea_shading::shade_batch<FresnelFit(1), SkyQuality(1)>,
          sea_shading::shade_batch<FresnelFit(1), SkyQuality(2)>}};
     kBatches[std::size_t(choice.fresnel)][std::size_t(choice.sky_quality)](choice, sky, water, points,
-                                                                           radiance, air, foam);
+                                                                           radiance, air, foam, floor);
 }
 
 }  // namespace pelagic

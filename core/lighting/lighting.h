@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
@@ -64,6 +65,7 @@ struct SeaPoint {
     glm::vec3 pixel_m{0.0f};
     float active = 1.0f;
     float age_s = 0.0f;
+    glm::vec3 from_eye_m{0.0f};  // in the eye's axes, for the floor below
     // Of the waves longer than kCrestFootprint_m's, for light through crests: slopes and height above the sea at rest [m].
     glm::vec3 crest{0.0f};
 };
@@ -89,15 +91,18 @@ glm::vec3 body_reflectance(const WaterBody& water);
 // level one otherwise.
 float water_entering(const WaterBody& water, glm::vec3 from);
 
+// A colour's values at the wavelengths of water, 0 … 1 (water.glsl).
+WaterBands bands_of(const glm::vec3& colour);
+
 struct Air;
 
 // Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is
 // another one have their own light (place.glsl). Without it all have that of `sky`. foam: the pattern that their rest_m are
-// relative to; without it foam is smooth. Each depends on its point and the arguments alone,
+// relative to; without it foam is smooth. floor: as the eye sees it; without it, it is level and evenly lit. Each depends on its point and the arguments alone,
 // and is finite for finite points. Throws std::invalid_argument if the spans differ in length, or if
 // choice.sky is on and the sky has no map.
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr,
-               const FoamPattern& foam = {});
+               const FoamPattern& foam = {}, const FloorSeen& floor = {});
 
 }  // namespace pelagic

@@ -603,6 +603,13 @@ void add_light_and_water(Built& out) {
              .help = "how much the bubbles under foam brighten the water; 1 is as computed, 0 none",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0},
+             .key_parts = kWater}),
+        row<&Water::caustics>(
+            {.name = "caustics",
+             .help =
+                 "how much waves gather the sun's light on a floor that is seen; 1 is as computed, 0 even light",
+             .range = limits::kWaterGain,
+             .soft = SoftRange{0.0, 3.0},
              .key_parts = kWater}));
 }
 

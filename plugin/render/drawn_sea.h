@@ -62,6 +62,9 @@ class DrawnSea {
     // projected grid, where that isn't the scene's.
     void lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double> cell_px = {}) const;
 
+    // The height [m] at which it rests: a cage's mean, where that is all there is.
+    double rest_m() const;
+
     // Whether the flat sea's waves may be over that camera: they are nowhere but where the sea is.
     bool may_be_under_waves(const View& view) const;
     // The height [m] of the cage's surface at rest over a camera whose way up meets it from below: it is in the pool.

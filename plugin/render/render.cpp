@@ -187,6 +187,11 @@ class RendererOf final : public Impl {
         air_height_m_ = height_m;
         stop_if(watch.cancel);
         lay_out_mesh(watch);
+        if (sea_.water().has_body)
+            sea_.light_floor_before(
+                view_,
+                std::max(static_cast<double>(first_pixel_m_), drawn_.needs({view_, frame_}).finest_pixel_m),
+                drawn_.rest_m(), watch.cancel);
         find_drops(pass, watch);
         stop_if(watch.cancel);
     }
@@ -408,6 +413,7 @@ class RendererOf final : public Impl {
         const std::size_t count = batch_.sea.size();
         SeenSea<T>& seen = batch_.seen;
         seen.origin_m = mesh_.points.origin_m;
+        seen.eye_m = view_.position_m;
         seen.resize(count);
         const bool is_flat = mesh_.normal.empty();
         seen.rest_normal.resize(is_flat ? 0 : count);

@@ -10,6 +10,7 @@
 #include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/spray_map.h"
 
 namespace pelagic {
@@ -78,6 +79,14 @@ void SeaLight<T>::find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2,
 }
 
 template <class T>
+void SeaLight<T>::light_floor_before(const View& view, double finest_m, double rest_m,
+                                     const std::atomic<bool>* cancel) {
+    floor_ = Floor(rest_m - static_cast<double>(water_.floor_m));
+    if (choice_.water && choice_.sun)
+        light_floor(floor_, frame(), water_, sky_, view, finest_m, plan().from->scene.water.caustics, cancel);
+}
+
+template <class T>
 void SeaLight<T>::answer(const SeenSea<T>& seen) {
     ProductSet wanted = plan().queries[kQuery].query.products;
     wanted &= ~products(Product::Position, Product::Displacement,
@@ -95,6 +104,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
     const std::vector<float>& coverage = answers_.numbers(Product::Coverage);
     points_.resize(seen.size());
     const FoamPattern foam = foam_pattern(foam_, seen.origin_m);
+    const FloorSeen floor = seen.eye_m ? floor_.seen_from(*seen.eye_m) : FloorSeen{};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen.size(), kShadeGrain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i < range.end(); ++i)
@@ -106,7 +116,8 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                                             .up = seen.up[i],
                                             .mesh_variance = seen.mesh_variance[i],
                                             .rest_m = glm::vec2(seen.rest[i]),
-                                            .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i])};
+                                            .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i]),
+                                            .from_eye_m = -seen.distance_m[i] * seen.to_eye[i]};
                           if (!seen.crest.empty())
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
                                   points_[i].crest = seen.crest[i];
@@ -118,7 +129,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                           const auto part = [&](auto& of) {
                               return std::span(of).subspan(range.begin(), range.size());
                           };
-                          shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam);
+                          shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam, floor);
                           if (choice_.air)
                               see_through(air, part(seen.to_eye), part(seen.distance_m), part(lit));
                           see_through_spray(spray, part(seen.to_eye), part(seen.distance_m), part(lit));

@@ -13,6 +13,7 @@
 #include "core/effects/sea_at_time.h"
 #include "core/evaluate/values.h"
 #include "core/lighting/air.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
@@ -29,7 +30,9 @@ namespace pelagic {
 // Places of the sea and how they are seen, an entry each.
 template <class T>
 struct SeenSea {
-    glm::dvec2 origin_m{0.0};          // of places at rest
+    glm::dvec2 origin_m{0.0};  // of places at rest
+    // From which to_eye and distance_m are, for the floor below; without: it is level and evenly lit.
+    std::optional<glm::dvec3> eye_m;
     std::vector<glm::vec<2, T>> rest;  // [m]
     std::vector<T> pixel_m;  // the pixel's footprint at rest, as in Points (core/evaluate/evaluate.h)
     std::vector<glm::vec<2, T>> pixel_axis_m;
@@ -97,6 +100,11 @@ class SeaLight {
     void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,
                      const std::vector<glm::vec<2, T>>& axis_m, std::vector<glm::vec3>& crest) const;
 
+    // The sun's light on the floor before a camera at the frame's time (light_floor()), where it is seen. finest_m: the finest footprint of the
+    // plan's query; rest_m: the height at which the sea rests there. Throws BuildCancelled.
+    void light_floor_before(const View& view, double finest_m, double rest_m,
+                            const std::atomic<bool>* cancel = nullptr);
+
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
     // The light of the places that were answered last, under a sky, through the air and the spray before the eye.
@@ -113,6 +121,7 @@ class SeaLight {
     Sky sky_;
     WaterBody water_;
     FoamLook foam_;
+    Floor floor_;
     std::shared_ptr<const Sea<T>> sea_;
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;

@@ -913,7 +913,7 @@ void crests() {
             const glm::vec3 normal(glm::normalize(glm::dvec3(is_level ? 0.0 : -point.slope, 0.0, 1.0)));
             return static_cast<double>(shading.body_radiance(glm::vec3(-looks), normal, glm::vec3(sun.to()),
                                                              irradiance, glm::vec3(1.0f), glm::vec3(0.0f),
-                                                             here, seen)[channel]);
+                                                             here, {}, glm::vec3(0.0f), seen)[channel]);
         };
         for (std::size_t i = 0; i < kCrestSuns.size(); ++i) {
             point.said[i] = said(kCrestSuns[i], false, 1.0f);

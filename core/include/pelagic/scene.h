@@ -216,6 +216,7 @@ struct Water {
     glm::dvec3 floor_colour{0.36, 0.31, 0.23};  // of that floor, 0 … 1, linear Rec. 709
     double crest_light = 1.0;  // ≥ 0, times what waves' shape does to that light, crests above all
     double bubbles = 1.0;      // ≥ 0, times the bubbles below foam
+    double caustics = 1.0;     // ≥ 0, times the pattern of the sun's light on the floor
 };
 
 // [effects]

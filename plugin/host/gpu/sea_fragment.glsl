@@ -31,17 +31,19 @@ void main() {
                                 WaterBands(water_backscatter_shorter, water_backscatter_longer),
                                 WaterBands(water_floor_shorter, water_floor_longer), water_body_look.y, water_waves,
                                 water_body_look.z, water_body_look.w, water_bubbles.x, water_bubbles.y);
-    SeenBody body = SeenBody(point_crest(), 0.0, 0.0, 0.0);
+    SeenBody body = SeenBody(pixel_ray() * point_distance_m(), pixel_over(pixel), point_crest(), 0.0, 0.0, 0.0);
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);
         float fresh = min(covered, max(all.breaking, 0.0));
-        body = SeenBody(body.crest, fresh, covered - fresh, all.age_s);
+        body = SeenBody(body.from_eye, body.pixel_m, body.crest, fresh, covered - fresh, all.age_s);
     }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
                         answer.slope_variance, foam, body,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
-                                 water),
+                                 water,
+                                 FloorView(kFloorMaps && floor_level.x > 0.0, floor_level.y, floor_depths, floor_depths_per_m,
+                                           floor_colours, floor_colours_first, floor_light_maps, floor_coarse)),
                         PlaceView(air_to_sun, air_by_place));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)

@@ -8,6 +8,7 @@
 #include "core/lighting/lighting.h"
 #include "core/plan/taps.h"
 #include "plugin/host/gpu/packed_foam.h"
+#include "plugin/host/gpu/uniforms.h"
 
 namespace pelagic {
 namespace {
@@ -74,6 +75,8 @@ const std::vector<std::string_view>& lighting_files() {
                                                      "core/lighting/slopes.glsl",
                                                      "core/lighting/sun.glsl",
                                                      "core/lighting/sky.glsl",
+                                                     "plugin/host/gpu/floor_uniforms.glsl",
+                                                     "core/lighting/floor.glsl",
                                                      "core/lighting/water.glsl",
                                                      "core/lighting/foam.glsl",
                                                      "plugin/host/gpu/foam_uniforms.glsl",
@@ -118,13 +121,14 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            ";\n";
 }
 
-std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
+std::string lighting_constants(const LightingChoice& choice, int sky_map_size, bool floor_maps) {
     const int lookups = choice.sky_quality == SkyQuality::One    ? 1
                         : choice.sky_quality == SkyQuality::Nine ? 9
                                                                  : 0;
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
            constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
-           constant("kFoamCell_m", kFoamCell_m) + constant("kAirColumns", Air::kColumns) +
+           constant("kFoamCell_m", kFoamCell_m) + constant("kFloorColumns", kFloorColumns) +
+           constant("kFloorMaps", floor_maps) + constant("kAirColumns", Air::kColumns) +
            constant("kAirRows", Air::kRows) + constant("kAirHorizonRow", Air::kHorizonRow) +
            constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
            constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
@@ -160,7 +164,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
     return {query_constants(layout, coverage, options.is_shaped) +
-                lighting_constants(lighting, sky_map_size) + picture_constants(options) +
+                lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
                 (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}

@@ -21,6 +21,7 @@
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 
@@ -206,17 +207,27 @@ void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>&
 OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, const OffscreenWatch& watch) {
     const auto sea = std::make_shared<const Sea<float>>(planned.plan, watch.sea);
     SeaRenderer renderer;
-    renderer.set_sky(sky, make_water(planned.scene));
     const View view = view_at(planned.scene.camera, planned.frame);
     const LightingChoice lighting = render_options(planned.scene).lighting;
     Frame<float> state(sea);
     state.set(planned.scene.shot.time_s(planned.frame));
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
     planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
+    const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
+    if (water.has_body) {
+        const auto floor =
+            std::make_shared<Floor>(planned.drawn->rest_m() - static_cast<double>(water.floor_m));
+        if (lighting.water && lighting.sun)
+            light_floor(*floor, state, water, sky, view,
+                        planned.drawn->needs({view, planned.frame}).finest_pixel_m,
+                        planned.scene.water.caustics);
+        renderer.set_floor(floor);
+    }
+    renderer.set_sky(sky, water);
     if (lighting.spray) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);
-        light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
+        light_spray(spray, lighting, sky, water, law_coverage(planned.scene));
         const auto drops = std::make_shared<std::vector<SprayDrop>>();
         if (are_near && !spray.empty())
             SprayDrops<float>(*sea, kDropsSquare_m)

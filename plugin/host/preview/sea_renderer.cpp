@@ -35,6 +35,7 @@ enum OtherUnit : int {
     kSprayMapUnit,
     kDither,
     kFoamImage,
+    kFloorMaps,
     kPictures
 };
 
@@ -108,6 +109,8 @@ struct SeaRenderer::Implementation {
     GlTexture foam_texture;
     std::shared_ptr<const FoamImage> foam_image;  // that the texture has
     bool has_foam_texture = false;
+    std::shared_ptr<const Floor> floor;
+    GlTexture floor_maps;
     GlTexture spray_map;
     std::vector<Uniform> spray;  // empty: there is none
     struct Drops {
@@ -170,6 +173,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     glUniform1i(program.uniform("spray_map"), kSprayMapUnit);
     glUniform1i(program.uniform("dither"), kDither);
     glUniform1i(program.uniform("foam_image"), kFoamImage);
+    glUniform1i(program.uniform("floor_maps"), kFloorMaps);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     // No program reads two of these kinds.
     glUniform1i(program.uniform("sea_depth"), kPictures);
@@ -293,6 +297,8 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
     set_uniforms(program, water);
+    bind_texture(kFloorMaps, floor_maps);
+    set_uniforms(program, floor_uniforms(floor ? floor->seen_from(view.position_m) : FloorSeen{}));
     if (spray.empty()) return;
     bind_texture(kSprayMapUnit, spray_map);
     set_uniforms(program, spray);
@@ -517,6 +523,25 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
 
 void SeaRenderer::set_water(const WaterBody& water) {
     implementation_->water = water_uniforms(water);
+}
+
+void SeaRenderer::set_floor(std::shared_ptr<const Floor> floor) {
+    Implementation& of = *implementation_;
+    of.floor = std::move(floor);
+    if (!of.floor || of.floor->values().empty()) return;
+    const std::vector<float>& values = of.floor->values();
+    const auto columns = static_cast<std::size_t>(kFloorColumns);
+    const std::size_t rows = values.size() / columns, rest = values.size() % columns;
+    edit_texture(of.floor_maps);
+    texels_as_they_are();
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, kFloorColumns, static_cast<GLsizei>(rows + (rest > 0 ? 1 : 0)), 0,
+                 GL_RED, GL_FLOAT, nullptr);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kFloorColumns, static_cast<GLsizei>(rows), GL_RED, GL_FLOAT,
+                    values.data());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(rows), static_cast<GLsizei>(rest),
+                    rest > 0 ? 1 : 0, GL_RED, GL_FLOAT, values.data() + rows * columns);
 }
 
 void SeaRenderer::set_spray(const Spray& spray, std::shared_ptr<const std::vector<SprayDrop>> drops,

@@ -32,6 +32,8 @@ GERMAN = {
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
     "Visibility": "Sichtweite", "Type": "Wasserart", "Body": "Wasserkörper", "Floor colour": "Farbe des Grundes", "Crest light": "Licht durch Kämme",
+    "Floor pattern": "Muster des Grundes", "Caustics": "Kaustik", "Depth file": "Tiefenkarte", "Depth size": "Breite der Tiefenkarte",
+    "Depth east": "Tiefenkarte, Ost", "Depth north": "Tiefenkarte, Nord",
     "Bubbles": "Blasen", "Whitecaps": "Schaumkronen", "Whitecap law": "Schaumkronengesetz",
     "Sea warmer than air": "See wärmer als Luft", "Whitecap amount": "Menge der Schaumkronen", "Breaking from": "Brecher ab",
     "Foam decay": "Schaumabbau", "Foam drift": "Schaumdrift", "Foam structure": "Schaumstruktur", "Foam streaks": "Schaumstreifen",

@@ -81,8 +81,8 @@ double Floor::depth_m(glm::dvec2 place_m) const {
     const FloorSeen seen = seen_from(glm::dvec3(place_m, 0.0));
     floor_shading::Shading shading{seen.values};
     const floor_shading::Shading::FloorView view{
-        true,       0.0f,       seen.depths, seen.depths_per_m, seen.colours, seen.colours_first,
-        seen.light, seen.coarse};
+        true,         seen.z_m,           seen.depths, seen.depths_per_m,
+        seen.colours, seen.colours_first, seen.light,  seen.coarse};
     return -static_cast<double>(shading.floor_height(glm::vec2(0.0f), view));
 }
 

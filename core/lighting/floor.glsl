@@ -36,13 +36,15 @@ float floor_between(vec2 place, int columns, int rows, int first) {
     return mix(mix(floor_value(y0 + x0), floor_value(y0 + x1), t.x), mix(floor_value(y1 + x0), floor_value(y1 + x1), t.x), t.y);
 }
 
-// Height of the floor at a place, from the eye. Beyond the map its nearest edge goes on.
+// Height of the floor at a place, from the eye. Beyond the map it goes from its nearest edge to the level floor, within a quarter of its size.
 float floor_height(vec2 place, FloorView of) {
     if (!(of.depths.z > 0.0f)) return of.z_m;
     vec2 size = vec2(of.depths.z, of.depths.w);
     vec2 at = (place - vec2(of.depths.x, of.depths.y)) * vec2(of.depths_per_m.x, of.depths_per_m.y);
-    at = clamp(at, vec2(0.5f), size - 0.5f);
-    return of.depths_per_m.z - floor_between(at, int(size.x), int(size.y), int(of.depths_per_m.w));
+    vec2 nearest = clamp(at, vec2(0.0f), size);
+    vec2 beyond = 4.0f * (at - nearest) / size;
+    float mapped = of.depths_per_m.z - floor_between(nearest, int(size.x), int(size.y), int(of.depths_per_m.w));
+    return mix(mapped, of.z_m, smoothstep(0.0f, 1.0f, length(beyond)));
 }
 
 // How much a map of n × n texels counts at a place in it: all, and nothing from its edge on.

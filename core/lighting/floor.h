@@ -29,7 +29,8 @@ class Floor {
     // Level, at this height of the world [m]. Not finite: there is none.
     explicit Floor(double z_m = -1e9) : z_m_(z_m) {}
 
-    // Depths below the sea at rest [m], > 0, rows from the south, over a rectangle of the world that begins at from_m. At their edges they go on.
+    // Depths below the sea at rest [m], > 0, rows from the south, over a rectangle of the world that begins at from_m. Beyond it they go over to the
+    // level floor.
     // Throws std::invalid_argument for sizes that aren't positive, another number of values, or too many.
     void set_depths(glm::ivec2 columns_rows, std::vector<float> depths_m, glm::dvec2 from_m,
                     glm::dvec2 size_m);

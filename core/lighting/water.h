@@ -8,6 +8,7 @@ namespace pelagic {
 // Values at 440, 480, 520 nm and at 555, 590, 630 nm. One wavelength for each channel errs by 0.07 in a path's transmittance, six by 0.006.
 struct WaterBands {
     glm::vec3 shorter{0.0f}, longer{0.0f};
+    bool operator==(const WaterBands&) const = default;
 };
 
 struct WaterBody {
@@ -29,6 +30,7 @@ struct WaterBody {
     float crest_per_m = 0.0f;                // wavenumber of the waves that have crests [1/m]; 0: none
     float bubbles = 0.0f;                    // times the bubbles' backscatter
     float bubbles_m = 0.0f;                  // their depth, e-folding
+    bool operator==(const WaterBody&) const = default;
 };
 
 struct WaterChoice {

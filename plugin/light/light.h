@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
@@ -24,7 +25,11 @@ std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
 // Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);
-// What make_sky() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
+// The floor below a sea that rests at a height [m]: level at sea.depth_m, or as the pictures say that sea.depth_file and water.floor_pattern
+// are the paths of. Depths below a centimetre are one: land isn't seen. Throws std::invalid_argument, naming the key and the file, for a picture that
+// can't be read or isn't one of a floor.
+Floor make_floor(const Scene& scene, double rest_m = 0.0);
+// What make_sky(), make_floor() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
 // without any. Throws std::invalid_argument for a file that can't be read.
 std::string picture_content(const Scene& scene);
 // Of make_sky()'s alone.

@@ -23,7 +23,7 @@ constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
 constexpr double kTexelsADepth =
     64.0;  // the finer map's: a light's net at that depth has lines some three texels wide
 constexpr int kRowsAtOnce = 64;
-constexpr int kSplits = 3;  // of a cell's side: its light falls as so many points
+constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
 
 // The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
 struct Beam {
@@ -35,10 +35,10 @@ struct Beam {
     double radius = 0.0;
 };
 
-Beam beam_of(const Sky& sky) {
+Beam beam_of(const FloorLightWanted& wanted) {
     Beam beam;
-    beam.to_sun = glm::dvec3(sky.sun_direction);
-    beam.radius = static_cast<double>(sky.sun_angular_radius);
+    beam.to_sun = glm::dvec3(wanted.sun_direction);
+    beam.radius = static_cast<double>(wanted.sun_angular_radius);
     const double level = glm::length(glm::dvec2(beam.to_sun));
     beam.away = level > 1e-6 ? -glm::dvec2(beam.to_sun) / level : glm::dvec2(1.0, 0.0);
     const double sine = level / kIndex;
@@ -141,23 +141,20 @@ Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const 
     return falls;
 }
 
-// Adds each cell's light to the texels on which it falls.
-void gather(const Falls& falls, const Map& map) {
-    double sum = 0.0;
-    for (const float light : falls.light) sum += static_cast<double>(light);
-    const double mean = sum / static_cast<double>(falls.light.size());
-    const auto side = static_cast<std::size_t>(map.side);
-    std::fill(map.texels.begin(), map.texels.end(), mean > 0.0 ? 0.0f : 1.0f);
-    if (!(mean > 0.0)) return;
+// Adds each cell's light to the texels on which it falls, over `mean`, that of a cell.
+void gather(const Falls& falls, const Map& map, double mean) {
     const auto scale = static_cast<float>(1.0 / (mean * kSplits * kSplits));
     const auto width = static_cast<std::size_t>(falls.columns) + 1;
+    // With a texel round the map, for light that falls on its edge.
+    const auto side = static_cast<std::size_t>(map.side), padded = side + 2;
     // Parts of the sea, always as many, so that sums are the same on any number of threads.
     constexpr int kParts = 4;
     std::array<std::vector<float>, kParts> parts;
     tbb::parallel_for(0, kParts, [&](int part) {
         std::vector<float>& sums = parts[static_cast<std::size_t>(part)];
-        sums.assign(side * side, 0.0f);
+        sums.assign(padded * padded, 0.0f);
         const int first = falls.rows * part / kParts, last = falls.rows * (part + 1) / kParts;
+        const auto most = static_cast<float>(side + 1);
         for (int y = first; y < last; ++y)
             for (int x = 0; x < falls.columns; ++x) {
                 const std::size_t i = width * static_cast<std::size_t>(y) + static_cast<std::size_t>(x);
@@ -172,24 +169,43 @@ void gather(const Falls& falls, const Map& map) {
                                     b = (static_cast<float>(v) + 0.5f) / kSplits;
                         const glm::vec2 at =
                             glm::mix(glm::mix(falls.place[i], falls.place[i + 1], a),
-                                     glm::mix(falls.place[i + width], falls.place[i + width + 1], a), b) -
+                                     glm::mix(falls.place[i + width], falls.place[i + width + 1], a), b) +
                             0.5f;
-                        const auto n = static_cast<float>(map.side - 1);
-                        if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < n && at.y < n)) continue;
+                        if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < most && at.y < most)) continue;
                         const auto column = static_cast<std::size_t>(at.x),
                                    row = static_cast<std::size_t>(at.y);
                         const float right = at.x - static_cast<float>(column),
                                     up = at.y - static_cast<float>(row);
-                        float* const texel = sums.data() + row * side + column;
+                        float* const texel = sums.data() + row * padded + column;
                         texel[0] += light * (1.0f - right) * (1.0f - up);
                         texel[1] += light * right * (1.0f - up);
-                        texel[side] += light * (1.0f - right) * up;
-                        texel[side + 1] += light * right * up;
+                        texel[padded] += light * (1.0f - right) * up;
+                        texel[padded + 1] += light * right * up;
                     }
             }
     });
-    for (const std::vector<float>& sums : parts)
-        for (std::size_t i = 0; i < sums.size(); ++i) map.texels[i] += sums[i];
+    for (std::size_t row = 0; row < side; ++row)
+        for (std::size_t column = 0; column < side; ++column) {
+            float sum = 0.0f;
+            for (const std::vector<float>& sums : parts) sum += sums[(row + 1) * padded + column + 1];
+            map.texels[row * side + column] = sum;
+        }
+}
+
+// What a square metre of the sea at rest lets in of a beam of 1, in the mean over waves of this slope variance towards the sun.
+double mean_light(const Beam& beam, double variance) {
+    const double level = std::sqrt(std::max(1.0 - beam.to_sun.z * beam.to_sun.z, 0.0)),
+                 deviation = std::sqrt(std::max(variance, 0.0));
+    constexpr int kSteps = 24;
+    double sum = 0.0, weights = 0.0;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+        const double z = 4.0 * i / kSteps, slope = deviation * z, weight = std::exp(-0.5 * z * z);
+        const double across = beam.to_sun.z + slope * level;  // the slope falls towards the sun
+        weights += weight;
+        if (across > 0.0)
+            sum += weight * across * transmitted(std::min(across / std::sqrt(1.0 + slope * slope), 1.0));
+    }
+    return sum / weights;
 }
 
 // Variances of the slopes that the map's texels don't resolve: the mean over some places of it.
@@ -251,8 +267,11 @@ bool shows_floor(const WaterBody& water, double depth_m) {
 }
 
 template <class T>
-void light_floor(Floor& floor, const Frame<T>& frame, const WaterBody& water, const Sky& sky,
-                 const View& view, double finest_m, double gain, const std::atomic<bool>* cancel, int side) {
+void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
+                 const std::atomic<bool>* cancel) {
+    const View& view = wanted.view;
+    const WaterBody& water = wanted.water;
+    const int side = wanted.side;
     const glm::dvec2 forward(view.forward);
     const double level = glm::length(forward);
     // Where most of the floor is looked at from near: some depths ahead.
@@ -262,19 +281,20 @@ void light_floor(Floor& floor, const Frame<T>& frame, const WaterBody& water, co
     };
     const double depth_m =
         floor.has_depths() ? floor.depth_m(middle_of(10.0)) : static_cast<double>(water.floor_m);
-    if (!(gain > 0.0 && depth_m > 0.0) || sky.sun_direction.z <= 0.02f || !shows_floor(water, depth_m)) {
+    if (!(wanted.gain > 0.0 && depth_m > 0.0) || wanted.sun_direction.z <= 0.02f ||
+        !shows_floor(water, depth_m)) {
         floor.set_light({});
         return;
     }
-    const double texel_m = std::max(depth_m / kTexelsADepth, finest_m);
-    Floor::Light light{.side = side, .texel_m = texel_m, .from_m = {}, .gain = gain};
+    const double texel_m = std::max(depth_m / kTexelsADepth, wanted.finest_m);
+    Floor::Light light{.side = side, .texel_m = texel_m, .from_m = {}, .gain = wanted.gain};
     const double coarse_m = kFloorLightStep * texel_m;
     for (std::size_t i = 0; i < 2; ++i) {
         const double width_m = side * texel_m * (i == 0 ? 1.0 : kFloorLightStep);
         light.from_m[i] = coarse_m * glm::floor((middle_of(width_m) - 0.5 * width_m) / coarse_m);
     }
     const std::span<float> texels = floor.set_light(light);
-    const Beam beam = beam_of(sky);
+    const Beam beam = beam_of(wanted);
     const double all = static_cast<double>(water.waves.x + water.waves.y);
     const double m0 = frame.sea().plan().from->spectrum.m0();
     for (std::size_t i = 0; i < 2; ++i) {
@@ -286,9 +306,13 @@ void light_floor(Floor& floor, const Frame<T>& frame, const WaterBody& water, co
         const double margin_m =
             std::min(3.0 * std::sqrt(0.5 * all) * per_slope + 3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
                      0.25 * side * map.texel_m);
-        gather(falls_on(map, floor, frame, beam, depth_m, margin_m, cancel), map);
+        const glm::dmat2 hidden = hidden_slopes(frame, map);
+        const glm::dmat2 waves(water.waves.x, water.waves.z, water.waves.z, water.waves.y);
+        const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
+        gather(falls_on(map, floor, frame, beam, depth_m, margin_m, cancel), map,
+               mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
         const glm::dmat2 spread =
-            depth_m * depth_m * beam.per_slope * hidden_slopes(frame, map) * glm::transpose(beam.per_slope);
+            depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
         // The sun's disc: a uniform one's variance is a quarter of its radius' square.
         const double c = beam.cosine_there;
         const double disc = depth_m * beam.radius / (2.0 * kIndex * c);
@@ -301,9 +325,7 @@ void light_floor(Floor& floor, const Frame<T>& frame, const WaterBody& water, co
     }
 }
 
-template void light_floor(Floor&, const Frame<float>&, const WaterBody&, const Sky&, const View&, double,
-                          double, const std::atomic<bool>*, int);
-template void light_floor(Floor&, const Frame<double>&, const WaterBody&, const Sky&, const View&, double,
-                          double, const std::atomic<bool>*, int);
+template void light_floor(Floor&, const Frame<float>&, const FloorLightWanted&, const std::atomic<bool>*);
+template void light_floor(Floor&, const Frame<double>&, const FloorLightWanted&, const std::atomic<bool>*);
 
 }  // namespace pelagic

@@ -4,15 +4,23 @@
 #include <atomic>
 
 #include "core/lighting/floor.h"
-#include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
 
 namespace pelagic {
 
-// Texels of a map's side.
-inline constexpr int kFloorLightSide = 1024;
+// Before which camera, of which sun, through what water.
+struct FloorLightWanted {
+    View view;
+    WaterBody water;
+    glm::vec3 sun_direction{0.0f, 0.0f, 1.0f};
+    float sun_angular_radius = 0.0f;
+    double gain = 1.0;
+    double finest_m = 0.0;  // the finest footprint of the frame's query 0
+    int side = 1024;        // texels of a map
+    bool operator==(const FloorLightWanted&) const = default;
+};
 
 // Whether the water lets so much of the floor's light out that its pattern shows: to a hundredth of what falls on it, at the clearest of the
 // wavelengths.
@@ -21,10 +29,9 @@ bool shows_floor(const WaterBody& water, double depth_m);
 // Sets the floor's light, or takes it away where nothing of it shows. Cells of the sea, as wide as a map's texels, send what they let in by
 // Snell's law for their own slopes to the floor, where it is spread by the slopes that they don't resolve and by the sun's disc. So all light
 // arrives somewhere, and its mean is 1. The maps lie before the camera, on texels of the world, so that they are the same
-// whatever it sees. `finest_m`: the finest footprint of the frame's query 0 [m]. All threads of the calling arena. Throws BuildCancelled.
+// whatever it sees. All threads of the calling arena. Throws BuildCancelled.
 template <class T>
-void light_floor(Floor& floor, const Frame<T>& frame, const WaterBody& water, const Sky& sky,
-                 const View& view, double finest_m, double gain, const std::atomic<bool>* cancel = nullptr,
-                 int side = kFloorLightSide);
+void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
+                 const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace pelagic

@@ -81,9 +81,19 @@ void SeaLight<T>::find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2,
 template <class T>
 void SeaLight<T>::light_floor_before(const View& view, double finest_m, double rest_m,
                                      const std::atomic<bool>* cancel) {
-    floor_ = Floor(rest_m - static_cast<double>(water_.floor_m));
+    if (floor_m_ != rest_m) {
+        floor_ = make_floor(plan().from->scene, rest_m);
+        floor_m_ = rest_m;
+    }
     if (choice_.water && choice_.sun)
-        light_floor(floor_, frame(), water_, sky_, view, finest_m, plan().from->scene.water.caustics, cancel);
+        light_floor(floor_, frame(),
+                    {.view = view,
+                     .water = water_,
+                     .sun_direction = sky_.sun_direction,
+                     .sun_angular_radius = sky_.sun_angular_radius,
+                     .gain = plan().from->scene.water.caustics,
+                     .finest_m = finest_m},
+                    cancel);
 }
 
 template <class T>

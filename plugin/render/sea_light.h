@@ -122,6 +122,7 @@ class SeaLight {
     WaterBody water_;
     FoamLook foam_;
     Floor floor_;
+    std::optional<double> floor_m_;  // the height at rest that it is for
     std::shared_ptr<const Sea<T>> sea_;
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;

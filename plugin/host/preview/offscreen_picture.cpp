@@ -215,12 +215,15 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
     if (water.has_body) {
-        const auto floor =
-            std::make_shared<Floor>(planned.drawn->rest_m() - static_cast<double>(water.floor_m));
+        const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
         if (lighting.water && lighting.sun)
-            light_floor(*floor, state, water, sky, view,
-                        planned.drawn->needs({view, planned.frame}).finest_pixel_m,
-                        planned.scene.water.caustics);
+            light_floor(*floor, state,
+                        {.view = view,
+                         .water = water,
+                         .sun_direction = sky.sun_direction,
+                         .sun_angular_radius = sky.sun_angular_radius,
+                         .gain = planned.scene.water.caustics,
+                         .finest_m = planned.drawn->needs({view, planned.frame}).finest_pixel_m});
         renderer.set_floor(floor);
     }
     renderer.set_sky(sky, water);

@@ -527,6 +527,7 @@ void SeaRenderer::set_water(const WaterBody& water) {
 
 void SeaRenderer::set_floor(std::shared_ptr<const Floor> floor) {
     Implementation& of = *implementation_;
+    if (of.floor == floor) return;
     of.floor = std::move(floor);
     if (!of.floor || of.floor->values().empty()) return;
     const std::vector<float>& values = of.floor->values();

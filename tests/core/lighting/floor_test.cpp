@@ -33,12 +33,15 @@ Floor beach() {
     return floor;
 }
 
-TEST(Floor, IsAsDeepAsItsMapSaysAndGoesOnAtItsEdges) {
+TEST(Floor, IsAsDeepAsItsMapSaysAndGoesToTheLevelFloorBeyond) {
     const Floor floor = beach();
     for (double x = 100.5; x < 119.0; x += 0.37)
         EXPECT_NEAR(floor.depth_m({x, 0.3}), 10.0 - 0.5 * (x - 100.0), 1e-5);
-    EXPECT_NEAR(floor.depth_m({-5e5, 8.0}), 9.75, 1e-5);
-    EXPECT_NEAR(floor.depth_m({5e5, -8.0}), 0.25, 1e-5);
+    EXPECT_NEAR(floor.depth_m({99.99, 0.0}), 9.75, 1e-3);
+    EXPECT_NEAR(floor.depth_m({97.5, 0.0}), 0.5 * (9.75 + 7.0), 1e-5);
+    EXPECT_NEAR(floor.depth_m({110.0, 3.01}), 7.0, 1e-5);
+    for (const glm::dvec2 far : {glm::dvec2(-5e5, 8.0), glm::dvec2(5e5, -8.0), glm::dvec2(1e12, -1e12)})
+        EXPECT_EQ(floor.depth_m(far), 7.0);
     EXPECT_EQ(Floor(-7.0).depth_m({3.0, 4.0}), 7.0);
 }
 

@@ -188,10 +188,8 @@ class RendererOf final : public Impl {
         stop_if(watch.cancel);
         lay_out_mesh(watch);
         if (sea_.water().has_body)
-            sea_.light_floor_before(
-                view_,
-                std::max(static_cast<double>(first_pixel_m_), drawn_.needs({view_, frame_}).finest_pixel_m),
-                drawn_.rest_m(), watch.cancel);
+            sea_.light_floor_before(view_, drawn_.needs({view_, frame_}).finest_pixel_m, drawn_.rest_m(),
+                                    watch.cancel);
         find_drops(pass, watch);
         stop_if(watch.cancel);
     }

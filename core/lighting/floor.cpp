@@ -81,14 +81,17 @@ double Floor::depth_m(glm::dvec2 place_m) const {
     const FloorSeen seen = seen_from(glm::dvec3(place_m, 0.0));
     floor_shading::Shading shading{seen.values};
     const floor_shading::Shading::FloorView view{
-        true,         seen.z_m,           seen.depths, seen.depths_per_m,
-        seen.colours, seen.colours_first, seen.light,  seen.coarse};
+        true,         seen.z_m,           0.0f,       seen.depths, seen.depths_per_m,
+        seen.colours, seen.colours_first, seen.light, seen.coarse};
     return -static_cast<double>(shading.floor_height(glm::vec2(0.0f), view));
 }
 
-FloorSeen Floor::seen_from(const glm::dvec3& eye_m) const {
+FloorSeen Floor::seen_from(const glm::dvec3& eye_m, double curvature_per_m) const {
     const glm::dvec2 eye(eye_m);
-    FloorSeen seen{.is_seen = true, .z_m = static_cast<float>(z_m_ - eye_m.z), .values = values_};
+    FloorSeen seen{.is_seen = true,
+                   .z_m = static_cast<float>(z_m_ - eye_m.z),
+                   .curvature_per_m = static_cast<float>(curvature_per_m),
+                   .values = values_};
     if (has_depths()) {
         seen.depths = glm::vec4(depth_from_m_ - eye, depth_size_);
         seen.depths_per_m = glm::vec4(glm::vec2(depth_per_m_), -static_cast<float>(eye_m.z), 0.0f);

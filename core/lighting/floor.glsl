@@ -6,6 +6,7 @@
 struct FloorView {
     bool is_seen;     // there are places from which to look; otherwise the floor is level and evenly lit
     float z_m;        // of a floor without a map
+    float curvature_per_m;  // of the earth
     vec4 depths;      // its map: corner, columns and rows (0: none)
     vec4 depths_per_m;  // columns and rows per metre; the height of the sea at rest; first value
     vec4 colours;     // picture, repeated: where in it the eye is, times its texels; texels per metre; texels a side (0: none)
@@ -23,6 +24,7 @@ struct SeenFloor {
 const float kFloorLightStep = 4.0f;  // texels of the coarser map over those of the finer
 const float kFloorLightEdge = 16.0f;  // texels over which a map gives way to what is around it
 const float kLeastFloor_m = 0.01f;    // a trough touches the floor
+const float kFarFloor_m = 3.0e4f;     // how far a parabola stands for the earth, to a centimetre
 
 // Between four texels of a map of that many columns; place in texels, whose middles are at halves.
 float floor_between(vec2 place, int columns, int rows, int first) {
@@ -113,13 +115,18 @@ float pixel_over(vec3 pixel) {
     return max(pixel.x, 0.5f * sqrt(pixel.y * pixel.y + pixel.z * pixel.z));
 }
 
+bool is_floor_near(vec3 surface, FloorView of) {
+    return of.is_seen && surface.x * surface.x + surface.y * surface.y < kFarFloor_m * kFarFloor_m;
+}
+
 // Along a ray in the water from a place of the surface, down by 1 a unit: `along` is its way across by then. blur: over a depth of 1, the
 // width of what unresolved waves mix; pixel_m: a pixel's width on the surface.
 SeenFloor seen_floor(vec3 surface, vec2 along, float blur, float pixel_m, FloorView of) {
     vec2 from = vec2(surface.x, surface.y);
-    float depth = max(surface.z - floor_height(from, of), kLeastFloor_m);
+    float height = surface.z + 0.5f * of.curvature_per_m * dot(from, from);
+    float depth = max(height - floor_height(from, of), kLeastFloor_m);
     if (of.depths.z > 0.0f)
-        for (int i = 0; i < 4; ++i) depth = max(surface.z - floor_height(from + depth * along, of), kLeastFloor_m);
+        for (int i = 0; i < 4; ++i) depth = max(height - floor_height(from + depth * along, of), kLeastFloor_m);
     vec2 place = from + depth * along;
     float width = sqrt(pixel_m * pixel_m + blur * blur * depth * depth);
     return SeenFloor(depth, floor_colour(place, width, of), floor_light(place, width, of));

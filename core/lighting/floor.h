@@ -14,7 +14,7 @@ namespace pelagic {
 // As floor.glsl has it, from an eye.
 struct FloorSeen {
     bool is_seen = false;
-    float z_m = 0.0f;
+    float z_m = 0.0f, curvature_per_m = 0.0f;
     glm::vec4 depths{0.0f}, depths_per_m{0.0f}, colours{0.0f};
     float colours_first = 0.0f;
     glm::vec4 light{0.0f}, coarse{0.0f};
@@ -54,8 +54,8 @@ class Floor {
     std::span<float> set_light(const Light& light);
     bool has_light() const { return light_.side > 0; }
 
-    // Kept while the floor isn't changed.
-    FloorSeen seen_from(const glm::dvec3& eye_m) const;
+    // Kept while the floor isn't changed. curvature_per_m: of the earth, round which the sea lies below the eye.
+    FloorSeen seen_from(const glm::dvec3& eye_m, double curvature_per_m = 0.0) const;
     const std::vector<float>& values() const { return values_; }
 
   private:

@@ -146,14 +146,15 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     Variant shading(sky.map, air, choice, foam.picture, floor.values);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
-    const typename Variant::SeaLight light{sky.sun_direction,
-                                           sky.sun_radiance,
-                                           sky.sun_angular_radius,
-                                           sky.sun_irradiance,
-                                           sky.sky_irradiance,
-                                           look_of<Variant>(water),
-                                           {floor.is_seen, floor.z_m, floor.depths, floor.depths_per_m,
-                                            floor.colours, floor.colours_first, floor.light, floor.coarse}};
+    const typename Variant::SeaLight light{
+        sky.sun_direction,
+        sky.sun_radiance,
+        sky.sun_angular_radius,
+        sky.sun_irradiance,
+        sky.sky_irradiance,
+        look_of<Variant>(water),
+        {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.depths, floor.depths_per_m, floor.colours,
+         floor.colours_first, floor.light, floor.coarse}};
     const typename Variant::FoamPattern pattern{foam.cell, foam.rest,  foam.axes,
                                                 foam.look, foam.white, foam.image};
     for (std::size_t i = 0; i < points.size(); ++i) {

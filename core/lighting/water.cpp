@@ -81,8 +81,6 @@ Optics optics_at(double wavelength, const WaterChoice& water) {
 // Of the primaries of Rec. 709 under its white, D65, to the nearest band.
 constexpr std::array<double, 3> kDominant_nm{610.0, 550.0, 460.0};
 
-constexpr std::array<double, 6> kWavelengths_nm{440.0, 480.0, 520.0, 555.0, 590.0, 630.0};
-
 float& band(WaterBands& of, std::size_t i) {
     const int place = static_cast<int>(i % 3);
     return i < 3 ? of.shorter[place] : of.longer[place];
@@ -116,8 +114,8 @@ WaterBody water_body(const WaterChoice& choice) {
     }
     water.has_body = true;
     water.floor_m = static_cast<float>(std::min(choice.floor_m, 1e9));
-    for (std::size_t i = 0; i < kWavelengths_nm.size(); ++i) {
-        const Optics at = optics_at(kWavelengths_nm[i], choice);
+    for (std::size_t i = 0; i < kWaterBands_nm.size(); ++i) {
+        const Optics at = optics_at(kWaterBands_nm[i], choice);
         band(water.absorption, i) = static_cast<float>(at.absorption);
         band(water.backscatter, i) = static_cast<float>(at.backscatter);
     }

@@ -229,7 +229,7 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     way.floor_m = look.floor_m;
     way.gathered = 0.0f;
     WaterBands bare = look.floor_colour;
-    if (look.floor_m < kNoFloor_m && of_floor.is_seen) {
+    if (look.floor_m < kNoFloor_m && is_floor_near(seen.from_eye, of_floor)) {
         // A facet's tilt moves the ray by (1 − 1/n) of it; a normal distribution of variance v is as wide as a box of √(12 v).
         float blur = (1.0f - 1.0f / kWaterIndex) * sqrt(6.0f * max(hidden.x + hidden.y, 0.0f));
         SeenFloor there = seen_floor(seen.from_eye, vec2(up_ray.x, up_ray.y) / -down, blur, seen.pixel_m, of_floor);

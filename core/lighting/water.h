@@ -1,6 +1,7 @@
 // The optics of the water body, from what it contains.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 
 namespace pelagic {
@@ -10,6 +11,9 @@ struct WaterBands {
     glm::vec3 shorter{0.0f}, longer{0.0f};
     bool operator==(const WaterBands&) const = default;
 };
+
+// [nm]
+inline constexpr std::array<double, 6> kWaterBands_nm{440.0, 480.0, 520.0, 555.0, 590.0, 630.0};
 
 struct WaterBody {
     glm::vec3 reflectance{

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -326,6 +327,29 @@ Floor make_floor(const Scene& scene, double rest_m) {
         }
     }
     return floor;
+}
+
+WaterText water_text(const WaterBody& water) {
+    if (!water.has_body) return {};
+    const auto six = [](const auto& value_of) {
+        std::string text;
+        for (int i = 0; i < 6; ++i) {
+            std::array<char, 32> number{};
+            std::snprintf(number.data(), number.size(), "%.3g", value_of(i));
+            text += (i > 0 ? ", " : "") + std::string(number.data());
+        }
+        return text;
+    };
+    const auto of = [](const WaterBands& bands, int i) {
+        return static_cast<double>(i < 3 ? bands.shorter[i] : bands.longer[i - 3]);
+    };
+    const auto a = [&](int i) { return of(water.absorption, i); };
+    const auto b = [&](int i) { return of(water.backscatter, i); };
+    return {.wavelengths_nm = six([](int i) { return kWaterBands_nm[static_cast<std::size_t>(i)]; }),
+            .absorption_per_m = six(a),
+            .backscatter_per_m = six(b),
+            .fading_per_m =
+                six([&](int i) { return a(i) + 4.18 * (1.0 - 0.52 * std::exp(-10.8 * a(i))) * b(i); })};
 }
 
 std::string light_content(const Scene& scene) {

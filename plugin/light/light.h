@@ -44,6 +44,12 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg 
 // What is in the shot's water. Of a body some milliseconds, since it needs the sea's spectrum (prepare()); who has that passes it on.
 WaterBody make_water(const Scene& scene);
 WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum);
+// What a body of water does to light, as text, at the six wavelengths of WaterBands: absorption, backscattering, and how fast the light of a high
+// sun fades on its way down (Lee et al. 2005) [1/m]; empty without a body.
+struct WaterText {
+    std::string wavelengths_nm, absorption_per_m, backscatter_per_m, fading_per_m;
+};
+WaterText water_text(const WaterBody& water);
 // What the light depends on, as text: while it stays the same, sky and make_foam_picture() do. Water and how foam looks are no part of it.
 std::string light_content(const Scene& scene);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without

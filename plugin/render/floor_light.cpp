@@ -23,6 +23,7 @@ constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
 constexpr double kTexelsADepth =
     64.0;  // the finer map's: a light's net at that depth has lines some three texels wide
 constexpr int kRowsAtOnce = 64;
+constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
 constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
 
 // The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
@@ -147,8 +148,6 @@ void gather(const Falls& falls, const Map& map, double mean) {
     const auto width = static_cast<std::size_t>(falls.columns) + 1;
     // With a texel round the map, for light that falls on its edge.
     const auto side = static_cast<std::size_t>(map.side), padded = side + 2;
-    // Parts of the sea, always as many, so that sums are the same on any number of threads.
-    constexpr int kParts = 4;
     std::array<std::vector<float>, kParts> parts;
     tbb::parallel_for(0, kParts, [&](int part) {
         std::vector<float>& sums = parts[static_cast<std::size_t>(part)];
@@ -256,6 +255,16 @@ void blur(const Map& map, int axis, double deviation) {
 }
 
 }  // namespace
+
+std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side) {
+    if (!water.has_body || scene.water.caustics == 0.0) return 0;
+    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
+    if (!has_map && !shows_floor(water, static_cast<double>(water.floor_m))) return 0;
+    const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    constexpr std::size_t kWithMargins = 9;  // quarters of them, a quarter of its side beyond each edge
+    return texels * (2 + kParts) * sizeof(float) +
+           texels * kWithMargins / 4 * (sizeof(glm::vec2) + sizeof(float));
+}
 
 bool shows_floor(const WaterBody& water, double depth_m) {
     if (!water.has_body || !(depth_m < 1e6)) return false;

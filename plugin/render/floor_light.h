@@ -2,11 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 
 #include "core/lighting/floor.h"
 #include "core/lighting/water.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
+#include "pelagic/scene.h"
 
 namespace pelagic {
 
@@ -21,6 +23,9 @@ struct FloorLightWanted {
     int side = 1024;        // texels of a map
     bool operator==(const FloorLightWanted&) const = default;
 };
+
+// What making them holds, at most, and they themselves [bytes].
+std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side = FloorLightWanted{}.side);
 
 // Whether the water lets so much of the floor's light out that its pattern shows: to a hundredth of what falls on it, at the clearest of the
 // wavelengths.

@@ -412,6 +412,7 @@ class RendererOf final : public Impl {
         SeenSea<T>& seen = batch_.seen;
         seen.origin_m = mesh_.points.origin_m;
         seen.eye_m = view_.position_m;
+        seen.curvature_per_m = mesh_.points.curvature_per_m;
         seen.resize(count);
         const bool is_flat = mesh_.normal.empty();
         seen.rest_normal.resize(is_flat ? 0 : count);

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "core/lighting/background.h"
@@ -85,15 +86,21 @@ void SeaLight<T>::light_floor_before(const View& view, double finest_m, double r
         floor_ = make_floor(plan().from->scene, rest_m);
         floor_m_ = rest_m;
     }
-    if (choice_.water && choice_.sun)
-        light_floor(floor_, frame(),
-                    {.view = view,
-                     .water = water_,
-                     .sun_direction = sky_.sun_direction,
-                     .sun_angular_radius = sky_.sun_angular_radius,
-                     .gain = plan().from->scene.water.caustics,
-                     .finest_m = finest_m},
-                    cancel);
+    // Its maps lie still: through a lens' other places they are as good.
+    constexpr double kLens_m = 0.1;
+    const bool is_lit = floor_lit_before_ &&
+                        glm::distance(floor_lit_before_->position_m, view.position_m) < kLens_m &&
+                        glm::distance(floor_lit_before_->forward, view.forward) < kLens_m;
+    if (is_lit || !choice_.water || !choice_.sun || sky_.sun_irradiance == glm::vec3(0.0f)) return;
+    light_floor(floor_, frame(),
+                {.view = view,
+                 .water = water_,
+                 .sun_direction = sky_.sun_direction,
+                 .sun_angular_radius = sky_.sun_angular_radius,
+                 .gain = plan().from->scene.water.caustics,
+                 .finest_m = finest_m},
+                cancel);
+    floor_lit_before_ = view;
 }
 
 template <class T>
@@ -114,7 +121,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
     const std::vector<float>& coverage = answers_.numbers(Product::Coverage);
     points_.resize(seen.size());
     const FoamPattern foam = foam_pattern(foam_, seen.origin_m);
-    const FloorSeen floor = seen.eye_m ? floor_.seen_from(*seen.eye_m) : FloorSeen{};
+    const FloorSeen floor = seen.eye_m ? floor_.seen_from(*seen.eye_m, seen.curvature_per_m) : FloorSeen{};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen.size(), kShadeGrain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i < range.end(); ++i)

@@ -33,6 +33,7 @@ struct SeenSea {
     glm::dvec2 origin_m{0.0};  // of places at rest
     // From which to_eye and distance_m are, for the floor below; without: it is level and evenly lit.
     std::optional<glm::dvec3> eye_m;
+    double curvature_per_m = 0.0;      // of the earth, as ProjectedGrid has it
     std::vector<glm::vec<2, T>> rest;  // [m]
     std::vector<T> pixel_m;  // the pixel's footprint at rest, as in Points (core/evaluate/evaluate.h)
     std::vector<glm::vec<2, T>> pixel_axis_m;
@@ -82,7 +83,10 @@ class SeaLight {
     const Frame<T>& frame() const { return state_.frame(); }
 
     // As Frame's.
-    void set(double time_s, const std::atomic<bool>* cancel = nullptr) { state_.set(time_s, cancel); }
+    void set(double time_s, const std::atomic<bool>* cancel = nullptr) {
+        floor_lit_before_.reset();
+        state_.set(time_s, cancel);
+    }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none. `drops`: its large
@@ -122,7 +126,8 @@ class SeaLight {
     WaterBody water_;
     FoamLook foam_;
     Floor floor_;
-    std::optional<double> floor_m_;  // the height at rest that it is for
+    std::optional<double> floor_m_;         // the height at rest that it is for
+    std::optional<View> floor_lit_before_;  // at the frame's time
     std::shared_ptr<const Sea<T>> sea_;
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;

@@ -42,7 +42,7 @@ void main() {
                         answer.slope_variance, foam, body,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
                                  water,
-                                 FloorView(kFloorMaps && floor_level.x > 0.0, floor_level.y, floor_depths, floor_depths_per_m,
+                                 FloorView(kFloorMaps && floor_level.x > 0.0, floor_level.y, floor_level.z, floor_depths, floor_depths_per_m,
                                            floor_colours, floor_colours_first, floor_light_maps, floor_coarse)),
                         PlaceView(air_to_sun, air_by_place));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));

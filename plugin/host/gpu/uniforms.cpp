@@ -65,7 +65,7 @@ std::vector<Uniform> water_uniforms(const WaterBody& water) {
 }
 
 std::vector<Uniform> floor_uniforms(const FloorSeen& floor) {
-    return {{"floor_level", 2, glm::vec4(floor.is_seen ? 1.0f : 0.0f, floor.z_m, 0.0f, 0.0f)},
+    return {vector("floor_level", {floor.is_seen ? 1.0f : 0.0f, floor.z_m, floor.curvature_per_m}),
             {"floor_depths", 4, floor.depths},
             {"floor_depths_per_m", 4, floor.depths_per_m},
             {"floor_colours", 4, floor.colours},

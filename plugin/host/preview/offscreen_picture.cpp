@@ -133,6 +133,10 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     if (planned.scene.surface.kind == SurfaceKind::Cage)
         need.add("the cage's surface", planned.drawn->surface_bytes(points) + points * sizeof(glm::vec4),
                  "lower surface.cage_level, or raise surface.cell_px");
+    if (const std::size_t floor =
+            floor_light_bytes(planned.scene, make_water(planned.scene, planned.plan.from->spectrum));
+        floor > 0)
+        need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (render_options(planned.scene).lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
                  "set effects.spray to false");

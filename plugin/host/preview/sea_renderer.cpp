@@ -90,7 +90,7 @@ struct SeaRenderer::Implementation {
     void set_foam_image(const std::shared_ptr<const FoamImage>& image);
     void draw_sea(const View& view, const SeaMesh& mesh, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
-    void draw_drops(const View& view, double curvature_per_m, const DrawOptions& options);
+    void draw_drops(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
     GLint largest_texture = 0;
@@ -110,6 +110,7 @@ struct SeaRenderer::Implementation {
     std::shared_ptr<const FoamImage> foam_image;  // that the texture has
     bool has_foam_texture = false;
     std::shared_ptr<const Floor> floor;
+    double curvature_per_m = 0.0;  // of the picture's sea
     GlTexture floor_maps;
     GlTexture spray_map;
     std::vector<Uniform> spray;  // empty: there is none
@@ -298,7 +299,8 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     set_uniforms(program, light);
     set_uniforms(program, water);
     bind_texture(kFloorMaps, floor_maps);
-    set_uniforms(program, floor_uniforms(floor ? floor->seen_from(view.position_m) : FloorSeen{}));
+    set_uniforms(program,
+                 floor_uniforms(floor ? floor->seen_from(view.position_m, curvature_per_m) : FloorSeen{}));
     if (spray.empty()) return;
     bind_texture(kSprayMapUnit, spray_map);
     set_uniforms(program, spray);
@@ -424,8 +426,7 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
 }
 
 // Over the picture, from the farthest on.
-void SeaRenderer::Implementation::draw_drops(const View& view, double curvature_per_m,
-                                             const DrawOptions& options) {
+void SeaRenderer::Implementation::draw_drops(const View& view, const DrawOptions& options) {
     const std::vector<SeenDrop> seen =
         seen_drops(*drops->drops, {.view = view,
                                    .curvature_per_m = curvature_per_m,
@@ -624,6 +625,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     drawn.is_shaped = !mesh.normal.empty();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
+    of.curvature_per_m = mesh.points.curvature_per_m;
     of.begin_picture(view.resolution, options.layers);
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
     {
@@ -633,8 +635,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
         of.draw_sky(view, drawn);
-        if (of.drops && drawn.lighting.spray && !of.picture_plain)
-            of.draw_drops(view, mesh.points.curvature_per_m, drawn);
+        if (of.drops && drawn.lighting.spray && !of.picture_plain) of.draw_drops(view, drawn);
     }
 
     of.end_picture();

@@ -13,8 +13,8 @@ namespace pelagic::optics {
 namespace {
 
 Optics::FloorView glsl(const FloorSeen& seen) {
-    return {seen.is_seen, seen.z_m,           seen.depths, seen.depths_per_m,
-            seen.colours, seen.colours_first, seen.light,  seen.coarse};
+    return {seen.is_seen, seen.z_m,           seen.curvature_per_m, seen.depths, seen.depths_per_m,
+            seen.colours, seen.colours_first, seen.light,           seen.coarse};
 }
 
 Optics shading_of(const Floor& floor) {
@@ -59,6 +59,20 @@ TEST(Floor, ARayMeetsTheSlope) {
     EXPECT_GT(optics.seen_floor(vec3(15.0f, 0.0f, -9.0f), vec2(0.0f), 0.0f, 0.01f, glsl(floor.seen_from(eye)))
                   .depth_m,
               0.0f);
+}
+
+// Round the earth the sea drops away below the eye's level, and the floor with it.
+TEST(Floor, LiesAsDeepFarAway) {
+    const Floor floor(-2.5);
+    const double curvature = 1.0 / 6.371e6;
+    Optics optics = shading_of(floor);
+    const auto view = glsl(floor.seen_from({5.0, 5.0, 30.0}, curvature));
+    for (const double far : {10.0, 1e3, 2e4}) {
+        const vec3 surface(glm::dvec3(far, 0.0, -30.0 - 0.5 * curvature * far * far));
+        EXPECT_TRUE(optics.is_floor_near(surface, view));
+        EXPECT_NEAR(optics.seen_floor(surface, vec2(0.0f), 0.0f, 1.0f, view).depth_m, 2.5f, 0.01f) << far;
+    }
+    EXPECT_FALSE(optics.is_floor_near(vec3(4e4f, 0.0f, -150.0f), view));
 }
 
 TEST(Floor, APictureRepeatsAndBlursToItsMean) {

@@ -168,13 +168,12 @@ TEST(FloorLight, IsTheSameWhereverTheCameraIsAndOnOneThread) {
         glm::round((glm::vec2(b.light) - glm::vec2(a.light)) / static_cast<float>(here.texel_m)));
     ASSERT_NE(moved, glm::ivec2(0));
     for (int y = 80; y < 160; y += 7)
-        for (int x = 80; x < 160; x += 7)
-            {
-                const float other = texel(there.floor, x, y);
-                // How much is hidden is asked at a few places of each map.
-                EXPECT_NEAR(texel(here.floor, x + moved.x, y + moved.y), other, 0.01f + 0.01f * other)
-                    << x << ' ' << y;
-            }
+        for (int x = 80; x < 160; x += 7) {
+            const float other = texel(there.floor, x, y);
+            // How much is hidden is asked at a few places of each map.
+            EXPECT_NEAR(texel(here.floor, x + moved.x, y + moved.y), other, 0.01f + 0.01f * other)
+                << x << ' ' << y;
+        }
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(lit(scene, 50.0, above({0.0, 0.0})).floor.values(), here.floor.values());
 }

@@ -147,7 +147,9 @@ void cut_to_square(double half_side_m, SeaMesh& mesh) {
 }
 
 DrawnSea::DrawnSea(const PreparedScene& prepared, bool has_levels)
-    : grid_(projected_grid_options(prepared)), has_grid_(shows_open_sea(prepared.scene.surface)) {
+    : grid_(projected_grid_options(prepared)),
+      has_grid_(shows_open_sea(prepared.scene.surface)),
+      has_body_(prepared.scene.water.body) {
     grid_.has_levels = has_levels;
     const Scene& scene = prepared.scene;
     if (scene.surface.kind == SurfaceKind::Cage) {

@@ -62,6 +62,8 @@ class DrawnSea {
     // projected grid, where that isn't the scene's.
     void lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double> cell_px = {}) const;
 
+    // Whether it can be drawn from below as well: an open sea whose water has a body.
+    bool has_below() const { return has_body_ && has_grid_ && !half_side_m_ && !cage_; }
     // Whether the flat sea's waves may be over that camera: they are nowhere but where the sea is.
     bool may_be_under_waves(const View& view) const;
     // The height [m] of the cage's surface at rest over a camera whose way up meets it from below: it is in the pool.
@@ -81,7 +83,7 @@ class DrawnSea {
     void add_cage(const SeaView& seen, SeaMesh& mesh) const;
 
     ProjectedGridOptions grid_;
-    bool has_grid_ = true;
+    bool has_grid_ = true, has_body_ = false;
     std::optional<double> half_side_m_;  // of the patch that is all that there is
     std::shared_ptr<const RestSurface> cage_;
     // Of the cage: how near an eye comes, and whether it is below.

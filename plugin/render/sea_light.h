@@ -40,6 +40,9 @@ struct SeenSea {
     std::vector<float> mesh_variance;
     // As SeaPoint::crest, by find_crests(); empty: the water is lit as level water.
     std::vector<glm::vec3> crest;
+    // Whether the eye, which is so high above the sea at rest [m], sees the place from below; empty: it sees none so.
+    std::vector<std::uint8_t> from_below;
+    float eye_m = 0.0f;
     // Normals of the surface at rest, of any length, as in Points; empty: it is flat everywhere.
     std::vector<glm::vec<3, T>> rest_normal;
 
@@ -92,6 +95,9 @@ class SeaLight {
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
+
+    // What an eye in the water, so high above the sea at rest [m], sees in these directions (unit) where there is no surface.
+    void light_water(float eye_m, std::span<const glm::vec3> direction, std::span<SeaRadiance> lit) const;
 
     // SeaPoint::crest at places of a flat sea at rest, by their footprints [m], width and long axis; empty where the water knows no crests.
     void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,

@@ -9,9 +9,10 @@ vec3 upside_down(vec3 direction) { return vec3(direction.x, direction.y, -direct
 // Of scattered light the part that an eye still takes for light that wasn't: particles send 0.47 of theirs within 6° on.
 const float kScatteredAside = 0.53f;
 // Phase functions of Henyey and Greenstein, without what they have at 90°, which the light that comes back out of deep water
-// (out_of_deep()) has already: of the rest of particles' light, 0.04 /sr at 50°, and of the same for a sky, whose light in the water fills a cone.
+// (out_of_deep()) has already: of the rest of particles' light, 0.04 /sr at 50°, and of the same for a sky, whose light in the water fills a
+// cone of 2.1 sr: what of it goes on in that cone is 0.38 /sr.
 const float kSunAhead = 0.865f;
-const float kSkyAhead = 0.6f;
+const float kSkyAhead = 0.45f;
 
 float scattered_ahead(float cosine, float g) {
     if (!(cosine > 0.0f)) return 0.0f;
@@ -75,11 +76,14 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
         vec3 depth = both * sight.floor_m;
         diffuse = diffuse * (1.0f - exp(-depth * (kSkySlant + 2.0f * 0.954f))) +
                   floor_colour * exp(-depth * (kSkySlant + 2.0f * reflected));
-        if (sight.to_floor) {
-            vec3 seen = floor_colour / kPi * exp(-both * reflected * sight.length_m);
-            sun += seen * exp(-by_sun * sight.floor_m);
-            sky += seen * exp(-by_sky * sight.floor_m);
-        }
+        // What the floor sends up is scattered into level views, half of all that is scattered there; by eye. Steeper views have less
+        // of it, and those straight down none: there it is what the floor itself loses so slowly.
+        vec3 seen = (0.5f * (1.0f - abs(sight.down))) * aside * along_sight(vec3(0.0f), fog, sight) *
+                    exp(-both * reflected * max(sight.floor_m - sight.depth_m, 0.0f));
+        if (sight.to_floor) seen += exp(-both * reflected * sight.length_m);
+        seen *= floor_colour / kPi;
+        sun += seen * exp(-by_sun * sight.floor_m);
+        sky += seen * exp(-by_sky * sight.floor_m);
     }
     vec3 again = 1.0f / (1.0f - sight.returned * diffuse);
     sun = again * sun +
@@ -132,7 +136,8 @@ float let_through(float cosine, float deviation) {
     float critical = asin(1.0f / kWaterIndex);
     float angle = acos(clamp(cosine, 0.0f, 1.0f));
     float s = max(deviation, 1.0e-4f);
-    float z = clamp((critical - angle) / s, -5.0f, 5.0f);
+    float z = min((critical - angle) / s, 5.0f);
+    if (z < -5.0f) return 0.0f;
     float below = 1.0f / (1.0f + exp(-z * (1.5958f + 0.07133f * z * z)));  // of a normal distribution, to 2e-4
     float inside = min(angle, critical - 0.6f * s);
     return below * (1.0f - fresnel_exact(cos(max(inside, 0.0f)), 1.0f / kWaterIndex));

@@ -8,18 +8,37 @@
 #include <glm/vector_relational.hpp>
 
 namespace pelagic {
+namespace {
+
+glm::dvec3 on_glass(const View& view, glm::dvec2 pixel) {
+    const glm::dvec3 direction = view.direction(pixel);
+    return view.position_m + direction * (kFrontGlass_m / glm::dot(direction, view.forward));
+}
+
+std::array<glm::dvec3, 4> glass_corners(const View& view) {
+    const glm::dvec2 size(view.resolution);
+    return {on_glass(view, glm::dvec2(0.0)), on_glass(view, {size.x, 0.0}), on_glass(view, size),
+            on_glass(view, {0.0, size.y})};
+}
+
+}  // namespace
+
+GlassHeights glass_heights(const View& view) {
+    const auto corners = glass_corners(view);
+    const auto [lowest, highest] = std::ranges::minmax(corners, {}, &glm::dvec3::z);
+    return {lowest.z, highest.z};
+}
 
 template <class T>
 Waterline::Waterline(const View& view, double highest_m, glm::dvec2 origin_m,
                      std::span<const glm::vec<3, T>> position_m, std::span<const std::uint32_t> triangles)
     : view_(view), highest_m_(highest_m), over_(kCells * kCells) {
-    const glm::dvec2 size(view.resolution);
-    glm::dvec2 high_m(on_glass(glm::dvec2(0.0)));
+    const auto corners = glass_corners(view);
+    glm::dvec2 high_m(corners[0]);
     low_m_ = high_m;
-    for (const glm::dvec2 corner : {size, {size.x, 0.0}, {0.0, size.y}}) {
-        const glm::dvec2 place_m(on_glass(corner));
-        low_m_ = glm::min(low_m_, place_m);
-        high_m = glm::max(high_m, place_m);
+    for (const glm::dvec3& corner : corners) {
+        low_m_ = glm::min(low_m_, glm::dvec2(corner));
+        high_m = glm::max(high_m, glm::dvec2(corner));
     }
     // Seen level the glass is a line.
     cell_m_ = glm::max((high_m - low_m_) / double{kCells}, glm::dvec2(1e-6));
@@ -37,17 +56,12 @@ Waterline::Waterline(const View& view, double highest_m, glm::dvec2 origin_m,
     }
 }
 
-glm::dvec3 Waterline::on_glass(glm::dvec2 pixel) const {
-    const glm::dvec3 direction = view_.direction(pixel);
-    return view_.position_m + direction * (kFrontGlass_m / glm::dot(direction, view_.forward));
-}
-
 glm::ivec2 Waterline::cell_of(glm::dvec2 place_m) const {
     return glm::ivec2(glm::clamp((place_m - low_m_) / cell_m_, 0.0, kCells - 1.0));
 }
 
 bool Waterline::is_under(glm::dvec2 pixel) const {
-    const glm::dvec3 place_m = on_glass(pixel);
+    const glm::dvec3 place_m = on_glass(view_, pixel);
     if (place_m.z > highest_m_) return false;
     if (place_m.z < -highest_m_) return true;
     const glm::ivec2 cell = cell_of(glm::dvec2(place_m));

@@ -15,6 +15,12 @@ namespace pelagic {
 // How far before the eye the glass is [m]: as of a dome port. Nothing nearer is seen.
 inline constexpr double kFrontGlass_m = 0.1;
 
+// The lowest and the highest z of the glass in a view [m].
+struct GlassHeights {
+    double lowest_m, highest_m;
+};
+GlassHeights glass_heights(const View& view);
+
 class Waterline {
   public:
     // Of a view, and the displaced points of the sea that it draws, relative to origin_m. highest_m: of the sea above and
@@ -29,7 +35,6 @@ class Waterline {
   private:
     static constexpr int kCells = 64;  // a side of a grid over the glass, seen from above
 
-    glm::dvec3 on_glass(glm::dvec2 pixel) const;
     glm::ivec2 cell_of(glm::dvec2 place_m) const;
 
     View view_;

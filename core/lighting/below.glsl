@@ -31,6 +31,7 @@ struct WaterSight {
     bool to_floor;
     float slant;     // 1/cosine in the water of the sun's light
     float to_sun;    // cosine of the angle to the sun as the water shows it
+    float aside;     // how far it looks away from the sun's side: 0 straight down, and towards the sun
     float returned;  // of what comes up, the part that the surface sends down again
     float floor_m;
 };
@@ -43,18 +44,20 @@ struct WaterSeen {
     vec3 left;
 };
 
-// ∫ exp(−K z(s) − k s) ds along the sight, K the light's decay with depth z and k the sight's own: from the end that sends more, so that
-// no exponent is positive.
-vec3 along_sight(vec3 decay, vec3 own, WaterSight sight) {
+// ∫ exp(−K z(s) − k s) ds along the sight, K the light's decay with depth z, down from the eye another one, and k the sight's own: from the end
+// that sends more, so that no exponent is positive.
+vec3 along_sight(vec3 decay, vec3 further_down, vec3 own, WaterSight sight) {
     vec3 first = decay * sight.depth_m;
-    vec3 last = decay * sight.end_m + own * sight.length_m;
+    float deeper = sight.end_m - sight.depth_m;
+    vec3 last = max(first + deeper * (deeper > 0.0f ? further_down : decay), vec3(0.0f)) + own * sight.length_m;
     vec3 change = max(abs(last - first), vec3(1.0e-4f));
     return sight.length_m * exp(-min(first, last)) * (1.0f - exp(-change)) / change;
 }
 
-// At three wavelengths. Light in the water decays as that of a column (water_back()), and so does what comes to the eye out of deep water,
-// whose radiance is then that of out_of_deep(); between an eye and the surface, of which it sees the shape, it is blurred by scattering.
-// What is scattered towards the eye: at views of less than 17° down as if these were 17°.
+// At three wavelengths. Straight down from just below the surface the eye sees what water_back() has of a column; out_of_deep() is a mean over
+// azimuths, at views of less than 17° down as if these were 17°. Between an eye and the surface, of which it sees the shape, light is lost
+// by scattering as well. Constants by a Monte Carlo of deep water below a level surface (tests/bench/README.md, the water): 10 … 30 % of the
+// radiance, up to twice where the eye looks up past the sun from 12 m.
 WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3 own, vec3 floor_colour, WaterSight sight) {
     vec3 both = absorption + backscatter;
     vec3 u = backscatter / both;
@@ -68,8 +71,12 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
     vec3 by_sky = both * kSkySlant;
     vec3 of_sun = out_of_deep(u, part, sight.slant - 1.0f, 1.0f / down - 1.0f) * (way / spread) * (spread + down * by_sun);
     vec3 of_sky = out_of_deep(u, part, kSkySlant - 1.0f, 1.0f / down - 1.0f) * (way / spread) * (spread + down * by_sky);
-    vec3 sun = of_sun * along_sight(by_sun, way, sight);
-    vec3 sky = of_sky * along_sight(by_sky, way, sight);
+    // Of an eye that looks down from far below the surface: light decays faster than a column's formula says, since it is scattered away
+    // as well (Lee et al. 2005).
+    vec3 lost = (2.4f * clamp(2.0f * sight.down, 0.0f, 1.0f)) * backscatter;
+    of_sun *= exp(-0.46f * sight.aside);
+    vec3 sun = of_sun * along_sight(by_sun + lost, by_sun, way, sight);
+    vec3 sky = of_sky * along_sight(by_sky + lost, by_sky, way, sight);
     vec3 diffuse = (0.33f * kSkySlant) * u;
     if (sight.floor_m < kNoFloor_m) {
         vec3 reflected = 1.02f * sqrt(1.0f + 4.7f * u);
@@ -78,7 +85,7 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
                   floor_colour * exp(-depth * (kSkySlant + 2.0f * reflected));
         // What the floor sends up is scattered into level views, half of all that is scattered there; by eye. Steeper views have less
         // of it, and those straight down none: there it is what the floor itself loses so slowly.
-        vec3 seen = (0.5f * (1.0f - abs(sight.down))) * aside * along_sight(vec3(0.0f), fog, sight) *
+        vec3 seen = (0.5f * (1.0f - abs(sight.down))) * aside * along_sight(vec3(0.0f), vec3(0.0f), fog, sight) *
                     exp(-both * reflected * max(sight.floor_m - sight.depth_m, 0.0f));
         if (sight.to_floor) seen += exp(-both * reflected * sight.length_m);
         seen *= floor_colour / kPi;
@@ -87,20 +94,14 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
     }
     vec3 again = 1.0f / (1.0f - sight.returned * diffuse);
     sun = again * sun +
-          aside * (sight.slant * scattered_ahead(sight.to_sun, kSunAhead)) * along_sight(by_sun, fog, sight);
-    sky = again * sky + aside * (kSkySlant * scattered_ahead(-sight.down, kSkyAhead)) * along_sight(by_sky, fog, sight);
+          aside * (sight.slant * scattered_ahead(sight.to_sun, kSunAhead)) * along_sight(by_sun + lost, by_sun, fog, sight);
+    sky = again * sky + aside * (kSkySlant * scattered_ahead(-sight.down, kSkyAhead)) * along_sight(by_sky + lost, by_sky, fog, sight);
     return WaterSeen(sun, sky, sight.to_surface ? exp(-fog * sight.length_m) : vec3(0.0f));
 }
 
-struct WaterBetween {
-    vec3 light;
-    vec3 left;  // part of what is behind
-};
-
 // direction: of sight, unit, level axes; height_m: of the eye above the sea at rest; surface_m: how far the surface is, negative where the
-// sight doesn't end there; scattering: b [1/m].
-WaterBetween water_between(vec3 direction, float height_m, float surface_m, SeaLight light, WaterBands scattering) {
-    WaterLook look = light.water;
+// sight doesn't end there.
+WaterSight water_sight(vec3 direction, float height_m, float surface_m, vec3 to_sun, WaterLook look) {
     WaterSight sight;
     sight.down = -direction.z;
     sight.depth_m = max(-height_m, 0.0f);
@@ -109,21 +110,33 @@ WaterBetween water_between(vec3 direction, float height_m, float surface_m, SeaL
     sight.to_floor = !sight.to_surface && look.floor_m < kNoFloor_m && floor_m < kNoFloor_m;
     sight.length_m = sight.to_surface ? surface_m : min(floor_m, kNoFloor_m);
     sight.end_m = sight.to_surface ? 0.0f : max(sight.depth_m + sight.down * sight.length_m, 0.0f);
-    float cosine = refracted_cosine(light.sun_direction.z);
-    vec3 sun = vec3(light.sun_direction.x / kWaterIndex, light.sun_direction.y / kWaterIndex, cosine);
+    float cosine = refracted_cosine(to_sun.z);
     sight.slant = 1.0f / cosine;
-    sight.to_sun = dot(sun, direction);
+    sight.to_sun = (to_sun.x * direction.x + to_sun.y * direction.y) / kWaterIndex + cosine * direction.z;
+    float across = sqrt(max((1.0f - square(sight.down)) * (1.0f - square(cosine)), 0.0f));
+    float level = sight.down > 0.0f ? 1.0f - square(sight.down) : 1.0f;
+    sight.aside = max(across - (sight.to_sun - cosine * direction.z), 0.0f) * level * sqrt(max(level, 0.0f));
+    sight.returned = 1.0f - entering_from_sky(look.waves) / square(kWaterIndex);
     sight.floor_m = look.floor_m;
-    float in_sky = entering_from_sky(look.waves);
-    sight.returned = 1.0f - in_sky / square(kWaterIndex);
+    return sight;
+}
 
+struct WaterBetween {
+    vec3 light;
+    vec3 left;  // part of what is behind
+};
+
+// Of a sight as water_sight() has it; scattering: b [1/m].
+WaterBetween water_between(vec3 direction, float height_m, float surface_m, SeaLight light, WaterBands scattering) {
+    WaterLook look = light.water;
+    WaterSight sight = water_sight(direction, height_m, surface_m, light.sun_direction, look);
     WaterSeen shorter = seen_in_water(look.absorption.shorter, scattering.shorter, look.backscatter.shorter, kOwnShorter,
                                       look.floor_colour.shorter, sight);
     WaterSeen longer = seen_in_water(look.absorption.longer, scattering.longer, look.backscatter.longer, kOwnLonger,
                                      look.floor_colour.longer, sight);
     float in_sun = entering(vec3(light.sun_direction.x, light.sun_direction.y, max(light.sun_direction.z, 0.0f)), look.waves);
     vec3 of_sun = light.sun_irradiance * in_sun * colour_of(WaterBands(shorter.sun, longer.sun));
-    vec3 of_sky = light.sky_irradiance * in_sky * colour_of(WaterBands(shorter.sky, longer.sky));
+    vec3 of_sky = light.sky_irradiance * entering_from_sky(look.waves) * colour_of(WaterBands(shorter.sky, longer.sky));
     return WaterBetween(max(of_sun, vec3(0.0f)) + max(of_sky, vec3(0.0f)),
                         clamp(colour_of(WaterBands(shorter.left, longer.left)), vec3(0.0f), vec3(1.0f)));
 }

@@ -83,9 +83,9 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
         vec3 depth = both * sight.floor_m;
         diffuse = diffuse * (1.0f - exp(-depth * (kSkySlant + 2.0f * 0.954f))) +
                   floor_colour * exp(-depth * (kSkySlant + 2.0f * reflected));
-        // What the floor sends up is scattered into level views, half of all that is scattered there; by eye. Steeper views have less
-        // of it, and those straight down none: there it is what the floor itself loses so slowly.
-        vec3 seen = (0.5f * (1.0f - abs(sight.down))) * aside * along_sight(vec3(0.0f), vec3(0.0f), fog, sight) *
+        // What the floor sends up is scattered into level views. Steeper ones have less of it, and those straight down none: there it is
+        // what the floor itself loses so slowly.
+        vec3 seen = (0.35f * (1.0f - abs(sight.down))) * aside * along_sight(vec3(0.0f), vec3(0.0f), fog, sight) *
                     exp(-both * reflected * max(sight.floor_m - sight.depth_m, 0.0f));
         if (sight.to_floor) seen += exp(-both * reflected * sight.length_m);
         seen *= floor_colour / kPi;

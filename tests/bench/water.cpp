@@ -996,7 +996,9 @@ double sky_through(double cosine) {
 }
 
 // Backwards from the eye: radiance, of the sun only what is scattered, over the irradiance that enters, of each light.
-std::array<double, kBelowLights> seen_below(const Medium& medium, double depth, glm::dvec3 to, int paths,
+// floor: how deep, and its albedo.
+std::array<double, kBelowLights> seen_below(const Medium& medium, double depth,
+                                            std::pair<double, double> floor, glm::dvec3 to, int paths,
                                             Lot& lot) {
     std::array<double, kBelowLights> sum{};
     const double c = medium.extinction;
@@ -1013,8 +1015,10 @@ std::array<double, kBelowLights> seen_below(const Medium& medium, double depth, 
                 weight *= fresnel(to.z, 1.0 / kIndex);
                 to.z = -to.z;
             } else {
-                height = next;
-                weight *= medium.albedo;
+                const bool is_floor = next < -floor.first;
+                height = is_floor ? -floor.first : next;
+                weight *= is_floor ? floor.second : medium.albedo;
+                if (is_floor && floor.second == 0.0) break;
                 for (std::size_t light = 0; light < kBelowLights; ++light) {
                     double part = 1.0;
                     glm::dvec3 from;
@@ -1025,10 +1029,11 @@ std::array<double, kBelowLights> seen_below(const Medium& medium, double depth, 
                         from = in_water(direction_of(std::acos(outside) / kDegree, 360.0 * lot()));
                         part = (1.0 - fresnel(outside, kIndex)) / (1.0 - kSkyMirrored);
                     }
-                    sum[light] += weight * part * medium.phase(glm::dot(to, from)) / from.z *
-                                  std::exp(c * height / from.z);
+                    const double towards = is_floor ? from.z / kPi : medium.phase(glm::dot(to, from));
+                    sum[light] += weight * part * towards / from.z * std::exp(c * height / from.z);
                 }
-                to = medium.scattered(to, lot);
+                to = is_floor ? turned({0.0, 0.0, 1.0}, std::sqrt(1.0 - lot()), kTwoPi * lot())
+                              : medium.scattered(to, lot);
                 is_scattered = true;
             }
             if (weight < 0.05) {
@@ -1041,10 +1046,12 @@ std::array<double, kBelowLights> seen_below(const Medium& medium, double depth, 
     return sum;
 }
 
-void below() {
+// floor_m, albedo: kNoFloor_m and more: deep water.
+void below(const char* name, double floor_m, double floor_albedo) {
     std::printf(
-        "Light of deep water around an eye, under a level surface: the model over the Monte Carlo, as a logarithm, by the\n"
-        "view's angle from the zenith; of the sun further than 15 degrees from it in the water, and of a uniform sky\n");
+        "Light of %s around an eye, under a level surface: the model over the Monte Carlo, as a logarithm, by the\n"
+        "view's angle from the zenith; of the sun further than 15 degrees from it in the water, and of a uniform sky\n",
+        name);
     constexpr int kPaths = 20000;
     constexpr double kDarkest = 3.0;  // of depth times a + b_b: beyond, few paths find light
     const std::vector<NamedWater> all = waters();
@@ -1059,9 +1066,10 @@ void below() {
             for (std::size_t depth = 0; depth < kBelowDepths.size(); ++depth)
                 for (std::size_t view = 0; view < kBelowViews.size(); ++view)
                     for (std::size_t azimuth = 0; azimuth < kBelowAzimuths.size(); ++azimuth)
-                        if (kBelowDepths[depth] * (of_band(all[water].absorption, band) +
+                        if (kBelowDepths[depth] < floor_m &&
+                            kBelowDepths[depth] * (of_band(all[water].absorption, band) +
                                                    of_band(all[water].backscatter, band)) <
-                            kDarkest)
+                                kDarkest)
                             rows.push_back({water, band, depth, view, azimuth, {}, {}});
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
         Row& row = rows[i];
@@ -1071,10 +1079,11 @@ void below() {
                      own = 0.00144 * std::pow(kBands_nm[row.band] / 500.0, -4.32);
         const glm::dvec3 to = direction_of(kBelowViews[row.view], kBelowAzimuths[row.azimuth]);
         const double depth = kBelowDepths[row.depth];
-        row.traced = seen_below(Medium(a, back, kBands_nm[row.band]), depth, to, kPaths, lot);
+        row.traced =
+            seen_below(Medium(a, back, kBands_nm[row.band]), depth, {floor_m, floor_albedo}, to, kPaths, lot);
         const auto bands = [](double of) { return glm::vec3(static_cast<float>(of)); };
         optics::Optics::WaterLook look{};
-        look.floor_m = 1e9f;
+        look.floor_m = static_cast<float>(floor_m);
         look.waves = {1e-10f, 1e-10f, 0.0f};
         for (std::size_t light = 0; light < kBelowLights; ++light) {
             const double sun = light < kBelowSuns.size() ? kBelowSuns[light] : 60.0;
@@ -1083,7 +1092,7 @@ void below() {
                                                        static_cast<float>(surface),
                                                        glm::vec3(direction_of(90.0 - sun, 0.0)), look);
                 const auto of = shading.seen_in_water(bands(a), bands(2.0 * own + (back - own) / 0.018),
-                                                      bands(back), bands(own), bands(0.0), sight);
+                                                      bands(back), bands(own), bands(floor_albedo), sight);
                 return std::pair(static_cast<double>(light < kBelowSuns.size() ? of.sun.x : of.sky.x),
                                  static_cast<double>(of.left.x));
             };
@@ -1099,10 +1108,15 @@ void below() {
         }
     });
     for (const bool of_sky : {false, true}) {
-        std::printf("    %s\n", of_sky ? "sky" : "sun");
+        std::printf("    %s", of_sky ? "sky" : "sun");
+        for (const double depth : kBelowDepths)
+            for (std::size_t azimuth = 0; depth < floor_m && azimuth < (of_sky ? 1 : kBelowAzimuths.size());
+                 ++azimuth)
+                std::printf(of_sky ? "   %4.1f m    " : "  %4.1f m %3.0f", depth, kBelowAzimuths[azimuth]);
+        std::printf("\n");
         for (std::size_t view = 0; view < kBelowViews.size(); ++view) {
             std::printf("    %5.0f", kBelowViews[view]);
-            for (std::size_t depth = 0; depth < kBelowDepths.size(); ++depth)
+            for (std::size_t depth = 0; depth < kBelowDepths.size() && kBelowDepths[depth] < floor_m; ++depth)
                 for (std::size_t azimuth = 0; azimuth < (of_sky ? 1 : kBelowAzimuths.size()); ++azimuth) {
                     double sum = 0.0, square = 0.0;
                     int count = 0;
@@ -1126,6 +1140,11 @@ void below() {
             std::printf("\n");
         }
     }
+}
+
+void below() {
+    below("deep water", 1e9, 0.0);
+    below("water over a floor at 4 m, albedo 0.5", 4.0, 0.5);
 }
 
 }  // namespace

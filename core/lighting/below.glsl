@@ -146,14 +146,16 @@ WaterBetween water_between(vec3 direction, float height_m, float surface_m, SeaL
 // The mean over facets whose angle of incidence has this deviation [rad] of what a facet lets through: nothing beyond the critical
 // angle, and below it what it does at the mean of those angles.
 float let_through(float cosine, float deviation) {
-    float critical = asin(1.0f / kWaterIndex);
-    float angle = acos(clamp(cosine, 0.0f, 1.0f));
+    float sine = 1.0f / kWaterIndex;  // of the critical angle
+    float critical = sqrt(1.0f - sine * sine);
+    float c = clamp(cosine, 0.0f, 1.0f);
     float s = max(deviation, 1.0e-4f);
-    float z = min((critical - angle) / s, 5.0f);
+    // The sine of what the angle lacks serves as well as the angle.
+    float z = min((sine * c - critical * sqrt(1.0f - c * c)) / s, 5.0f);
     if (z < -5.0f) return 0.0f;
     float below = 1.0f / (1.0f + exp(-z * (1.5958f + 0.07133f * z * z)));  // of a normal distribution, to 2e-4
-    float inside = min(angle, critical - 0.6f * s);
-    return below * (1.0f - fresnel_exact(cos(max(inside, 0.0f)), 1.0f / kWaterIndex));
+    float inside = max(c, critical * cos(0.6f * s) + sine * sin(0.6f * s));
+    return below * (1.0f - fresnel_exact(inside, 1.0f / kWaterIndex));
 }
 
 struct SkyFromBelow {

@@ -19,6 +19,7 @@
 #include "core/surface/footprint_levels.h"
 #include "plugin/light/light.h"
 #include "plugin/render/under_water.h"
+#include "plugin/render/waterline.h"
 
 namespace pelagic {
 namespace {
@@ -266,6 +267,10 @@ void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
     Faces faces;
     cage_->faces_at(seen.frame, faces);
     add_triangles(faces, static_cast<std::uint32_t>(first), mesh.triangles);
+}
+
+bool DrawnSea::is_below(const View& view) const {
+    return has_below() && glass_heights(view).highest_m < -grid_.bounds.height_m;
 }
 
 bool DrawnSea::may_be_under_waves(const View& view) const {

@@ -64,6 +64,8 @@ class DrawnSea {
 
     // Whether it can be drawn from below as well: an open sea whose water has a body.
     bool has_below() const { return has_body_ && has_grid_ && !half_side_m_ && !cage_; }
+    // Whether all of a picture looks through water, whatever the waves are.
+    bool is_below(const View& view) const;
     // Whether the flat sea's waves may be over that camera: they are nowhere but where the sea is.
     bool may_be_under_waves(const View& view) const;
     // The height [m] of the cage's surface at rest over a camera whose way up meets it from below: it is in the pool.

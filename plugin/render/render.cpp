@@ -188,10 +188,8 @@ class RendererOf final : public Impl {
         else
             drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
         view_ = view_of(scene_.camera, pass);
-        const double highest_m = drawn_.grid_options().bounds.height_m;
-        const GlassHeights glass = glass_heights(view_);
-        may_be_below_ = drawn_.has_below() && glass.lowest_m <= highest_m;
-        is_below_ = may_be_below_ && glass.highest_m < -highest_m;
+        may_be_below_ =
+            drawn_.has_below() && glass_heights(view_).lowest_m <= drawn_.grid_options().bounds.height_m;
         // Before all of the lens the air is that before its middle.
         const double height_m = view_at(scene_.camera, pass.frame).position_m.z;
         if (air_.empty() || height_m != air_height_m_) air_ = sea_.air_before(height_m);
@@ -206,7 +204,7 @@ class RendererOf final : public Impl {
     void find_drops(const PicturePass& pass, const BuildWatch& watch) {
         drops_.clear();
         spray_ = {};
-        if (is_below_) return;
+        if (drawn_.is_below(view_)) return;
         const bool are_near = options_.lighting.spray && are_drops_near(scene_, view_);
         spray_ = sea_.spray_before(view_, drawn_.grid_options(), are_near);
         if (!are_near || spray_.empty()) return;
@@ -650,9 +648,9 @@ class RendererOf final : public Impl {
     std::vector<SprayDrop> in_air_;
     std::vector<SeenDrop> drops_;
     double air_height_m_ = 0.0;
-    bool may_be_below_ = false, is_below_ = false;  // some or all of the view's front glass is under water
-    std::optional<Waterline> waterline_;            // of the former
-    std::optional<double> set_s_;                   // the time that the sea is set to
+    bool may_be_below_ = false;           // some of the view's front glass may be under water
+    std::optional<Waterline> waterline_;  // then
+    std::optional<double> set_s_;         // the time that the sea is set to
     SamplesOfPass sampling_;
     PicturePass pass_;
     int parts_ = 0, frame_ = 0;

@@ -45,7 +45,7 @@ void throw_under_water(const Scene& scene, double frame, double surface_m) {
         ", and the surface there at z = " + metres(surface_m) + "; " +
         (!is_open            ? "the water of a cage or of a patch in nothing is drawn from above only"
          : !scene.water.body ? "the sea is drawn from below where its water has a body (water.body = true)"
-                             : "only pelagic render draws the sea from below") +
+                             : "only pelagic render draws what is seen from there") +
         ": raise the camera, or leave such frames out");
 }
 

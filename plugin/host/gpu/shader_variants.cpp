@@ -58,7 +58,7 @@ const char* points_file(const DrawOptions& options) {
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
            constant("kFalseColour", static_cast<int>(options.false_colour)) +
-           constant("kAirSky", options.sky_from_air);
+           constant("kAirSky", options.sky_from_air) + constant("kFromBelow", options.from_below);
 }
 
 std::string foam_constants() {
@@ -78,7 +78,8 @@ const std::vector<std::string_view>& lighting_files() {
                                                      "core/lighting/foam.glsl",
                                                      "plugin/host/gpu/foam_uniforms.glsl",
                                                      "core/lighting/foam_structure.glsl",
-                                                     "core/lighting/sea.glsl"};
+                                                     "core/lighting/sea.glsl",
+                                                     "core/lighting/below.glsl"};
     return files;
 }
 
@@ -159,23 +160,24 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
-    return {query_constants(layout, coverage, options.is_shaped) +
-                lighting_constants(lighting, sky_map_size) + picture_constants(options) +
-                (lives ? foam_constants() : std::string()),
-            is_lit_afterwards(options)
-                ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
-                : joined({query_files(),
-                          {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
-            joined({query_files(),
-                    {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-                    lighting_files(),
-                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
-                    spray_files(lighting),
-                    {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
-                    output_files(options),
-                    {"plugin/host/gpu/false_colour.glsl", points_file(options),
-                     shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
+    return {
+        query_constants(layout, coverage, options.is_shaped) + lighting_constants(lighting, sky_map_size) +
+            picture_constants(options) + (lives ? foam_constants() : std::string()),
+        is_lit_afterwards(options)
+            ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
+            : joined({query_files(),
+                      {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
+        joined(
+            {query_files(),
+             {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+             {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+             lighting_files(),
+             {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+             spray_files(lighting),
+             {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
+             output_files(options),
+             {"plugin/host/gpu/false_colour.glsl", points_file(options),
+              shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {
@@ -195,7 +197,8 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl"},
                     lighting_files(),
-                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
+                     "core/lighting/air.glsl"},
                     spray_files(lighting),
                     {"core/lighting/background.glsl", "plugin/host/gpu/rays.glsl"},
                     output_files(options),

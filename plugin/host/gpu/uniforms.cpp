@@ -56,6 +56,8 @@ std::vector<Uniform> water_uniforms(const WaterBody& water) {
             vector("water_absorption_longer", water.absorption.longer),
             vector("water_backscatter_shorter", water.backscatter.shorter),
             vector("water_backscatter_longer", water.backscatter.longer),
+            vector("water_scattering_shorter", water.scattering.shorter),
+            vector("water_scattering_longer", water.scattering.longer),
             vector("water_floor_shorter", water.floor_colour.shorter),
             vector("water_floor_longer", water.floor_colour.longer),
             vector("water_waves", water.waves),

@@ -23,6 +23,7 @@
 #include "plugin/machine/memory.h"
 #include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -212,8 +213,10 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     Frame<float> state(sea);
     state.set(planned.scene.shot.time_s(planned.frame));
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
-    planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
-    if (lighting.spray) {
+    const bool from_below = planned.drawn->is_below(view);
+    if (planned.drawn->has_below()) refuse_in_floor(planned.scene, planned.frame);
+    if (!from_below) planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
+    if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);
         light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
@@ -232,6 +235,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
                   {.lighting = lighting,
                    .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
                                      lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+                   .from_below = from_below,
                    .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)

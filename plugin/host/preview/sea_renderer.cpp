@@ -290,6 +290,7 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
                            view.shift * static_cast<double>(view.resolution.x));
     glUniform2f(program.uniform("view_centre"), centre.x, centre.y);
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
+    glUniform1f(program.uniform("view_height_m"), static_cast<float>(view.position_m.z));
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
     set_uniforms(program, water);
@@ -594,7 +595,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     const KeptFramebuffer kept;
     DrawOptions drawn = options;
     drawn.lighting.air = options.lighting.air && of.air_model;
-    drawn.lighting.spray = options.lighting.spray && !of.spray.empty();
+    drawn.lighting.spray = options.lighting.spray && !of.spray.empty() && !options.from_below;
     drawn.is_shaped = !mesh.normal.empty();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);

@@ -499,14 +499,24 @@ TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
              "sea.depth_m"});
 }
 
-TEST_F(Pictures, PreviewDrawsNothingUnderWater) {
-    std::string text = small_shot();
-    const std::string table = "[camera]\n";
-    write_file(folder() / "below.toml",
-               text.insert(text.find(table) + table.size(), "position_m = [0, -60, -9]\n"));
+TEST_F(Pictures, PreviewIsAboveOrBelowWaterThatHasABody) {
+    const auto shot_at = [](const char* z, const char* water) {
+        std::string text = small_shot();
+        const std::string table = "[camera]\n";
+        return text.insert(text.find(table) + table.size(),
+                           std::string("position_m = [0, -60, ") + z + "]\n") +
+               water;
+    };
+    write_file(folder() / "below.toml", shot_at("-9", "[water]\nbody = false\n"));
     refused({"preview", "below.toml", "--offscreen", "new/x.png"}, 1,
-            {"below.toml: camera.position_m: at frame 1 the camera is under water",
-             "only pelagic render draws the sea from below"});
+            {"below.toml: camera.position_m: at frame 1 the camera is under water", "water.body = true"});
+    write_file(folder() / "among.toml", shot_at("-2", ""));
+    refused({"preview", "among.toml", "--offscreen", "new/x.png"}, 1,
+            {"among.toml: camera.position_m: at frame 1 the camera is under water",
+             "only pelagic render draws what is seen from there"});
+    write_file(folder() / "deep.toml", shot_at("-9", ""));
+    if (!kHasPreview) return;
+    EXPECT_EQ(cli({"preview", "deep.toml", "--offscreen", "deep.png"}).status, 0);
 }
 
 }  // namespace

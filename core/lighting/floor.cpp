@@ -78,19 +78,21 @@ std::span<float> Floor::set_light(const Light& light) {
 
 double Floor::depth_m(glm::dvec2 place_m) const {
     if (!has_depths()) return -z_m_;
-    const FloorSeen seen = seen_from(glm::dvec3(place_m, 0.0));
+    const FloorSeen seen = seen_from({.position_m = glm::dvec3(place_m, 0.0)});
     floor_shading::Shading shading{seen.values};
     const floor_shading::Shading::FloorView view{
-        true,         seen.z_m,           0.0f,       seen.depths, seen.depths_per_m,
+        true,         seen.z_m,           0.0f,       0.0f,       seen.depths, seen.depths_per_m,
         seen.colours, seen.colours_first, seen.light, seen.coarse};
     return -static_cast<double>(shading.floor_height(glm::vec2(0.0f), view));
 }
 
-FloorSeen Floor::seen_from(const glm::dvec3& eye_m, double curvature_per_m) const {
+FloorSeen Floor::seen_from(const FloorEye& from) const {
+    const glm::dvec3& eye_m = from.position_m;
     const glm::dvec2 eye(eye_m);
     FloorSeen seen{.is_seen = true,
                    .z_m = static_cast<float>(z_m_ - eye_m.z),
-                   .curvature_per_m = static_cast<float>(curvature_per_m),
+                   .curvature_per_m = static_cast<float>(from.curvature_per_m),
+                   .pixel = static_cast<float>(from.pixel_tangent),
                    .values = values_};
     if (has_depths()) {
         seen.depths = glm::vec4(depth_from_m_ - eye, depth_size_);

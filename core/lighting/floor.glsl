@@ -7,6 +7,7 @@ struct FloorView {
     bool is_seen;     // there are places from which to look; otherwise the floor is level and evenly lit
     float z_m;        // of a floor without a map
     float curvature_per_m;  // of the earth
+    float pixel;      // tangent that a pixel of the eye's covers
     vec4 depths;      // its map: corner, columns and rows (0: none)
     vec4 depths_per_m;  // columns and rows per metre; the height of the sea at rest; first value
     vec4 colours;     // picture, repeated: where in it the eye is, times its texels; texels per metre; texels a side (0: none)

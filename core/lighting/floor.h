@@ -14,11 +14,17 @@ namespace pelagic {
 // As floor.glsl has it, from an eye.
 struct FloorSeen {
     bool is_seen = false;
-    float z_m = 0.0f, curvature_per_m = 0.0f;
+    float z_m = 0.0f, curvature_per_m = 0.0f, pixel = 0.0f;
     glm::vec4 depths{0.0f}, depths_per_m{0.0f}, colours{0.0f};
     float colours_first = 0.0f;
     glm::vec4 light{0.0f}, coarse{0.0f};
     std::span<const float> values{};
+};
+
+struct FloorEye {
+    glm::dvec3 position_m{0.0};    // in the world
+    double curvature_per_m = 0.0;  // of the earth, round which the sea lies below it
+    double pixel_tangent = 0.0;    // that one of its pixels covers
 };
 
 // Values of a float's whole numbers: maps are no larger together.
@@ -54,8 +60,8 @@ class Floor {
     std::span<float> set_light(const Light& light);
     bool has_light() const { return light_.side > 0; }
 
-    // Kept while the floor isn't changed. curvature_per_m: of the earth, round which the sea lies below the eye.
-    FloorSeen seen_from(const glm::dvec3& eye_m, double curvature_per_m = 0.0) const;
+    // Kept while the floor isn't changed.
+    FloorSeen seen_from(const FloorEye& eye) const;
     const std::vector<float>& values() const { return values_; }
 
   private:

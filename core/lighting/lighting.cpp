@@ -73,6 +73,7 @@ struct Shading {
 #include "core/lighting/sea.glsl"
 #include "core/lighting/air.glsl"
 #include "core/lighting/place.glsl"
+#include "core/lighting/below.glsl"
     // clang-format on
 };
 
@@ -134,6 +135,31 @@ SeaAlbedo albedo(const WaterBody& body) {
             .water_index = shading.kWaterIndex};
 }
 
+template <class Variant>
+typename Variant::SeaLight light_of(const Sky& sky, const WaterBody& water, const FloorSeen& floor) {
+    return {sky.sun_direction,
+            sky.sun_radiance,
+            sky.sun_angular_radius,
+            sky.sun_irradiance,
+            sky.sky_irradiance,
+            look_of<Variant>(water),
+            {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.pixel, floor.depths, floor.depths_per_m,
+             floor.colours, floor.colours_first, floor.light, floor.coarse}};
+}
+
+template <class Variant>
+typename Variant::FoamPattern pattern_of(const FoamPattern& foam) {
+    return {foam.cell, foam.rest, foam.axes, foam.look, foam.white, foam.image};
+}
+
+template <class Variant>
+typename Variant::SeenFoam foam_at(Variant& shading, const LightingChoice& choice,
+                                   const typename Variant::FoamPattern& pattern, const SeaPoint& p,
+                                   const Sky& sky) {
+    if (!choice.whitecaps) return shading.no_foam();
+    return shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s, sky.sun_direction);
+}
+
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
                        std::span<SeaRadiance>, const Air*, const FoamPattern&, const FloorSeen&);
 
@@ -146,23 +172,11 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     Variant shading(sky.map, air, choice, foam.picture, floor.values);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
-    const typename Variant::SeaLight light{
-        sky.sun_direction,
-        sky.sun_radiance,
-        sky.sun_angular_radius,
-        sky.sun_irradiance,
-        sky.sky_irradiance,
-        look_of<Variant>(water),
-        {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.depths, floor.depths_per_m, floor.colours,
-         floor.colours_first, floor.light, floor.coarse}};
-    const typename Variant::FoamPattern pattern{foam.cell, foam.rest,  foam.axes,
-                                                foam.look, foam.white, foam.image};
+    const auto light = light_of<Variant>(sky, water, floor);
+    const auto pattern = pattern_of<Variant>(foam);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
-        typename Variant::SeenFoam seen = shading.no_foam();
-        if (choice.whitecaps)
-            seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s,
-                                     sky.sun_direction);
+        const typename Variant::SeenFoam seen = foam_at(shading, choice, pattern, p, sky);
         const bool has_bubbles = choice.whitecaps && water.bubbles > 0.0f;
         const float covered = has_bubbles ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
                     fresh = std::min(covered, std::max(p.active, 0.0f));
@@ -176,7 +190,53 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     }
 }
 
+// Below there is one variant.
+using FromBelow = Shading<FresnelFit::Exact, SkyQuality::Nine>;
+
 }  // namespace sea_shading
+
+void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                          float height_m, std::span<const SeaPoint> points, std::span<const float> distance_m,
+                          std::span<SeaRadiance> radiance, const FoamPattern& foam, const FloorSeen& floor) {
+    using Variant = sea_shading::FromBelow;
+    if (points.size() != radiance.size() || points.size() != distance_m.size())
+        throw std::invalid_argument(
+            "shade_sea_from_below: give a distance and one SeaRadiance for each SeaPoint");
+    Variant shading(sky.map, nullptr, choice, foam.picture, floor.values);
+    const auto light = sea_shading::light_of<Variant>(sky, water, floor);
+    const auto pattern = sea_shading::pattern_of<Variant>(foam);
+    const auto scattering = sea_shading::bands<Variant>(water.scattering);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SeaPoint& p = points[i];
+        const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
+        const glm::vec3 down(-p.normal.x, -p.normal.y, p.normal.z);
+        const glm::vec3 seen = shading.visible_normal(down, shading.upside_down(to_eye),
+                                                      p.slope_variance_at_rest, p.mesh_variance);
+        const typename Variant::SeaTerms terms =
+            shading.sea_from_below(to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
+                                   sea_shading::foam_at(shading, choice, pattern, p, sky), height_m,
+                                   distance_m[i], light, scattering);
+        radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
+    }
+}
+
+void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& water, float height_m,
+                 std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance,
+                 const FloorSeen& floor) {
+    using Variant = sea_shading::FromBelow;
+    if (direction.size() != radiance.size())
+        throw std::invalid_argument("shade_water: give one SeaRadiance for each direction");
+    Variant shading(sky.map, nullptr, choice, nullptr, floor.values);
+    const auto light = sea_shading::light_of<Variant>(sky, water, floor);
+    const auto scattering = sea_shading::bands<Variant>(water.scattering);
+    for (std::size_t i = 0; i < direction.size(); ++i) {
+        radiance[i] = {};
+        if (choice.water)
+            radiance[i].sea =
+                shading.water_between(glm::vec3(0.0f), direction[i], height_m, -1.0f, 0.0f, light, scattering)
+                    .light;
+    }
+}
 
 SeaAlbedo sea_albedo(const WaterBody& water) {
     return sea_shading::albedo(water);

@@ -105,4 +105,16 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr,
                const FoamPattern& foam = {}, const FloorSeen& floor = {});
 
+// The same for an eye in a body of water, at this height above the sea at rest [m], that sees the points from below at these distances
+// [m] through the water. `sea` has what the water between scatters.
+void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                          float height_m, std::span<const SeaPoint> points, std::span<const float> distance_m,
+                          std::span<SeaRadiance> radiance, const FoamPattern& foam = {},
+                          const FloorSeen& floor = {});
+
+// What such an eye sees in these directions (unit) where they don't meet the surface: the water, and its floor.
+void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& water, float height_m,
+                 std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance,
+                 const FloorSeen& floor = {});
+
 }  // namespace pelagic

@@ -9,7 +9,7 @@
 //              plankton, Prieur and Sathyendranath 1981 in Morel's form of 1991
 //              b_b = (0.002 + 0.02(½ − ¼ log₁₀ C) 550/λ) 0.30 C^0.62 (Gordon and Morel 1983, Morel 1988);
 //              of a body (0.002 + 0.01(½ − ¼ log₁₀ C)(λ/550)^ν) 0.416 C^0.766, ν = ½(log₁₀ C − 0.3), not above 0
-//              (Morel and Maritorena 2001)
+//              (Morel and Maritorena 2001), and in all directions b = 0.416 C^0.766 (λ/550)^ν
 // rivers       yellow substance: a = a_y exp(−0.014(λ − 440)) (Bricaud, Morel, Prieur 1981)
 //              mineral particles of concentration s: a = 0.041 m²/g s exp(−0.0123(λ − 443)), scattering 0.51
 // m²/g s
@@ -48,7 +48,7 @@ constexpr std::array<double, kSpectrumBands> kPlanktonAbsorption{
     0.276, 0.317, 0.334, 0.356, 0.441, 0.595, 0.502, 0.329, 0.215};
 
 struct Optics {
-    double absorption, backscatter;  // [1/m]
+    double absorption, backscatter, scattering;  // [1/m]; the latter of a body alone
 };
 
 // Between the table's wavelengths linear.
@@ -75,7 +75,10 @@ Optics optics_at(double wavelength, const WaterChoice& water) {
                0.01 * few * std::pow(wavelength / 550.0, std::min(0.5 * (std::log10(c) - 0.3), 0.0))) *
                   0.416 * std::pow(c, 0.766)
             : (0.002 + 0.02 * few * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
-    return {a, sea_water + plankton + 0.018 * 0.51 * water.minerals_g_m3};
+    const double minerals = 0.51 * water.minerals_g_m3;
+    const double whole_plankton =
+        0.416 * std::pow(c, 0.766) * std::pow(wavelength / 550.0, std::min(0.5 * (std::log10(c) - 0.3), 0.0));
+    return {a, sea_water + plankton + 0.018 * minerals, 2.0 * sea_water + whole_plankton + minerals};
 }
 
 // Of the primaries of Rec. 709 under its white, D65, to the nearest band.
@@ -118,6 +121,7 @@ WaterBody water_body(const WaterChoice& choice) {
         const Optics at = optics_at(kWaterBands_nm[i], choice);
         band(water.absorption, i) = static_cast<float>(at.absorption);
         band(water.backscatter, i) = static_cast<float>(at.backscatter);
+        band(water.scattering, i) = static_cast<float>(at.scattering);
     }
     water.floor_colour = bands_of(glm::vec3(choice.floor_colour));
     return water;

@@ -27,6 +27,7 @@ struct WaterBody {
     // rough surface, depends on the ways of sun and eye, and comes back from a floor, through crests and from bubbles.
     bool has_body = false;
     WaterBands absorption{}, backscatter{};  // [1/m]
+    WaterBands scattering{};                 // in all directions [1/m], for eyes in the water
     WaterBands floor_colour{};               // its reflectance
     float floor_m = 1e9f;                    // how deep it lies; 1e6 and more: there is none
     glm::vec3 waves{1e-10f, 1e-10f, 0.0f};   // slope variances of all waves: xx, yy, xy

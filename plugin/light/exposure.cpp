@@ -14,6 +14,7 @@
 #include "core/lighting/tone.h"
 #include "core/plan/effects.h"
 #include "core/spectrum/cox_munk.h"
+#include "core/spectrum/directional_spectrum.h"
 #include "core/surface/earth.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
@@ -41,10 +42,20 @@ class Meter {
         : sky_(sky),
           water_(make_water(scene)),
           curvature_per_m_(scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0) {
+        const bool is_open =
+            scene.surface.kind != SurfaceKind::Cage &&
+            (scene.surface.kind != SurfaceKind::Patch || scene.surface.beyond != Beyond::Nothing);
+        // Hardly a wave is as deep as two deviations of their height.
+        if (is_open && water_.has_body)
+            under_m_ = -std::max(2.0 * std::sqrt(DirectionalSpectrum(scene.sea, scene.waves.band_gains).m0()),
+                                 kLeastHeight_m);
         variance_ = static_cast<float>(0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total);
     }
 
     void add(const View& view) {
+        is_under_ = view.position_m.z < under_m_;
+        eye_m_ = static_cast<float>(view.position_m.z);
+        is_foam_seen_ = is_foam_seen_ || !is_under_;
         height_m_ = std::max(view.position_m.z, kLeastHeight_m);
         if (sky_.air && !(std::abs(std::log(height_m_ / air_height_m_)) < kSameHeight)) {
             air_ = sky_.air->seen_from(height_m_);
@@ -68,6 +79,8 @@ class Meter {
     }
 
     double log_mean() const { return std::exp(sum_ / static_cast<double>(count_)); }
+    // From above, where it is bright.
+    bool is_foam_seen() const { return is_foam_seen_; }
 
   private:
     static constexpr double kLeastHeight_m = 0.1;
@@ -85,8 +98,24 @@ class Meter {
         return height_m_ * (2.0 + height_m_ * curvature_per_m_) / (std::sqrt(inside) - up);
     }
 
+    // Of an eye in the water.
+    Seen below(const glm::vec3& to) const {
+        SeaRadiance lit;
+        if (to.z > 0.0f) {
+            const SeaPoint point{.to_eye = -to, .slope_variance = {variance_, variance_, 0.0f}};
+            const float metres = -eye_m_ / to.z;
+            shade_sea_from_below({.whitecaps = false}, sky_, water_, eye_m_, {&point, 1}, {&metres, 1},
+                                 {&lit, 1});
+        } else {
+            shade_water({}, sky_, water_, eye_m_, {&to, 1}, {&lit, 1});
+        }
+        const double calm = luminance(glm::dvec3(lit.sky + lit.sea));
+        return {calm + luminance(glm::dvec3(lit.sun)), calm};
+    }
+
     Seen along(glm::dvec3 direction) const {
         const glm::vec3 to(direction);
+        if (is_under_) return below(to);
         const double distance = distance_m(direction);
         if (std::isinf(distance)) {
             const double sky =
@@ -110,6 +139,9 @@ class Meter {
     WaterBody water_;
     double curvature_per_m_;
     float variance_;
+    double under_m_ = -std::numeric_limits<double>::infinity();  // eyes below it are under water
+    bool is_under_ = false, is_foam_seen_ = false;
+    float eye_m_ = 0.0f;
     double height_m_ = 0.0, air_height_m_ = 0.0;
     Air air_;
     double sum_ = 0.0;
@@ -145,7 +177,8 @@ float shot_exposure(const Scene& scene, const Sky& sky, double stops) {
     Meter meter(scene, sky);
     for (const View& view : metered_views(scene)) meter.add(view);
     const double metered = exposure_for(meter.log_mean()),
-                 most = kBrightestFoam / std::max(foam_luminance(scene, sky), 1e-30);
+                 most = kBrightestFoam /
+                        std::max(meter.is_foam_seen() ? foam_luminance(scene, sky) : 0.0, 1e-30);
     const double share = metered / most;
     return static_cast<float>(metered / std::sqrt(std::sqrt(1.0 + (share * share) * (share * share))) *
                               std::exp2(stops));

@@ -20,6 +20,7 @@
 #include "core/surface/footprint_levels.h"
 #include "plugin/light/light.h"
 #include "plugin/render/under_water.h"
+#include "plugin/render/waterline.h"
 
 namespace pelagic {
 namespace {
@@ -148,7 +149,9 @@ void cut_to_square(double half_side_m, SeaMesh& mesh) {
 }
 
 DrawnSea::DrawnSea(const PreparedScene& prepared, bool has_levels)
-    : grid_(projected_grid_options(prepared)), has_grid_(shows_open_sea(prepared.scene.surface)) {
+    : grid_(projected_grid_options(prepared)),
+      has_grid_(shows_open_sea(prepared.scene.surface)),
+      has_body_(prepared.scene.water.body) {
     grid_.has_levels = has_levels;
     const Scene& scene = prepared.scene;
     if (scene.surface.kind == SurfaceKind::Cage) {
@@ -271,6 +274,10 @@ void DrawnSea::add_cage(const SeaView& seen, SeaMesh& mesh) const {
     Faces faces;
     cage_->faces_at(seen.frame, faces);
     add_triangles(faces, static_cast<std::uint32_t>(first), mesh.triangles);
+}
+
+bool DrawnSea::is_below(const View& view) const {
+    return has_below() && glass_heights(view).highest_m < -grid_.bounds.height_m;
 }
 
 bool DrawnSea::may_be_under_waves(const View& view) const {

@@ -65,6 +65,10 @@ class DrawnSea {
     // The height [m] at which it rests: a cage's mean, where that is all there is.
     double rest_m() const;
 
+    // Whether it can be drawn from below as well: an open sea whose water has a body.
+    bool has_below() const { return has_body_ && has_grid_ && !half_side_m_ && !cage_; }
+    // Whether all of a picture looks through water, whatever the waves are.
+    bool is_below(const View& view) const;
     // Whether the flat sea's waves may be over that camera: they are nowhere but where the sea is.
     bool may_be_under_waves(const View& view) const;
     // The height [m] of the cage's surface at rest over a camera whose way up meets it from below: it is in the pool.
@@ -84,7 +88,7 @@ class DrawnSea {
     void add_cage(const SeaView& seen, SeaMesh& mesh) const;
 
     ProjectedGridOptions grid_;
-    bool has_grid_ = true;
+    bool has_grid_ = true, has_body_ = false;
     std::optional<double> half_side_m_;  // of the patch that is all that there is
     std::shared_ptr<const RestSurface> cage_;
     // Of the cage: how near an eye comes, and whether it is below.

@@ -26,6 +26,8 @@
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
 #include "plugin/render/seen_drops.h"
+#include "plugin/render/under_water.h"
+#include "plugin/render/waterline.h"
 
 namespace pelagic {
 
@@ -109,6 +111,7 @@ class RendererOf final : public Impl {
                     sea_.answer(batch_.seen);
                 }
                 if (is_lit) light_sea();
+                if (is_lit) light_water(row);
                 if (is_lit && !drops_.empty()) draw_drops(row, rows);
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
@@ -122,7 +125,8 @@ class RendererOf final : public Impl {
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
         for (std::size_t i = 0; i < frames.size(); ++i)
             for (const PicturePass& pass : passes_of(scene_.camera, frames[i], options_).all) {
-                if (!may_be_wet(pass.frame)) continue;
+                if (drawn_.has_below()) refuse_in_floor(scene_, pass.frame);
+                if (drawn_.has_below() || !may_be_wet(pass.frame)) continue;
                 set_time(pass.frame, watch);
                 drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
                 if (watch.progress)
@@ -179,8 +183,13 @@ class RendererOf final : public Impl {
     // Of large pictures each step takes tenths of a second.
     void begin(const PicturePass& pass, const BuildWatch& watch) {
         set_time(pass.frame, watch);
-        drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
+        if (drawn_.has_below())
+            refuse_in_floor(scene_, pass.frame);
+        else
+            drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
         view_ = view_of(scene_.camera, pass);
+        may_be_below_ =
+            drawn_.has_below() && glass_heights(view_).lowest_m <= drawn_.grid_options().bounds.height_m;
         // Before all of the lens the air is that before its middle.
         const double height_m = view_at(scene_.camera, pass.frame).position_m.z;
         if (air_.empty() || height_m != air_height_m_) air_ = sea_.air_before(height_m);
@@ -197,6 +206,8 @@ class RendererOf final : public Impl {
     // The spray, with the drops in it that are seen one by one.
     void find_drops(const PicturePass& pass, const BuildWatch& watch) {
         drops_.clear();
+        spray_ = {};
+        if (drawn_.is_below(view_)) return;
         const bool are_near = options_.lighting.spray && are_drops_near(scene_, view_);
         spray_ = sea_.spray_before(view_, drawn_.grid_options(), are_near);
         if (!are_near || spray_.empty()) return;
@@ -247,7 +258,8 @@ class RendererOf final : public Impl {
         for (std::size_t i = 0; i < velocity_.size(); ++i)
             velocity_[i] = glm::vec<3, T>(
                 from_level(glm::dvec3(velocity_[i]), earth_up(glm::dvec2(rest_[i]), grid.curvature_per_m)));
-        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid.origin_m, 0.0), kFirst_m);
+        const glm::dmat4 clip_from =
+            view_.clip_from(glm::dvec3(grid.origin_m, 0.0), may_be_below_ ? kFrontGlass_m : kFirst_m);
         clip_.resize(count);
         // Moves the samples that are taken to the middles of the rasteriser's pixels.
         const glm::dvec2 shift = (static_cast<double>(sampling_.stride - 1) - 2.0 * sampling_.first) /
@@ -259,6 +271,11 @@ class RendererOf final : public Impl {
         }
         stop_if(watch.cancel);
         raster_.set(clip_, mesh_.triangles, raster_size(), sampling_.is_by_pixel);
+        stop_if(watch.cancel);
+        waterline_.reset();
+        if (may_be_below_)
+            waterline_.emplace(view_, drawn_.grid_options().bounds.height_m, grid.origin_m,
+                               std::span<const glm::vec<3, T>>(position_), mesh_.triangles);
         stop_if(watch.cancel);
     }
 
@@ -312,6 +329,23 @@ class RendererOf final : public Impl {
         batch_.sea.clear();
         for (std::size_t i = 0; i < batch_.triangles.size(); ++i)
             if (batch_.triangles[i] != Rasteriser::kNone) batch_.sea.push_back(i);
+        find_water(first_row);
+    }
+
+    // Which samples look through water, and which of these meet no surface.
+    void find_water(int first_row) {
+        batch_.water.clear();
+        batch_.under.assign(waterline_ ? batch_.triangles.size() : 0, 0);
+        in_parallel(batch_.under.size(), [&](std::size_t i) {
+            if (batch_.places.empty() || batch_.places[i].is_taken())
+                batch_.under[i] = waterline_->is_under(seen_at(first_row, i)) ? 1 : 0;
+        });
+        for (std::size_t i = 0; i < batch_.under.size(); ++i)
+            if (is_under(i) && batch_.triangles[i] == Rasteriser::kNone) batch_.water.push_back(i);
+    }
+    bool is_under(std::size_t sample) const { return !batch_.under.empty() && batch_.under[sample] != 0; }
+    bool is_sea(std::size_t sample) const {
+        return batch_.triangles[sample] != Rasteriser::kNone || is_under(sample);
     }
 
     // A sample of the batch in the rasteriser's pixels, and in those of the view.
@@ -342,7 +376,7 @@ class RendererOf final : public Impl {
         batch_.spray.assign(has_spray && options_.alpha ? batch_.triangles.size() : 0, 0.0f);
         if (!has_sky && !has_spray) return;
         in_parallel(batch_.triangles.size(), [&](std::size_t i) {
-            if (batch_.triangles[i] != Rasteriser::kNone) return;
+            if (is_sea(i)) return;
             if (!batch_.places.empty() && !batch_.places[i].is_taken()) return;
             const glm::dvec3 direction = view_.direction(seen_at(first_row, i));
             const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
@@ -361,6 +395,23 @@ class RendererOf final : public Impl {
         batch_.lit.resize(batch_.sea.size());
         sea_.light(batch_.seen, sea_.sky(), air_, spray_, batch_.lit);
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
+    }
+
+    FloorEye eye() const {
+        return {.position_m = view_.position_m,
+                .curvature_per_m = mesh_.points.curvature_per_m,
+                .pixel_tangent = view_.pixel_tangent()};
+    }
+
+    void light_water(int first_row) {
+        if (batch_.water.empty()) return;
+        std::vector<glm::vec3> direction;
+        for (const std::size_t sample : batch_.water)
+            direction.emplace_back(view_.direction(seen_at(first_row, sample)));
+        batch_.lit.resize(batch_.water.size());
+        sea_.light_water(eye(), direction, batch_.lit);
+        for (std::size_t i = 0; i < batch_.water.size(); ++i)
+            batch_.radiance[batch_.water[i]] = batch_.lit[i];
     }
 
     // Over what the samples of the rows show, from the farthest on.
@@ -395,7 +446,7 @@ class RendererOf final : public Impl {
     }
 
     void hide_by(const SeenDrop& drop, int first_row, std::size_t sample) {
-        if (!batch_.places.empty() && !batch_.places[sample].is_taken()) return;
+        if (is_under(sample) || (!batch_.places.empty() && !batch_.places[sample].is_taken())) return;
         const float hidden = drop.hides(seen_at(first_row, sample), batch_.sea_m[sample]);
         if (!(hidden > 0.0f)) return;
         SeaRadiance& seen = batch_.radiance[sample];
@@ -411,12 +462,14 @@ class RendererOf final : public Impl {
         const std::size_t count = batch_.sea.size();
         SeenSea<T>& seen = batch_.seen;
         seen.origin_m = mesh_.points.origin_m;
-        seen.eye_m = view_.position_m;
-        seen.curvature_per_m = mesh_.points.curvature_per_m;
+        seen.eye = eye();
         seen.resize(count);
         const bool is_flat = mesh_.normal.empty();
         seen.rest_normal.resize(is_flat ? 0 : count);
         seen.crest.resize(crest_.empty() ? 0 : count);
+        seen.from_below.resize(batch_.under.empty() ? 0 : count);
+        for (std::size_t i = 0; i < seen.from_below.size(); ++i)
+            seen.from_below[i] = batch_.under[batch_.sea[i]];
         const glm::dvec3 eye = view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
@@ -497,7 +550,7 @@ class RendererOf final : public Impl {
                         sum.sea += sample.sea;
                         sum.foam += sample.foam;
                         sum.air += sample.air;
-                        of_sea += batch_.triangles[at] != Rasteriser::kNone;
+                        of_sea += is_sea(at);
                         if (!batch_.spray.empty()) of_spray += batch_.spray[at];
                     }
                 SeaRadiance& pixel = picture.layers[to + x];
@@ -523,7 +576,7 @@ class RendererOf final : public Impl {
             const std::size_t to = width * (first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
                 const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
-                picture.sea[to + x] = batch_.triangles[middle] != Rasteriser::kNone;
+                picture.sea[to + x] = is_sea(middle);
                 if (has_data()) describe_sample(first_row, middle, motion, picture, to + x);
             }
         });
@@ -542,16 +595,27 @@ class RendererOf final : public Impl {
             set(PictureLayer::Vector, glm::dvec4(way.z, way.w, -way.x, -way.y));
         };
         const std::uint32_t triangle = batch_.triangles[sample];
+        const glm::dvec3 origin(mesh_.points.origin_m, 0.0);
         if (triangle == Rasteriser::kNone) {
-            set(PictureLayer::Depth, glm::vec1(kSkyDepth_m));
-            for (const PictureLayer layer :
-                 {PictureLayer::Position, PictureLayer::Normal, PictureLayer::SlopeVariance})
-                set(layer, glm::vec3(0.0f));
+            set(PictureLayer::SlopeVariance, glm::vec3(0.0f));
             for (const PictureLayer layer :
                  {PictureLayer::Coverage, PictureLayer::Breaking, PictureLayer::FoamAge})
                 set(layer, glm::vec1(0.0f));
-            if (needs_motion(options_.layers))
-                set_motion(motion.of({view_.direction(seen_at(first_row, sample)), 0.0}, glm::dvec3(0.0)));
+            const glm::dvec3 direction = view_.direction(seen_at(first_row, sample));
+            // The floor under water; what has none, and the sky, is endlessly far.
+            const double floor_m = (view_.position_m.z + scene_.sea.depth_m) / -direction.z;
+            if (is_under(sample) && direction.z < 0.0 && floor_m < kSkyDepth_m) {
+                const glm::dvec3 at = view_.position_m + floor_m * direction;
+                set(PictureLayer::Depth, glm::dvec1(floor_m * glm::dot(view_.forward, direction)));
+                set(PictureLayer::Position, at);
+                set(PictureLayer::Normal, glm::vec3(0.0f, 0.0f, 1.0f));
+                if (needs_motion(options_.layers)) set_motion(motion.of({at - origin, 1.0}, glm::dvec3(0.0)));
+                return;
+            }
+            set(PictureLayer::Depth, glm::vec1(kSkyDepth_m));
+            for (const PictureLayer layer : {PictureLayer::Position, PictureLayer::Normal})
+                set(layer, glm::vec3(0.0f));
+            if (needs_motion(options_.layers)) set_motion(motion.of({direction, 0.0}, glm::dvec3(0.0)));
             return;
         }
         const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
@@ -561,7 +625,6 @@ class RendererOf final : public Impl {
             position += weights[corner] * glm::dvec3(position_[vertex]);
             if (!velocity_.empty()) velocity += weights[corner] * glm::dvec3(velocity_[vertex]);
         }
-        const glm::dvec3 origin(mesh_.points.origin_m, 0.0);
         set(PictureLayer::Depth, glm::dvec1(glm::dot(view_.forward, position + origin - view_.position_m)));
         set(PictureLayer::Position, position + origin);
         if (needs_motion(options_.layers)) set_motion(motion.of({position, 1.0}, velocity));
@@ -594,7 +657,9 @@ class RendererOf final : public Impl {
     std::vector<SprayDrop> in_air_;
     std::vector<SeenDrop> drops_;
     double air_height_m_ = 0.0;
-    std::optional<double> set_s_;  // the time that the sea is set to
+    bool may_be_below_ = false;           // some of the view's front glass may be under water
+    std::optional<Waterline> waterline_;  // then
+    std::optional<double> set_s_;         // the time that the sea is set to
     SamplesOfPass sampling_;
     PicturePass pass_;
     int parts_ = 0, frame_ = 0;

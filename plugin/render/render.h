@@ -106,12 +106,13 @@ class Renderer {
     // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
     // threads of the calling arena; the same bits whatever their number and whichever frame came before.
     // Every value is finite. `watch` is told from the calling thread. Throws BuildCancelled, the picture being only
-    // partly there, and std::invalid_argument for a camera under water (plugin/render/under_water.h).
+    // partly there, and std::invalid_argument for a camera under water where that can't be drawn
+    // (plugin/render/under_water.h), or in the sea's floor.
     void render(int frame, Picture& picture, const BuildWatch& watch = {});
 
-    // Throws what render() would throw for the first of these frames whose camera is under water, before hours
-    // are spent on the others. Frames whose camera is above the highest crest to be expected cost nothing, each
-    // other one its transforms. Throws BuildCancelled.
+    // Throws what render() would throw for the first of these frames whose camera it refuses, before hours are spent on the
+    // others. Where the sea is drawn from below as well, and for frames whose camera is above the highest crest to be
+    // expected, that costs nothing, for each other one its transforms. Throws BuildCancelled.
     void check_cameras(std::span<const int> frames, const BuildWatch& watch = {});
 
     const Plan& plan() const;

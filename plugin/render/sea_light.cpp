@@ -121,35 +121,55 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
     const std::vector<float>& coverage = answers_.numbers(Product::Coverage);
     points_.resize(seen.size());
     const FoamPattern foam = foam_pattern(foam_, seen.origin_m);
-    const FloorSeen floor = seen.eye_m ? floor_.seen_from(*seen.eye_m, seen.curvature_per_m) : FloorSeen{};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen.size(), kShadeGrain),
+    const FloorSeen floor = seen.eye ? floor_.seen_from(*seen.eye) : FloorSeen{};
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, seen.size(), kShadeGrain),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                points_[i] = {.to_eye = seen.to_eye[i],
+                              .normal = normal[i],
+                              .slope_variance = slope_variance[i],
+                              .slope_variance_at_rest = at_rest[i],
+                              .coverage = coverage.empty() ? 0.0f : coverage[i],
+                              .up = seen.up[i],
+                              .mesh_variance = seen.mesh_variance[i],
+                              .rest_m = glm::vec2(seen.rest[i]),
+                              .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i]),
+                              .from_eye_m = -seen.distance_m[i] * seen.to_eye[i]};
+            if (!seen.crest.empty())
+                for (std::size_t i = range.begin(); i < range.end(); ++i) points_[i].crest = seen.crest[i];
+            if (foam_lives())
+                for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                    points_[i].active = answers_.numbers(Product::Breaking)[i];
+                    points_[i].age_s = residual_age_s(i);
+                }
+            const auto is_below = [&](std::size_t i) {
+                return !seen.from_below.empty() && seen.from_below[i] != 0;
+            };
+            // Places after one another that are seen from the same side.
+            for (std::size_t first = range.begin(), last = first; first < range.end(); first = last) {
+                while (last < range.end() && is_below(last) == is_below(first)) ++last;
+                const auto part = [&](auto& of) { return std::span(of).subspan(first, last - first); };
+                if (is_below(first)) {
+                    shade_sea_from_below(choice_, sky, water_, static_cast<float>(seen.eye->position_m.z),
+                                         part(points_), part(seen.distance_m), part(lit), foam, floor);
+                    continue;
+                }
+                shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam, floor);
+                if (choice_.air) see_through(air, part(seen.to_eye), part(seen.distance_m), part(lit));
+                see_through_spray(spray, part(seen.to_eye), part(seen.distance_m), part(lit));
+            }
+        });
+}
+
+template <class T>
+void SeaLight<T>::light_water(const FloorEye& eye, std::span<const glm::vec3> direction,
+                              std::span<SeaRadiance> lit) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, direction.size(), kShadeGrain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              points_[i] = {.to_eye = seen.to_eye[i],
-                                            .normal = normal[i],
-                                            .slope_variance = slope_variance[i],
-                                            .slope_variance_at_rest = at_rest[i],
-                                            .coverage = coverage.empty() ? 0.0f : coverage[i],
-                                            .up = seen.up[i],
-                                            .mesh_variance = seen.mesh_variance[i],
-                                            .rest_m = glm::vec2(seen.rest[i]),
-                                            .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i]),
-                                            .from_eye_m = -seen.distance_m[i] * seen.to_eye[i]};
-                          if (!seen.crest.empty())
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  points_[i].crest = seen.crest[i];
-                          if (foam_lives())
-                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  points_[i].active = answers_.numbers(Product::Breaking)[i];
-                                  points_[i].age_s = residual_age_s(i);
-                              }
-                          const auto part = [&](auto& of) {
-                              return std::span(of).subspan(range.begin(), range.size());
-                          };
-                          shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam, floor);
-                          if (choice_.air)
-                              see_through(air, part(seen.to_eye), part(seen.distance_m), part(lit));
-                          see_through_spray(spray, part(seen.to_eye), part(seen.distance_m), part(lit));
+                          shade_water(choice_, sky_, water_, static_cast<float>(eye.position_m.z),
+                                      direction.subspan(range.begin(), range.size()),
+                                      lit.subspan(range.begin(), range.size()), floor_.seen_from(eye));
                       });
 }
 

@@ -32,8 +32,7 @@ template <class T>
 struct SeenSea {
     glm::dvec2 origin_m{0.0};  // of places at rest
     // From which to_eye and distance_m are, for the floor below; without: it is level and evenly lit.
-    std::optional<glm::dvec3> eye_m;
-    double curvature_per_m = 0.0;      // of the earth, as ProjectedGrid has it
+    std::optional<FloorEye> eye;
     std::vector<glm::vec<2, T>> rest;  // [m]
     std::vector<T> pixel_m;  // the pixel's footprint at rest, as in Points (core/evaluate/evaluate.h)
     std::vector<glm::vec<2, T>> pixel_axis_m;
@@ -44,6 +43,8 @@ struct SeenSea {
     std::vector<float> mesh_variance;
     // As SeaPoint::crest, by find_crests(); empty: the water is lit as level water.
     std::vector<glm::vec3> crest;
+    // Whether the eye sees the place from below; empty: it sees none so.
+    std::vector<std::uint8_t> from_below;
     // Normals of the surface at rest, of any length, as in Points; empty: it is flat everywhere.
     std::vector<glm::vec<3, T>> rest_normal;
 
@@ -99,6 +100,10 @@ class SeaLight {
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
+
+    // What an eye in the water sees in these directions (unit) where there is no surface.
+    void light_water(const FloorEye& eye, std::span<const glm::vec3> direction,
+                     std::span<SeaRadiance> lit) const;
 
     // SeaPoint::crest at places of a flat sea at rest, by their footprints [m], width and long axis; empty where the water knows no crests.
     void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,

@@ -7,6 +7,7 @@
 #include "core/evaluate/surface_above.h"
 #include "core/scene/text.h"
 #include "core/surface/footprint_levels.h"
+#include "plugin/render/drawn_sea.h"
 
 namespace pelagic {
 
@@ -23,15 +24,37 @@ std::optional<double> surface_above_camera(const Frame<T>& frame, const View& vi
     return surface_above(frame, 0, view.position_m, has_levels ? first_level_m(finest_m) : finest_m);
 }
 
+namespace {
+
+std::string metres(double z_m) {
+    return number_text(std::round(z_m * 1e3) / 1e3) + " m";
+}
+
+std::string camera_at(const Scene& scene, double frame) {
+    return std::string(scene.camera.keys.empty() ? "camera.position_m" : "camera.keys") + ": at frame " +
+           number_text(frame) + " the camera is ";
+}
+
+}  // namespace
+
 void throw_under_water(const Scene& scene, double frame, double surface_m) {
-    const auto metres = [](double z_m) { return number_text(std::round(z_m * 1e3) / 1e3) + " m"; };
+    const bool is_open = scene.surface.kind != SurfaceKind::Cage && shows_open_sea(scene.surface);
     throw std::invalid_argument(
-        std::string(scene.camera.keys.empty() ? "camera.position_m" : "camera.keys") + ": at frame " +
-        number_text(frame) +
-        " the camera is under water: it is at z = " + metres(view_at(scene.camera, frame).position_m.z) +
-        ", and the surface there at z = " + metres(surface_m) +
-        "; pictures are drawn from above the water only: raise the camera, or leave such "
-        "frames out");
+        camera_at(scene, frame) +
+        "under water: it is at z = " + metres(view_at(scene.camera, frame).position_m.z) +
+        ", and the surface there at z = " + metres(surface_m) + "; " +
+        (!is_open            ? "the water of a cage or of a patch in nothing is drawn from above only"
+         : !scene.water.body ? "the sea is drawn from below where its water has a body (water.body = true)"
+                             : "only pelagic render draws what is seen from there") +
+        ": raise the camera, or leave such frames out");
+}
+
+void refuse_in_floor(const Scene& scene, double frame) {
+    const double z_m = view_at(scene.camera, frame).position_m.z;
+    if (z_m > -scene.sea.depth_m) return;
+    throw std::invalid_argument(camera_at(scene, frame) + "in the sea's floor: it is at z = " + metres(z_m) +
+                                ", and the floor at z = " + metres(-scene.sea.depth_m) +
+                                " (sea.depth_m): raise the camera, or make the sea deeper");
 }
 
 template <class T>

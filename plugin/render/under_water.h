@@ -1,4 +1,5 @@
-// A camera under water: its pictures would need other optics than those above it, so they are refused.
+// A camera under water. Renderer draws what it sees in an open sea whose water has a body, and so does the preview where all of the picture looks
+// through water; where the water has none, in a cage's pool, and by others, such pictures are refused.
 #pragma once
 
 #include <optional>
@@ -27,5 +28,8 @@ std::optional<double> surface_above_camera(const Frame<T>& frame, const View& vi
 template <class T>
 void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
                         const ProjectedGridOptions& options);
+
+// Throws std::invalid_argument for a camera that isn't above the sea's floor.
+void refuse_in_floor(const Scene& scene, double frame);
 
 }  // namespace pelagic

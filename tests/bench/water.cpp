@@ -1,5 +1,6 @@
 // The water's formulas (core/lighting/water.glsl) beside Monte Carlo programs that know only Fresnel, Snell, and what
 // scatters and absorbs: `bench_water [transmission] [column] [furnace] [crest] [caustics]`, without an argument all of them.
+// scatters and absorbs: `bench_water [transmission] [column] [furnace] [crest] [below]`, without an argument all of them.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -1044,16 +1045,189 @@ void caustics() {
         }
 }
 
+// ---- What an eye in deep water sees, below a level surface
+
+constexpr std::array kBelowSuns{60.0, 20.0};
+constexpr std::array kBelowViews{30.0, 60.0, 80.0, 90.0, 100.0, 120.0, 150.0, 180.0};  // from the zenith
+constexpr std::array kBelowAzimuths{0.0, 90.0, 180.0};                                 // from the sun's
+constexpr std::array kBelowDepths{0.5, 3.0, 12.0};
+constexpr std::size_t kBelowLights = kBelowSuns.size() + 1;  // the last one: a uniform sky
+constexpr double kSkyMirrored = 0.06751;
+
+glm::dvec3 direction_of(double zenith_deg, double azimuth_deg) {
+    const double theta = zenith_deg * kDegree, azimuth = azimuth_deg * kDegree;
+    return {std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth), std::cos(theta)};
+}
+glm::dvec3 in_water(glm::dvec3 to_light) {
+    return {to_light.x / kIndex, to_light.y / kIndex, refracted(to_light.z)};
+}
+
+// Radiance in the water of a uniform sky that is seen through the surface, over the irradiance that enters.
+double sky_through(double cosine) {
+    return kIndex * kIndex * (1.0 - fresnel(cosine, 1.0 / kIndex)) / (kPi * (1.0 - kSkyMirrored));
+}
+
+// Backwards from the eye: radiance, of the sun only what is scattered, over the irradiance that enters, of each light.
+// floor: how deep, and its albedo.
+std::array<double, kBelowLights> seen_below(const Medium& medium, double depth,
+                                            std::pair<double, double> floor, glm::dvec3 to, int paths,
+                                            Lot& lot) {
+    std::array<double, kBelowLights> sum{};
+    const double c = medium.extinction;
+    const glm::dvec3 start = to;
+    for (int path = 0; path < paths; ++path) {
+        to = start;
+        double height = -depth, weight = 1.0;
+        bool is_scattered = false;
+        while (true) {
+            const double next = height - std::log(1.0 - lot()) / c * to.z;
+            if (next > 0.0) {
+                height = 0.0;
+                if (!is_scattered) sum.back() += weight * sky_through(to.z);
+                weight *= fresnel(to.z, 1.0 / kIndex);
+                to.z = -to.z;
+            } else {
+                const bool is_floor = next < -floor.first;
+                height = is_floor ? -floor.first : next;
+                weight *= is_floor ? floor.second : medium.albedo;
+                if (is_floor && floor.second == 0.0) break;
+                for (std::size_t light = 0; light < kBelowLights; ++light) {
+                    double part = 1.0;
+                    glm::dvec3 from;
+                    if (light < kBelowSuns.size()) {
+                        from = in_water(direction_of(90.0 - kBelowSuns[light], 0.0));
+                    } else {
+                        const double outside = std::sqrt(1.0 - lot());
+                        from = in_water(direction_of(std::acos(outside) / kDegree, 360.0 * lot()));
+                        part = (1.0 - fresnel(outside, kIndex)) / (1.0 - kSkyMirrored);
+                    }
+                    const double towards = is_floor ? from.z / kPi : medium.phase(glm::dot(to, from));
+                    sum[light] += weight * part * towards / from.z * std::exp(c * height / from.z);
+                }
+                to = is_floor ? turned({0.0, 0.0, 1.0}, std::sqrt(1.0 - lot()), kTwoPi * lot())
+                              : medium.scattered(to, lot);
+                is_scattered = true;
+            }
+            if (weight < 0.05) {
+                if (lot() > 0.1) break;
+                weight *= 10.0;
+            }
+        }
+    }
+    for (double& part : sum) part /= paths;
+    return sum;
+}
+
+// floor_m, albedo: kNoFloor_m and more: deep water.
+void below(const char* name, double floor_m, double floor_albedo) {
+    std::printf(
+        "Light of %s around an eye, under a level surface: the model over the Monte Carlo, as a logarithm, by the\n"
+        "view's angle from the zenith; of the sun further than 15 degrees from it in the water, and of a uniform sky\n",
+        name);
+    constexpr int kPaths = 20000;
+    constexpr double kDarkest = 3.0;  // of depth times a + b_b: beyond, few paths find light
+    const std::vector<NamedWater> all = waters();
+    optics::Optics shading;
+    struct Row {
+        std::size_t water, band, depth, view, azimuth;
+        std::array<double, kBelowLights> traced, ours;
+    };
+    std::vector<Row> rows;
+    for (std::size_t water = 0; water < kFittedWaters; ++water)
+        for (const std::size_t band : {0, 2, 4})
+            for (std::size_t depth = 0; depth < kBelowDepths.size(); ++depth)
+                for (std::size_t view = 0; view < kBelowViews.size(); ++view)
+                    for (std::size_t azimuth = 0; azimuth < kBelowAzimuths.size(); ++azimuth)
+                        if (kBelowDepths[depth] < floor_m &&
+                            kBelowDepths[depth] * (of_band(all[water].absorption, band) +
+                                                   of_band(all[water].backscatter, band)) <
+                                kDarkest)
+                            rows.push_back({water, band, depth, view, azimuth, {}, {}});
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+        Row& row = rows[i];
+        Lot lot(77 + i);
+        const NamedWater& water = all[row.water];
+        const double a = of_band(water.absorption, row.band), back = of_band(water.backscatter, row.band),
+                     own = 0.00144 * std::pow(kBands_nm[row.band] / 500.0, -4.32);
+        const glm::dvec3 to = direction_of(kBelowViews[row.view], kBelowAzimuths[row.azimuth]);
+        const double depth = kBelowDepths[row.depth];
+        row.traced =
+            seen_below(Medium(a, back, kBands_nm[row.band]), depth, {floor_m, floor_albedo}, to, kPaths, lot);
+        const auto bands = [](double of) { return glm::vec3(static_cast<float>(of)); };
+        optics::Optics::WaterLook look{};
+        look.floor_m = static_cast<float>(floor_m);
+        look.waves = {1e-10f, 1e-10f, 0.0f};
+        for (std::size_t light = 0; light < kBelowLights; ++light) {
+            const double sun = light < kBelowSuns.size() ? kBelowSuns[light] : 60.0;
+            const auto seen = [&](glm::dvec3 along, double height, double surface) {
+                const auto sight = shading.water_sight(glm::vec3(along), static_cast<float>(height),
+                                                       static_cast<float>(surface),
+                                                       glm::vec3(direction_of(90.0 - sun, 0.0)), look);
+                const auto of = shading.seen_in_water(bands(a), bands(2.0 * own + (back - own) / 0.018),
+                                                      bands(back), bands(own), bands(floor_albedo), sight);
+                return std::pair(static_cast<double>(light < kBelowSuns.size() ? of.sun.x : of.sky.x),
+                                 static_cast<double>(of.left.x));
+            };
+            if (to.z > 1e-6) {
+                const auto [light_between, left] = seen(to, -depth, depth / to.z);
+                const double behind = light < kBelowSuns.size() ? 0.0 : sky_through(to.z);
+                row.ours[light] =
+                    light_between + left * behind +
+                    left * fresnel(to.z, 1.0 / kIndex) * seen({to.x, to.y, -to.z}, 0.0, -1.0).first;
+            } else {
+                row.ours[light] = seen(to, -depth, -1.0).first;
+            }
+        }
+    });
+    for (const bool of_sky : {false, true}) {
+        std::printf("    %s", of_sky ? "sky" : "sun");
+        for (const double depth : kBelowDepths)
+            for (std::size_t azimuth = 0; depth < floor_m && azimuth < (of_sky ? 1 : kBelowAzimuths.size());
+                 ++azimuth)
+                std::printf(of_sky ? "   %4.1f m    " : "  %4.1f m %3.0f", depth, kBelowAzimuths[azimuth]);
+        std::printf("\n");
+        for (std::size_t view = 0; view < kBelowViews.size(); ++view) {
+            std::printf("    %5.0f", kBelowViews[view]);
+            for (std::size_t depth = 0; depth < kBelowDepths.size() && kBelowDepths[depth] < floor_m; ++depth)
+                for (std::size_t azimuth = 0; azimuth < (of_sky ? 1 : kBelowAzimuths.size()); ++azimuth) {
+                    double sum = 0.0, square = 0.0;
+                    int count = 0;
+                    for (const Row& row : rows) {
+                        if (row.view != view || row.depth != depth || row.azimuth != azimuth) continue;
+                        for (std::size_t light = 0; light < kBelowLights; ++light) {
+                            if ((light == kBelowSuns.size()) != of_sky) continue;
+                            if (!of_sky && glm::dot(direction_of(kBelowViews[view], kBelowAzimuths[azimuth]),
+                                                    in_water(direction_of(90.0 - kBelowSuns[light], 0.0))) >
+                                               std::cos(15.0 * kDegree))
+                                continue;
+                            const double error = std::log(row.ours[light] / row.traced[light]);
+                            sum += error;
+                            square += error * error;
+                            ++count;
+                        }
+                    }
+                    count = std::max(count, 1);
+                    std::printf("  %+5.2f %4.2f", sum / count, std::sqrt(square / count));
+                }
+            std::printf("\n");
+        }
+    }
+}
+
+void below() {
+    below("deep water", 1e9, 0.0);
+    below("water over a floor at 4 m, albedo 0.5", 4.0, 0.5);
+}
+
 }  // namespace
 }  // namespace pelagic::bench
 
 int main(int argc, char** argv) {
     using Table = std::pair<std::string, void (*)()>;
-    const std::vector<Table> tables{{"transmission", pelagic::bench::transmission},
-                                    {"column", pelagic::bench::columns},
-                                    {"furnace", pelagic::bench::furnaces},
-                                    {"crest", pelagic::bench::crests},
-                                    {"caustics", pelagic::bench::caustics}};
+    const std::vector<Table> tables{
+        {"transmission", pelagic::bench::transmission}, {"column", pelagic::bench::columns},
+        {"furnace", pelagic::bench::furnaces},          {"crest", pelagic::bench::crests},
+        {"caustics", pelagic::bench::caustics},         {"below", pelagic::bench::below}};
     for (const auto& [name, print] : tables) {
         const bool asked =
             argc < 2 || std::any_of(argv + 1, argv + argc, [&](const char* said) { return name == said; });

@@ -329,7 +329,7 @@ const Sky& sky_of(const Scene& scene) {
     return sky;
 }
 
-// Whether the camera is above water.
+// Whether the camera sees the sea: it isn't in its floor, nor under water that has no body.
 bool judge_pictures(const Scene& scene, std::uint64_t variant) {
     const RenderOptions options = picture_options(scene, variant);
     const Sky& sky = sky_of(scene);
@@ -346,7 +346,9 @@ bool judge_pictures(const Scene& scene, std::uint64_t variant) {
             renderer.render(frame, picture);
         } catch (const std::invalid_argument& error) {
             refused = error.what();
-            if (refused.find("under water") == std::string::npos) throw;
+            if (refused.find("under water") == std::string::npos &&
+                refused.find("in the sea's floor") == std::string::npos)
+                throw;
         }
         if (!refusal) {
             refusal = refused;

@@ -11,7 +11,7 @@ struct Judgement {
     std::string failure;       // of which kind; empty: none
     std::string detail;        // the failure with its numbers
     std::string refusal;       // of the shot file
-    bool is_pictured = false;  // false: its camera is under water
+    bool is_pictured = false;  // false: its camera is refused
 };
 
 // Loads the shot file, which may be refused with a message that names a key. Otherwise bakes it into a new folder beside

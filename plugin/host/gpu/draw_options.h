@@ -19,6 +19,7 @@ struct DrawOptions {
     FalseColour false_colour = FalseColour::None;
     bool sky_from_air = false;  // the sky beside the sea is the air's table's (air.h), otherwise the map's
     bool is_shaped = false;     // the sea lies on a surface that isn't flat at rest
+    bool from_below = false;    // all of the picture looks through water (plugin/render/waterline.h)
     bool wireframe = false;     // the grid's edges on black
     // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
     // faster.

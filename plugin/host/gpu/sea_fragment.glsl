@@ -26,11 +26,14 @@ void main() {
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white,
                                      foam_pattern_image),
                          rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
-    WaterLook water = WaterLook(water_reflectance, water_body_look.x > 0.0,
-                                WaterBands(water_absorption_shorter, water_absorption_longer),
-                                WaterBands(water_backscatter_shorter, water_backscatter_longer),
-                                WaterBands(water_floor_shorter, water_floor_longer), water_body_look.y, water_waves,
-                                water_body_look.z, water_body_look.w, water_bubbles.x, water_bubbles.y);
+    if (kFromBelow) {
+        vec3 normal = visible_normal(vec3(-answer.normal.x, -answer.normal.y, answer.normal.z), upside_down(to_eye),
+                                     answer.slope_variance_at_rest, mesh_variance_along());
+        SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, view_height_m,
+                                        point_distance_m(), sea_light(), water_scattering());
+        write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
+        return;
+    }
     SeenBody body = SeenBody(pixel_ray() * point_distance_m(), pixel_over(pixel), point_crest(), 0.0, 0.0, 0.0);
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);
@@ -39,12 +42,7 @@ void main() {
     }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
-                        answer.slope_variance, foam, body,
-                        SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
-                                 water,
-                                 FloorView(kFloorMaps && floor_level.x > 0.0, floor_level.y, floor_level.z, floor_depths, floor_depths_per_m,
-                                           floor_colours, floor_colours_first, floor_light_maps, floor_coarse)),
-                        PlaceView(air_to_sun, air_by_place));
+                        answer.slope_variance, foam, body, sea_light(), PlaceView(air_to_sun, air_by_place));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)
         path = air_path(-pixel_ray(), point_distance_m(),

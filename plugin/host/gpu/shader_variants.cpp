@@ -59,7 +59,7 @@ const char* points_file(const DrawOptions& options) {
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
            constant("kFalseColour", static_cast<int>(options.false_colour)) +
-           constant("kAirSky", options.sky_from_air);
+           constant("kAirSky", options.sky_from_air) + constant("kFromBelow", options.from_below);
 }
 
 std::string foam_constants() {
@@ -81,7 +81,8 @@ const std::vector<std::string_view>& lighting_files() {
                                                      "core/lighting/foam.glsl",
                                                      "plugin/host/gpu/foam_uniforms.glsl",
                                                      "core/lighting/foam_structure.glsl",
-                                                     "core/lighting/sea.glsl"};
+                                                     "core/lighting/sea.glsl",
+                                                     "core/lighting/below.glsl"};
     return files;
 }
 
@@ -174,7 +175,8 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
                     {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
-                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
+                     "core/lighting/air.glsl"},
                     spray_files(lighting),
                     {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
                     output_files(options),
@@ -194,12 +196,13 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
     LightingChoice lighting = options.lighting;
     lighting.sky = lighting.sky && sky_map_size > 0;
     lighting.spray = lighting.spray && !options.for_host;
-    return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
+    return {lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options),
             {"plugin/host/gpu/full_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl"},
                     lighting_files(),
-                    {"plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
+                     "core/lighting/air.glsl"},
                     spray_files(lighting),
                     {"core/lighting/background.glsl", "plugin/host/gpu/rays.glsl"},
                     output_files(options),

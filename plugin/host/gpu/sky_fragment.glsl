@@ -1,4 +1,4 @@
-// The background where there is no sea: the sky and the sun's disc (core/lighting/background.glsl).
+// The background where there is no surface of the sea: the sky and the sun's disc (core/lighting/background.glsl), or water.
 const float kEndless_m = 1.0e30;
 
 void main() {
@@ -7,6 +7,12 @@ void main() {
         return;
     }
     vec3 direction = pixel_ray();
+    if (kFromBelow) {  // water without a surface
+        vec3 sea = kWater ? water_between(vec3(0.0), direction, view_height_m, -1.0, 0.0, sea_light(), water_scattering()).light
+                          : vec3(0.0);
+        write_terms(vec3(0.0), vec3(0.0), sea, vec3(0.0), vec3(0.0), 1.0);
+        return;
+    }
     vec3 sky = vec3(0.0);
     if (kSky && kAirSky)
         sky += air_sky(direction, AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z,

@@ -56,6 +56,8 @@ std::vector<Uniform> water_uniforms(const WaterBody& water) {
             vector("water_absorption_longer", water.absorption.longer),
             vector("water_backscatter_shorter", water.backscatter.shorter),
             vector("water_backscatter_longer", water.backscatter.longer),
+            vector("water_scattering_shorter", water.scattering.shorter),
+            vector("water_scattering_longer", water.scattering.longer),
             vector("water_floor_shorter", water.floor_colour.shorter),
             vector("water_floor_longer", water.floor_colour.longer),
             vector("water_waves", water.waves),
@@ -65,7 +67,8 @@ std::vector<Uniform> water_uniforms(const WaterBody& water) {
 }
 
 std::vector<Uniform> floor_uniforms(const FloorSeen& floor) {
-    return {vector("floor_level", {floor.is_seen ? 1.0f : 0.0f, floor.z_m, floor.curvature_per_m}),
+    return {{"floor_level", 4,
+             glm::vec4(floor.is_seen ? 1.0f : 0.0f, floor.z_m, floor.curvature_per_m, floor.pixel)},
             {"floor_depths", 4, floor.depths},
             {"floor_depths_per_m", 4, floor.depths_per_m},
             {"floor_colours", 4, floor.colours},

@@ -24,6 +24,7 @@
 #include "plugin/render/floor_light.h"
 #include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -216,7 +217,9 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     Frame<float> state(sea);
     state.set(planned.scene.shot.time_s(planned.frame));
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
-    planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
+    const bool from_below = planned.drawn->is_below(view);
+    if (planned.drawn->has_below()) refuse_in_floor(planned.scene, planned.frame);
+    if (!from_below) planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
     if (water.has_body) {
         const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
@@ -231,7 +234,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
         renderer.set_floor(floor);
     }
     renderer.set_sky(sky, water);
-    if (lighting.spray) {
+    if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);
         light_spray(spray, lighting, sky, water, law_coverage(planned.scene));
@@ -250,6 +253,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
                   {.lighting = lighting,
                    .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
                                      lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+                   .from_below = from_below,
                    .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)

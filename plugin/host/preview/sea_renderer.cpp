@@ -295,12 +295,15 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
                            view.shift * static_cast<double>(view.resolution.x));
     glUniform2f(program.uniform("view_centre"), centre.x, centre.y);
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
+    glUniform1f(program.uniform("view_height_m"), static_cast<float>(view.position_m.z));
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
     set_uniforms(program, water);
     bind_texture(kFloorMaps, floor_maps);
-    set_uniforms(program,
-                 floor_uniforms(floor ? floor->seen_from(view.position_m, curvature_per_m) : FloorSeen{}));
+    set_uniforms(program, floor_uniforms(floor ? floor->seen_from({.position_m = view.position_m,
+                                                                   .curvature_per_m = curvature_per_m,
+                                                                   .pixel_tangent = tangent})
+                                               : FloorSeen{}));
     if (spray.empty()) return;
     bind_texture(kSprayMapUnit, spray_map);
     set_uniforms(program, spray);
@@ -621,7 +624,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     const KeptFramebuffer kept;
     DrawOptions drawn = options;
     drawn.lighting.air = options.lighting.air && of.air_model;
-    drawn.lighting.spray = options.lighting.spray && !of.spray.empty();
+    drawn.lighting.spray = options.lighting.spray && !of.spray.empty() && !options.from_below;
     drawn.is_shaped = !mesh.normal.empty();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);

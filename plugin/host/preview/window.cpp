@@ -482,11 +482,17 @@ class Preview {
         readout_.waited_s = 1e-3 * milliseconds_since(asked_at_);
         readout_.building_sky = skies_.is_busy();
         readout_.message = status.error.empty() ? skies_.error() : status.error;
-        is_under_water_ = sea_.water_over_eye().has_value() ||
-                          (frame_ != nullptr && frame_->build->drawn->cage_above(view).has_value());
+        const DrawnSea* drawn = frame_ ? frame_->build->drawn.get() : nullptr;
+        controls_.draw.from_below = drawn && drawn->is_below(view);
+        is_under_water_ = !controls_.draw.from_below && (sea_.water_over_eye().has_value() ||
+                                                         (drawn && drawn->cage_above(view).has_value()));
         if (readout_.message.empty() && is_under_water_)
             readout_.message =
-                "the camera is under water, which can't be drawn: raise it (E), or wait for the wave to pass";
+                drawn && drawn->has_below()
+                    ? "the camera is under water among the waves, which only pelagic render "
+                      "draws: raise it (E), or lower it (Q)"
+                    : "the camera is under water, which can't be drawn: raise it (E), or wait for "
+                      "the wave to pass";
         if (frame_ != nullptr && std::exchange(uploaded_, frame_->number) != frame_->number) upload();
         for (const std::string& error : {upload_error_, floor_error_, save_error_})
             if (readout_.message.empty()) readout_.message = error;

@@ -13,8 +13,8 @@ namespace pelagic::optics {
 namespace {
 
 Optics::FloorView glsl(const FloorSeen& seen) {
-    return {seen.is_seen, seen.z_m,           seen.curvature_per_m, seen.depths, seen.depths_per_m,
-            seen.colours, seen.colours_first, seen.light,           seen.coarse};
+    return {seen.is_seen,      seen.z_m,     seen.curvature_per_m, seen.pixel, seen.depths,
+            seen.depths_per_m, seen.colours, seen.colours_first,   seen.light, seen.coarse};
 }
 
 Optics shading_of(const Floor& floor) {
@@ -50,13 +50,15 @@ TEST(Floor, ARayMeetsTheSlope) {
     const glm::dvec3 eye(104.0, 0.0, 2.0);
     Optics optics = shading_of(floor);
     // From the sea at rest at x = 104, a metre east per metre down: 8 − 0.5 d = d.
-    const auto seen =
-        optics.seen_floor(vec3(0.0f, 0.0f, -2.0f), vec2(1.0f, 0.0f), 0.0f, 0.01f, glsl(floor.seen_from(eye)));
+    const auto seen = optics.seen_floor(vec3(0.0f, 0.0f, -2.0f), vec2(1.0f, 0.0f), 0.0f, 0.01f,
+                                        glsl(floor.seen_from({.position_m = eye})));
     EXPECT_NEAR(seen.depth_m, 8.0 / 1.5, 0.2);  // after four steps, each halving what is left
     EXPECT_EQ(seen.light, 1.0f);
     EXPECT_EQ(seen.colour, vec3(1.0f));
     // A wave's trough below the floor still has some water.
-    EXPECT_GT(optics.seen_floor(vec3(15.0f, 0.0f, -9.0f), vec2(0.0f), 0.0f, 0.01f, glsl(floor.seen_from(eye)))
+    EXPECT_GT(optics
+                  .seen_floor(vec3(15.0f, 0.0f, -9.0f), vec2(0.0f), 0.0f, 0.01f,
+                              glsl(floor.seen_from({.position_m = eye})))
                   .depth_m,
               0.0f);
 }
@@ -66,7 +68,7 @@ TEST(Floor, LiesAsDeepFarAway) {
     const Floor floor(-2.5);
     const double curvature = 1.0 / 6.371e6;
     Optics optics = shading_of(floor);
-    const auto view = glsl(floor.seen_from({5.0, 5.0, 30.0}, curvature));
+    const auto view = glsl(floor.seen_from({.position_m = {5.0, 5.0, 30.0}, .curvature_per_m = curvature}));
     for (const double far : {10.0, 1e3, 2e4}) {
         const vec3 surface(glm::dvec3(far, 0.0, -30.0 - 0.5 * curvature * far * far));
         EXPECT_TRUE(optics.is_floor_near(surface, view));
@@ -84,7 +86,7 @@ TEST(Floor, APictureRepeatsAndBlursToItsMean) {
     floor.set_colours(8, chequers, 4.0);
     Optics optics = shading_of(floor);
     for (const glm::dvec3 eye : {glm::dvec3(0.0), glm::dvec3(4e6 + 1.0, -8e6, 3.0)}) {
-        const auto view = glsl(floor.seen_from(eye));
+        const auto view = glsl(floor.seen_from({.position_m = eye}));
         const auto at = [&](double x, double y, float width) {
             return optics.floor_colour(vec2(glm::dvec2(x, y) - glm::fract(glm::dvec2(eye) / 4.0) * 4.0),
                                        width, view);
@@ -105,7 +107,7 @@ TEST(Floor, LightIsLookedUpWhereItsMapsAreAndFadesToEven) {
     std::fill(texels.begin(), texels.begin() + kSide * kSide, 2.0f);
     std::fill(texels.begin() + kSide * kSide, texels.end(), 3.0f);
     Optics optics = shading_of(floor);
-    const auto view = glsl(floor.seen_from({0.0, 0.0, 1.0}));
+    const auto view = glsl(floor.seen_from({.position_m = {0.0, 0.0, 1.0}}));
     EXPECT_EQ(optics.floor_light(vec2(0.0f), 0.05f, view), 2.0f);
     EXPECT_EQ(optics.floor_light(vec2(6.0f, 0.0f), 0.05f, view), 3.0f);
     EXPECT_EQ(optics.floor_light(vec2(40.0f, 0.0f), 0.05f, view), 1.0f);

@@ -49,6 +49,7 @@ struct Optics {
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
 #include "core/lighting/sea.glsl"
+#include "core/lighting/below.glsl"
     // clang-format on
 };
 

@@ -326,7 +326,10 @@ TEST(DrawnSea, WhereNoSeaIsACameraMayBeLow) {
     scene.camera.position_m = {0.0, -19.0, -8.0};
     EXPECT_NO_THROW(picture_of(scene));
     scene.surface.beyond = Beyond::Sea;
+    scene.water.body = false;
     EXPECT_THROW(picture_of(scene), std::invalid_argument);
+    scene.water.body = true;  // it is seen from below
+    EXPECT_NO_THROW(picture_of(scene));
 }
 
 // A camera below the pool is in it; beside it, or under a lip whose lower side is the first that it meets, it is not.

@@ -109,7 +109,7 @@ TEST(FloorLight, IsThatOfRaysThroughTheSurface) {
     const glm::dvec3 to_sun(made.sky.sun_direction);
     // Twelve bins a side over the map's middle half.
     constexpr int kBins = 12, kTexels = kSide / 2 / kBins;
-    const FloorSeen seen = made.floor.seen_from(glm::dvec3(0.0));
+    const FloorSeen seen = made.floor.seen_from({});
     const glm::dvec2 corner = glm::dvec2(seen.light.x, seen.light.y) + 0.25 * kSide * made.texel_m;
     const double width_m = kBins * kTexels * made.texel_m;
     std::vector<double> bins(kBins * kBins);
@@ -163,7 +163,7 @@ TEST(FloorLight, IsThatOfRaysThroughTheSurface) {
 TEST(FloorLight, IsTheSameWhereverTheCameraIsAndOnOneThread) {
     const Scene scene = lagoon(2.5);
     const Lit here = lit(scene, 50.0, above({0.0, 0.0})), there = lit(scene, 50.0, above({1.3, -0.8}));
-    const FloorSeen a = here.floor.seen_from(glm::dvec3(0.0)), b = there.floor.seen_from(glm::dvec3(0.0));
+    const FloorSeen a = here.floor.seen_from({}), b = there.floor.seen_from({});
     const glm::ivec2 moved(
         glm::round((glm::vec2(b.light) - glm::vec2(a.light)) / static_cast<float>(here.texel_m)));
     ASSERT_NE(moved, glm::ivec2(0));

@@ -1,4 +1,5 @@
-// A camera under water is refused, by the surface that its picture would show there.
+// A camera under water: it is refused, by the surface that its picture would show there, where the water has no body; otherwise it sees
+// what is in the water and the surface from below.
 #include "plugin/render/under_water.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,10 @@
 #include "core/evaluate/evaluate.h"
 #include "core/surface/footprint_levels.h"
 #include "plugin/light/light.h"
+#include "plugin/render/layers.h"
 #include "plugin/render/render.h"
+#include "plugin/render/waterline.h"
+#include "tests/plugin/render/uniform_sky.h"
 
 namespace pelagic {
 namespace {
@@ -24,6 +28,7 @@ Scene sea_of(WaveModel model) {
     scene.sea.wind_speed_mps = 15.0;
     scene.waves.model = model;
     scene.waves.choppiness = 0.5;  // nothing folds: each place has one height
+    scene.water.body = false;
     if (model == WaveModel::Fft) scene.waves.cascades = {{250.0, 64}, {30.0, 64}};
     scene.camera.resolution = {32, 20};
     scene.quality.level = QualityLevel::Draft;
@@ -97,6 +102,7 @@ TEST_P(UnderWater, ACentimetreDecidesOnCrestsAndInTroughs) {
             EXPECT_TRUE(why.starts_with("camera.position_m: at frame " + std::to_string(frame) +
                                         " the camera is under water"))
                 << p.z << why;
+            EXPECT_NE(why.find("water.body = true"), std::string::npos) << why;
         }
     }
     EXPECT_LT(lowest_m, -0.2);
@@ -140,6 +146,155 @@ TEST_P(UnderWater, FramesWhoseCameraIsAboveEveryCrestArentLookedAt) {
 
 INSTANTIATE_TEST_SUITE_P(Cameras, UnderWater, testing::Values(WaveModel::Fft, WaveModel::Trochoid),
                          [](const auto& model) { return model.param == WaveModel::Fft ? "fft" : "trains"; });
+
+// ---- From below
+
+Scene with_body(Scene scene) {
+    scene.water.body = true;
+    scene.surface.earth_curvature = false;
+    return scene;
+}
+
+// A sea without a wave.
+Scene level(glm::dvec3 position_m, glm::dvec3 direction) {
+    Scene scene = with_body(sea_of(WaveModel::Fft));
+    scene.sea.wind_speed_mps = 0.0;
+    scene.camera.position_m = position_m;
+    scene.camera.look_at_m = position_m + direction;
+    return scene;
+}
+
+RenderOptions all_layers(const Scene& scene) {
+    RenderOptions options = render_options(scene);
+    options.layers.set();
+    options.alpha = true;
+    return options;
+}
+
+Picture picture_under(const Scene& scene, const Sky& sky, int frame = 1) {
+    Renderer renderer(scene, all_layers(scene), sky, std::array{frame});
+    Picture picture;
+    renderer.check_cameras(std::array{frame});
+    renderer.render(frame, picture);
+    for (const SeaRadiance& of : picture.layers)
+        for (const glm::vec3& light : {of.sun, of.sky, of.sea, of.foam, of.air})
+            for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(light[c]) && light[c] >= 0.0f);
+    for (const std::vector<float>& layer : picture.data)
+        for (const float value : layer) EXPECT_TRUE(std::isfinite(value));
+    for (const float alpha : picture.alpha) EXPECT_TRUE(alpha >= 0.0f && alpha <= 1.0f);
+    return picture;
+}
+
+// All of the sky is in a circle, half as wide as arcsin(1/n).
+TEST(FromBelow, TheSkyIsInSnellsWindow) {
+    Scene scene = level({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+    scene.camera.fov_deg = 104.0;
+    scene.camera.resolution = {300, 300};
+    const Picture picture = picture_under(scene, uniform_sky());
+    std::size_t lit = 0;
+    for (const SeaRadiance& of : picture.layers) lit += of.sky.y > 0.0f;
+    const double tangent = 2.0 * std::tan(52.0 * kPi / 180.0) / 300.0;
+    const double half_deg = std::atan(tangent * std::sqrt(static_cast<double>(lit) / kPi)) * 180.0 / kPi;
+    EXPECT_NEAR(half_deg, std::asin(1.0 / 1.34) * 180.0 / kPi, 0.1);
+}
+
+// Nothing is brighter than the sky's light in the water, which is n² of that above it, and through a metre of water most of it comes.
+TEST(FromBelow, NothingIsBrighterThanTheSkyInTheWater) {
+    for (const bool is_calm : {true, false}) {
+        Scene scene = is_calm ? level({0.0, 0.0, -1.0}, {0.0, 0.0, 1.0})
+                              : seen_from(with_body(sea_of(WaveModel::Fft)), {0.0, 0.0, -6.0});
+        scene.camera.fov_deg = 100.0;
+        scene.camera.look_at_m = scene.camera.position_m + glm::dvec3(0.0, 0.1, 1.0);
+        scene.camera.resolution = {64, 64};
+        float brightest = 0.0f;
+        for (const SeaRadiance& of : picture_under(scene, uniform_sky()).layers)
+            brightest = std::max(brightest, (of.sky + of.sea).y);
+        EXPECT_LT(brightest, 1.34 * 1.34 * kSkyRadiance);
+        EXPECT_GT(brightest, (is_calm ? 0.8 : 0.5) * 1.34 * 1.34 * kSkyRadiance);
+    }
+}
+
+// The line between water and air is where the front glass meets the surface: of a level camera as far below its middle as the camera is
+// above the water, over how far the glass is before the eye.
+TEST(FromBelow, HalfUnderShowsBoth) {
+    constexpr double kHeight_m = 0.02;
+    Scene scene = level({0.0, 0.0, kHeight_m}, {0.0, 1.0, 0.0});
+    scene.camera.fov_deg = 90.0;
+    scene.camera.resolution = {80, 80};
+    const Picture picture = picture_under(scene, uniform_sky());
+    const int line = 40 + static_cast<int>(std::lround(kHeight_m / kFrontGlass_m * 40.0));
+    const auto at = [&](int row) { return picture.layers[static_cast<std::size_t>(row) * 80 + 40]; };
+    EXPECT_GT(at(line - 2).sky.y, 0.0f);  // the sea from above mirrors the sky
+    for (const int row : {line + 1, 79}) {
+        EXPECT_EQ(at(row).sky, glm::vec3(0.0f)) << row;
+        EXPECT_GT(at(row).sea.y, 0.0f) << row;
+        EXPECT_EQ(picture.alpha[static_cast<std::size_t>(row) * 80 + 40], 1.0f);
+    }
+    EXPECT_EQ(picture.alpha[10 * 80 + 40], 0.0f);
+}
+
+// Waves cross the glass, too: some columns have more water than others.
+TEST(FromBelow, TheLineFollowsTheWaves) {
+    Scene scene = with_body(sea_of(WaveModel::Fft));
+    const glm::dvec3 p = surface_at(scene, 1, {3.0, 4.0});
+    scene = seen_from(scene, p);
+    scene.camera.look_at_m = p + glm::dvec3(1.0, 0.0, 0.0);
+    scene.camera.fov_deg = 90.0;
+    scene.camera.resolution = {96, 64};
+    const Picture picture = picture_under(scene, uniform_sky());
+    // Water has no air before it, and what is in air has.
+    int least = 64, most = 0;
+    for (int x = 0; x < 96; ++x) {
+        int water = 0;
+        for (int y = 0; y < 64; ++y) {
+            const auto at = static_cast<std::size_t>(y) * 96 + x;
+            water += picture.sea[at] && picture.layers[at].sky == glm::vec3(0.0f);
+        }
+        least = std::min(least, water);
+        most = std::max(most, water);
+    }
+    EXPECT_GT(least, 5);
+    EXPECT_LT(most, 59);
+    EXPECT_GT(most, least + 2);
+}
+
+TEST(FromBelow, HostileViewsAreFinite) {
+    for (const double wind_mps : {0.0, 15.0})
+        for (const double depth_m : {30.0, 5000.0})
+            for (const double z_m : {-29.9, -5.0, -0.05, 0.0, 0.05})
+                for (const glm::dvec3 direction :
+                     {glm::dvec3(0.0, 0.0, 1.0), {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 1.0, -1e-9}})
+                    for (const double sun_deg : {-20.0, 0.0, 50.0}) {
+                        Scene scene = level({5.0, 3.0, z_m}, direction);
+                        scene.sea.wind_speed_mps = wind_mps;
+                        scene.sea.depth_m = depth_m;
+                        scene.camera.fov_deg = 120.0;
+                        scene.camera.resolution = {12, 12};
+                        Sky sky = uniform_sky();
+                        const double sun = sun_deg * kPi / 180.0;
+                        sky.sun_direction = glm::vec3(0.0, std::cos(sun), std::sin(sun));
+                        if (sun > 0.0) {
+                            sky.sun_radiance = glm::vec3(1e6f);
+                            sky.sun_irradiance = glm::vec3(1e6f * 6.8e-5f * sky.sun_direction.z);
+                        }
+                        picture_under(scene, sky);
+                    }
+}
+
+// The floor is seen where it is, and a camera in it is refused.
+TEST(FromBelow, TheFloorIsWhereTheSeaEnds) {
+    Scene scene = level({0.0, 0.0, -3.0}, {0.0, 0.0, -1.0});
+    scene.sea.depth_m = 10.0;
+    scene.water.floor_colour = glm::dvec3(0.5);
+    const Picture picture = picture_under(scene, uniform_sky());
+    for (const float depth_m : picture.data[index(PictureLayer::Depth)]) EXPECT_NEAR(depth_m, 7.0f, 1e-4f);
+    for (std::size_t i = 2; i < picture.data[index(PictureLayer::Position)].size(); i += 3)
+        EXPECT_NEAR(picture.data[index(PictureLayer::Position)][i], -10.0f, 1e-4f);
+    scene.sea.depth_m = 3.0;
+    const std::string why = why_refused(scene, 1);
+    EXPECT_TRUE(why.starts_with("camera.position_m: at frame 1 the camera is in the sea's floor")) << why;
+    EXPECT_NE(why.find("sea.depth_m"), std::string::npos) << why;
+}
 
 // Not a shot among Pelagic's own would pay for it.
 TEST(UnderWater, AnUsualShotIsAboveEveryCrest) {

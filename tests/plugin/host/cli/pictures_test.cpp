@@ -475,7 +475,7 @@ TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
     const auto with_camera = [](const std::string& camera) {
         std::string text = small_shot();
         const std::string table = "[camera]\n";
-        return text.insert(text.find(table) + table.size(), camera);
+        return text.insert(text.find(table) + table.size(), camera) + "[water]\nbody = false\n";
     };
     write_file(folder() / "below.toml", with_camera("position_m = [0, -60, -9]\n"));
     write_file(folder() / "diving.toml",
@@ -483,21 +483,40 @@ TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
                            "{ frame = 4, position_m = [0, -60, -9], look_at_m = [0, 0, 0] } ]\n"));
     refused({"render", "below.toml"}, 1,
             {"below.toml: camera.position_m: at frame 1 the camera is under water: it is at z = -9 m",
-             "the surface there"});
+             "the surface there", "water.body = true"});
     refused({"render", "diving.toml"}, 1, {"diving.toml: camera.keys: at frame ", "raise the camera"});
     refused({"render", "diving.toml", "--frames", "4"}, 1,
             {"at frame 4 the camera is under water: it is at z = -9 m"});
     EXPECT_EQ(cli({"render", "diving.toml", "--frames", "1"}).status, 0);
     EXPECT_EQ(cli({"bake", "below.toml"}).status, 0);
+    // It has a body where nobody says otherwise.
+    const std::string below = with_camera("position_m = [0, -60, -9]\n");
+    write_file(folder() / "below.toml", below.substr(0, below.find("[water]")));
+    EXPECT_EQ(cli({"render", "below.toml"}).status, 0);
+    write_file(folder() / "floor.toml", below.substr(0, below.find("[water]")) + "[sea]\ndepth_m = 8\n");
+    refused({"render", "floor.toml"}, 1,
+            {"floor.toml: camera.position_m: at frame 1 the camera is in the sea's floor: it is at z = -9 m",
+             "sea.depth_m"});
 }
 
-TEST_F(Pictures, PreviewDrawsNothingUnderWater) {
-    std::string text = small_shot();
-    const std::string table = "[camera]\n";
-    write_file(folder() / "below.toml",
-               text.insert(text.find(table) + table.size(), "position_m = [0, -60, -9]\n"));
+TEST_F(Pictures, PreviewIsAboveOrBelowWaterThatHasABody) {
+    const auto shot_at = [](const char* z, const char* water) {
+        std::string text = small_shot();
+        const std::string table = "[camera]\n";
+        return text.insert(text.find(table) + table.size(),
+                           std::string("position_m = [0, -60, ") + z + "]\n") +
+               water;
+    };
+    write_file(folder() / "below.toml", shot_at("-9", "[water]\nbody = false\n"));
     refused({"preview", "below.toml", "--offscreen", "new/x.png"}, 1,
-            {"below.toml: camera.position_m: at frame 1 the camera is under water"});
+            {"below.toml: camera.position_m: at frame 1 the camera is under water", "water.body = true"});
+    write_file(folder() / "among.toml", shot_at("-2", ""));
+    refused({"preview", "among.toml", "--offscreen", "new/x.png"}, 1,
+            {"among.toml: camera.position_m: at frame 1 the camera is under water",
+             "only pelagic render draws what is seen from there"});
+    write_file(folder() / "deep.toml", shot_at("-9", ""));
+    if (!kHasPreview) return;
+    EXPECT_EQ(cli({"preview", "deep.toml", "--offscreen", "deep.png"}).status, 0);
 }
 
 }  // namespace

@@ -101,6 +101,7 @@ struct Functions {
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
 #include "core/lighting/sea.glsl"
+#include "core/lighting/below.glsl"
 #include "core/lighting/background.glsl"
 #include "core/lighting/tone.glsl"
     // clang-format on
@@ -158,8 +159,22 @@ struct Functions {
                                         WaterBands(vec3(0.004f), vec3(0.003f)),
                                         WaterBands(vec3(0.2f), vec3(0.3f)), bb > 0.5f ? 3.0f : 1.0e9f,
                                         vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
-                              FloorView(aa > 0.1f, -4.0f, 1.0e-7f, vec4(0.0f), vec4(0.0f), vec4(0.0f), 0.0f,
-                                        vec4(0.0f), vec4(0.0f))));
+                              FloorView(aa > 0.1f, -4.0f, 1.0e-7f, 1.0e-3f, vec4(0.0f), vec4(0.0f),
+                                        vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f))));
+                 return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
+    PELAGIC_BOTH(below,
+                 SeaTerms t = sea_from_below(
+                     vec3(vv.x, vv.y, -vv.z), nn, ss, SeenFoam(ww, bb, 0.0f), -10.0f * bb, 20.0f * cc,
+                     SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f, vec3(80.0f, 70.0f, 60.0f),
+                              vec3(10.0f, 12.0f, 15.0f),
+                              WaterLook(vec3(0.01f, 0.03f, 0.05f), true,
+                                        WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
+                                        WaterBands(vec3(0.004f), vec3(0.003f)),
+                                        WaterBands(vec3(0.2f), vec3(0.3f)), cc > 0.3f ? 12.0f : 1.0e9f,
+                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
+                              FloorView(aa > 0.1f, 15.0f * bb - 14.0f, 1.0e-7f, 1.0e-3f, vec4(0.0f),
+                                        vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f))),
+                     WaterBands(vec3(0.1f), vec3(0.07f)));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(screen, return vec4(display_colour(vec3(aa, bb, ww), 2.0f), 0.0f);)
     PELAGIC_BOTH(disc,
@@ -350,6 +365,8 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     // Between texels a place's last digit counts as many times as there are texels.
     EXPECT_LE(PELAGIC_COMPARE(on, foam_picture, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));
+    // At the critical angle Fresnel's term has no finite slope.
+    EXPECT_LE(PELAGIC_COMPARE(on, below, 1e-2f).worst, gpu::is_software() ? 1e-3f : kEdge);
     // Bright colours go through Oklab and back, which makes more of the last digits: at most a fortieth of a byte's step.
     EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-1f).worst, 1e-3f);
     EXPECT_LE(PELAGIC_COMPARE(on, disc, 1e-3f).worst, kBound);

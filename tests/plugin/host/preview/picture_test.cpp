@@ -63,6 +63,13 @@ Scene scene_of(glm::dvec3 position_m, glm::dvec3 look_at_m) {
 TEST(PreviewsPicture, IsTheCpusFromADeck) {
     compare_frame("from a deck", scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0}));
 }
+TEST(PreviewsPicture, IsTheCpusFromBelow) {
+    Scene scene = scene_of({0.0, 0.0, -9.0}, {0.0, 10.0, -4.0});
+    scene.camera.fov_deg = 90.0;
+    compare_frame("from below", scene);
+    scene.sea.depth_m = 15.0;
+    compare_frame("from below, over a floor", scene);
+}
 TEST(PreviewsPicture, IsTheCpusFromAPlaneFarFromTheOrigin) {
     Scene scene = scene_of({1e6, -1e6, 1500.0}, {1e6, -1e6 + 8000.0, 0.0});
     scene.sea.wind_speed_mps = 16.0;

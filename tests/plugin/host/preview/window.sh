@@ -29,8 +29,8 @@ env -u DISPLAY -u WAYLAND_DISPLAY "$program" preview "$folder/small.toml" 2> "$f
 grep -q -e "--offscreen" "$folder/no-display.txt" || fail "no word of --offscreen: $(cat "$folder/no-display.txt")"
 grep -q "xvfb-run" "$folder/no-display.txt" || fail "no word of xvfb-run: $(cat "$folder/no-display.txt")"
 
-# Nothing is shown from under water, but a message.
-sed 's/-60.0, 8.0/-60.0, -8.0/' "$folder/small.toml" > "$folder/diving.toml"
+# Nothing is shown from under water that has no body, but a message.
+{ sed 's/-60.0, 8.0/-60.0, -8.0/' "$folder/small.toml"; printf '[water]\nbody = false\n'; } > "$folder/diving.toml"
 status=0
 LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 640x400x24" "$program" preview "$folder/diving.toml" \
     --size 320x180 --scale 4 --screenshot "$folder/diving.png" 2> "$folder/diving.txt" || status=$?

@@ -17,7 +17,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cages, handlers, meshes, surfaces
+from . import cages, handlers, meshes, surfaces, upwelling
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
 from .properties import FIELDS
@@ -55,6 +55,7 @@ class Simulation:
         self._surface = None  # what identifies the surface that was made last, and it
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
+        self._lit, self._bubbles = None, None  # of which scene
         self._last = None  # the frame that was last asked for, the step to it, the view
         self.is_behind = False  # whether the mesh has waves alone, and waits for the past of their foam
 
@@ -69,6 +70,18 @@ class Simulation:
         if self._warned is not self.scene:
             self._warned, self._warnings = self.scene, () if self.scene.validate() else tuple(self.scene.warnings())
         return self._warnings
+
+    @property
+    def bubbles(self):
+        """upwelling.Bubbles of the settings; None where there are none."""
+        if self._lit is not self.scene:
+            self._lit, self._bubbles = self.scene, None
+            if upwelling.has_bubbles(self.scene):
+                try:
+                    self._bubbles = upwelling.Bubbles(self.scene)
+                except (ValueError, pelagic.ShotError):  # look.py says so
+                    pass
+        return self._bubbles
 
     @property
     def needs_view(self):
@@ -308,7 +321,8 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, *_limits(obj, bpy_scene) if view else ())
-    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
+    bubbles = simulation.bubbles
+    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map, bubbles)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
     if shown == simulation.awaited and not again and not wait and (simulation.is_building or simulation.due or simulation.progress < 1.0):
@@ -330,6 +344,8 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         meshes.move_rest(mesh, surface)
     if surface.faces is not None and not waves:  # a mesh of the user's own keeps its maps
         meshes.keep_uv(mesh, surface, obj.pelagic.uv_map)
+    if bubbles is not None and "coverage" in arrays:  # not in arrays themselves, which oceans of other waters share
+        arrays = {**arrays, upwelling.ATTRIBUTE: bubbles.added(arrays)}
     meshes.put_frame(mesh, arrays)
     meshes.hand_over(mesh, obj.data)
     simulation.shown, simulation.awaited = (None, shown) if waves else (shown, None)

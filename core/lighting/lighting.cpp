@@ -129,6 +129,33 @@ SeaAlbedo albedo(const WaterBody& body) {
             .water_index = shading.kWaterIndex};
 }
 
+template <class Variant>
+typename Variant::SeenBody seen_body(const WaterBody& water, const SeaPoint& p) {
+    const float covered = water.bubbles > 0.0f ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
+                fresh = std::min(covered, std::max(p.active, 0.0f));
+    return {p.crest, fresh, covered - fresh, p.age_s};
+}
+
+void albedo_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo) {
+    using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
+    const SkyMap none;
+    Variant shading(none);
+    const typename Variant::WaterLook look = look_of<Variant>(water);
+    const vec3 irradiance = sky.sun_irradiance + sky.sky_irradiance;
+    const vec3 scale = shading.kPi / max(irradiance, vec3(1e-12f));
+    const vec3 beam = (shading.kPi * shading.square(sky.sun_angular_radius)) * sky.sun_radiance;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SeaPoint& p = points[i];
+        const vec3 light = look.has_body ? shading.body_radiance(p.to_eye, p.normal, sky.sun_direction,
+                                                                 sky.sun_irradiance, beam, sky.sky_irradiance,
+                                                                 look, seen_body<Variant>(water, p))
+                                         : shading.water_radiance(sky.sun_direction, sky.sun_irradiance,
+                                                                  sky.sky_irradiance, look.reflectance);
+        albedo[i] = clamp(light * scale, vec3(0.0f), vec3(1.0f));
+    }
+}
+
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
                        std::span<SeaRadiance>, const Air*, const FoamPattern&);
 
@@ -151,10 +178,8 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         if (choice.whitecaps)
             seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s,
                                      sky.sun_direction);
-        const bool has_bubbles = choice.whitecaps && water.bubbles > 0.0f;
-        const float covered = has_bubbles ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
-                    fresh = std::min(covered, std::max(p.active, 0.0f));
-        const typename Variant::SeenBody body{p.crest, fresh, covered - fresh, p.age_s};
+        typename Variant::SeenBody body = seen_body<Variant>(water, p);
+        if (!choice.whitecaps) body = {p.crest, 0.0f, 0.0f, 0.0f};
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
@@ -179,6 +204,13 @@ float water_entering(const WaterBody& water, glm::vec3 from) {
 
 glm::vec3 body_reflectance(const WaterBody& water) {
     return sea_shading::reflectance_of(water);
+}
+
+void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo) {
+    if (points.size() != albedo.size())
+        throw std::invalid_argument("water_albedo: give one albedo for each SeaPoint");
+    sea_shading::albedo_batch(sky, water, points, albedo);
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,

@@ -15,6 +15,7 @@ from .nodes import Tree
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
 VERSION = 6
 AIR, AIR_SKY = "Air Extinction", "Air Sky"  # nodes
+THIN = "Crest Light"  # the node: how much more light comes through high crests of water without a body
 JUST_ABOVE = 0.006  # the horizon: half a row of the sky's picture
 
 
@@ -39,6 +40,8 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _set(material, "Foam Streaks", scene.effects.foam_streaks)
         _set(material, "Foam Color", (scene.effects.foam_new_albedo,) * 3 + (1.0,))
         _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
+        if material[MARK] >= 6 and (scene.water.body or f"{MARK} {THIN}" in material):
+            _set(material, THIN, 0.0 if scene.water.body else 2.0)  # a body's crests are upwelling.py's
         _show_picture(material, scene)
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
@@ -127,7 +130,7 @@ def new_material():
     picture_m = labelled("ShaderNodeValue", "Foam Picture Size", 0.0)
     fresh_opacity = labelled("ShaderNodeValue", "Active Foam Density", OPACITY)
     old_opacity = labelled("ShaderNodeValue", "Residual Foam Density", OPACITY)
-    crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
+    crest_light = labelled("ShaderNodeValue", THIN, 2.0)
     wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
     clock = tree.node("ShaderNodeCombineXYZ")
     clock.name = clock.label = "Time"

@@ -17,7 +17,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cages, handlers, meshes, surfaces, upwelling
+from . import cages, depths, handlers, meshes, surfaces, upwelling
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
 from .properties import FIELDS
@@ -55,7 +55,7 @@ class Simulation:
         self._surface = None  # what identifies the surface that was made last, and it
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
-        self._lit, self._bubbles = None, None  # of which scene
+        self._lit, self._upwelling = None, None  # of which scene
         self._last = None  # the frame that was last asked for, the step to it, the view
         self.is_behind = False  # whether the mesh has waves alone, and waits for the past of their foam
 
@@ -72,16 +72,16 @@ class Simulation:
         return self._warnings
 
     @property
-    def bubbles(self):
-        """upwelling.Bubbles of the settings; None where there are none."""
+    def upwelling(self):
+        """upwelling.Upwelling of the settings; None where the water is the same everywhere."""
         if self._lit is not self.scene:
-            self._lit, self._bubbles = self.scene, None
-            if upwelling.has_bubbles(self.scene):
+            self._lit, self._upwelling = self.scene, None
+            if upwelling.has_bubbles(self.scene) or upwelling.has_crests(self.scene):
                 try:
-                    self._bubbles = upwelling.Bubbles(self.scene)
+                    self._upwelling = upwelling.Upwelling(self.scene)
                 except (ValueError, pelagic.ShotError):  # look.py says so
                     pass
-        return self._bubbles
+        return self._upwelling
 
     @property
     def needs_view(self):
@@ -255,6 +255,21 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     return patch, lambda: surfaces.patch(*patch), None
 
 
+def _eye_of(obj, bpy_scene, depsgraph):
+    """Where the camera is whose picture shows the light in the waves, in the ocean's coordinates [m], as numbers; None where nobody renders,
+    which spares each frame of the playing its time, and in water that is seen through."""
+    if not (bpy_scene.name in _rendering or _is_rendered_in_a_view()) or depths.is_seen_through(obj, _simulation(obj).scene):
+        return None
+    pinhole = pinhole_of(obj, bpy_scene, depsgraph)
+    return pinhole and tuple(map(float, pinhole.position_m))
+
+
+def _is_rendered_in_a_view():
+    manager = bpy.context.window_manager
+    return any(area.type == "VIEW_3D" and area.spaces.active.shading.type in {"RENDERED", "MATERIAL"}
+               for window in (manager.windows if manager else ()) for area in window.screen.areas)
+
+
 def is_seen(obj, depsgraph):
     """Whether anything in this depsgraph shows it; during renders that is another question than in a window."""
     if not obj.evaluated_get(depsgraph).is_evaluated or obj.mode == "EDIT":
@@ -321,8 +336,9 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, *_limits(obj, bpy_scene) if view else ())
-    bubbles = simulation.bubbles
-    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map, bubbles)
+    lit = simulation.upwelling
+    eye = _eye_of(obj, bpy_scene, depsgraph) if lit and upwelling.has_crests(lit.scene) else None
+    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map, lit, eye)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
     if shown == simulation.awaited and not again and not wait and (simulation.is_building or simulation.due or simulation.progress < 1.0):
@@ -344,8 +360,9 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         meshes.move_rest(mesh, surface)
     if surface.faces is not None and not waves:  # a mesh of the user's own keeps its maps
         meshes.keep_uv(mesh, surface, obj.pelagic.uv_map)
-    if bubbles is not None and "coverage" in arrays:  # not in arrays themselves, which oceans of other waters share
-        arrays = {**arrays, upwelling.ATTRIBUTE: bubbles.added(arrays)}
+    added = lit and lit.added(arrays, surface, moment.time_s, eye)
+    if added is not None:  # not in arrays themselves, which oceans of other waters share
+        arrays = {**arrays, upwelling.ATTRIBUTE: added}
     meshes.put_frame(mesh, arrays)
     meshes.hand_over(mesh, obj.data)
     simulation.shown, simulation.awaited = (None, shown) if waves else (shown, None)

@@ -141,18 +141,41 @@ void albedo_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoi
     using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
     const SkyMap none;
     Variant shading(none);
-    const typename Variant::WaterLook look = look_of<Variant>(water);
-    const vec3 irradiance = sky.sun_irradiance + sky.sky_irradiance;
-    const vec3 scale = shading.kPi / max(irradiance, vec3(1e-12f));
+    typename Variant::WaterLook look = look_of<Variant>(water);
+    const vec3 scale = shading.kPi / max(sky.sun_irradiance + sky.sky_irradiance, vec3(1e-12f));
     const vec3 beam = (shading.kPi * shading.square(sky.sun_angular_radius)) * sky.sun_radiance;
+    const auto of = [&](const SeaPoint& p, const typename Variant::SeenBody& body) {
+        const vec3 light =
+            look.has_body ? shading.body_radiance(p.to_eye, p.normal, sky.sun_direction, sky.sun_irradiance,
+                                                  beam, sky.sky_irradiance, look, body)
+                          : shading.water_radiance(sky.sun_direction, sky.sun_irradiance, sky.sky_irradiance,
+                                                   look.reflectance);
+        return clamp(light * scale, vec3(0.0f), vec3(1.0f));
+    };
+    const bool is_level = std::all_of(points.begin(), points.end(), [&](const SeaPoint& p) {
+        return p.crest == vec3(0.0f) && p.to_eye == points.front().to_eye &&
+               p.normal == points.front().normal;
+    });
+    if (!is_level) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            albedo[i] = of(points[i], seen_body<Variant>(water, points[i]));
+        return;
+    }
+    // Nothing but bubbles differs: as much as so much foam has that breaks now. By steps of its root, straight between them, to 1e-4.
+    look.crest_light = 0.0f;  // which level water doesn't know, and takes time
+    constexpr int kSteps = 32;
+    std::array<vec3, kSteps + 1> by_foam;
+    for (int step = 0; step <= kSteps && !points.empty(); ++step)
+        by_foam[static_cast<std::size_t>(step)] =
+            of(points.front(), {vec3(0.0f), shading.square(static_cast<float>(step) / kSteps), 0.0f, 0.0f});
+    const float now = shading.bubbles_per_m(0.0f, look.bubbles_m);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const SeaPoint& p = points[i];
-        const vec3 light = look.has_body ? shading.body_radiance(p.to_eye, p.normal, sky.sun_direction,
-                                                                 sky.sun_irradiance, beam, sky.sky_irradiance,
-                                                                 look, seen_body<Variant>(water, p))
-                                         : shading.water_radiance(sky.sun_direction, sky.sun_irradiance,
-                                                                  sky.sky_irradiance, look.reflectance);
-        albedo[i] = clamp(light * scale, vec3(0.0f), vec3(1.0f));
+        const typename Variant::SeenBody body = seen_body<Variant>(water, points[i]);
+        float foam = body.fresh;
+        if (body.old > 0.0f) foam += body.old * shading.bubbles_per_m(body.age_s, look.bubbles_m) / now;
+        const float place = kSteps * std::sqrt(std::clamp(foam, 0.0f, 1.0f));
+        const auto step = std::min(static_cast<std::size_t>(place), std::size_t{kSteps - 1});
+        albedo[i] = mix(by_foam[step], by_foam[step + 1], place - static_cast<float>(step));
     }
 }
 

@@ -33,16 +33,17 @@ namespace {
 namespace py = pybind11;
 using Range = tbb::blocked_range<std::size_t>;
 
-constexpr std::size_t kGrain = 256;  // points a task computes
+constexpr std::size_t kGrain = 256;         // points a task computes
+constexpr std::size_t kAlbedoGrain = 4096;  // those of water_albedo(), of which each task makes a table
 constexpr std::size_t kShaded =
     kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
 
 // work(range) over as many points, by all threads, until it is interrupted.
 template <class Work>
-void over_points(py::ssize_t count, const Work& work) {
+void over_points(py::ssize_t count, const Work& work, std::size_t grain = kGrain) {
     Watch watch{py::none(), py::none()};
     beside_others(watch, [&] {
-        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), grain), [&](const Range& range) {
             if (!*watch.flag()) work(range);
         });
     });
@@ -247,21 +248,24 @@ py::object albedo_of(const PythonSky& sky, const WaterBody& water, AlbedoArgumen
                age_s = numbers(given.foam_age, "foam_age");
     if (given.out.is_none()) given.out = py::array_t<float>({count, py::ssize_t{3}});
     const Strided<glm::vec3> albedo = writable_vectors(given.out, {"out", count}, copies);
-    over_points(count, [&, towards = to_eye](const Range& range) {
-        std::vector<SeaPoint> points(range.size());
-        std::vector<glm::vec3> made(range.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const std::size_t at = range.begin() + i;
-            points[i].to_eye = towards[at];
-            if (normal) points[i].normal = normal[at];
-            if (crest) points[i].crest = crest[at];
-            if (coverage) points[i].coverage = coverage[at];
-            if (active) points[i].active = active[at];
-            if (age_s) points[i].age_s = age_s[at];
-        }
-        water_albedo(*sky.sky, water, points, made);
-        for (std::size_t i = 0; i < points.size(); ++i) albedo[range.begin() + i] = made[i];
-    });
+    over_points(
+        count,
+        [&, towards = to_eye](const Range& range) {
+            std::vector<SeaPoint> points(range.size());
+            std::vector<glm::vec3> made(range.size());
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const std::size_t at = range.begin() + i;
+                points[i].to_eye = towards[at];
+                if (normal) points[i].normal = normal[at];
+                if (crest) points[i].crest = crest[at];
+                if (coverage) points[i].coverage = coverage[at];
+                if (active) points[i].active = active[at];
+                if (age_s) points[i].age_s = age_s[at];
+            }
+            water_albedo(*sky.sky, water, points, made);
+            for (std::size_t i = 0; i < points.size(); ++i) albedo[range.begin() + i] = made[i];
+        },
+        kAlbedoGrain);
     copies.give_back();
     return given.out;
 }

@@ -160,6 +160,57 @@ typename Variant::SeenFoam foam_at(Variant& shading, const LightingChoice& choic
     return shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s, sky.sun_direction);
 }
 
+template <class Variant>
+typename Variant::SeenBody seen_body(Variant& shading, const WaterBody& water, const SeaPoint& p) {
+    const float covered = water.bubbles > 0.0f ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
+                fresh = std::min(covered, std::max(p.active, 0.0f));
+    return {p.from_eye_m, shading.pixel_over(p.pixel_m), p.crest, fresh, covered - fresh, p.age_s};
+}
+
+void albedo_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo) {
+    using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
+    const SkyMap none;
+    Variant shading(none);
+    typename Variant::WaterLook look = look_of<Variant>(water);
+    const vec3 scale = shading.kPi / max(sky.sun_irradiance + sky.sky_irradiance, vec3(1e-12f));
+    const vec3 beam = (shading.kPi * shading.square(sky.sun_angular_radius)) * sky.sun_radiance;
+    const auto of = [&](const SeaPoint& p, const typename Variant::SeenBody& body) {
+        const vec3 light =
+            look.has_body ? shading.body_radiance(p.to_eye, p.normal, sky.sun_direction, sky.sun_irradiance,
+                                                  beam, sky.sky_irradiance, look, {}, vec3(0.0f), body)
+                          : shading.water_radiance(sky.sun_direction, sky.sun_irradiance, sky.sky_irradiance,
+                                                   look.reflectance);
+        return clamp(light * scale, vec3(0.0f), vec3(1.0f));
+    };
+    const bool is_level = std::all_of(points.begin(), points.end(), [&](const SeaPoint& p) {
+        return p.crest == vec3(0.0f) && p.to_eye == points.front().to_eye &&
+               p.normal == points.front().normal;
+    });
+    if (!is_level) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            albedo[i] = of(points[i], seen_body(shading, water, points[i]));
+        return;
+    }
+    // Nothing but bubbles differs: as much as so much foam has that breaks now. By steps of its root, straight between them, to 1e-4.
+    look.crest_light = 0.0f;  // which level water doesn't know, and takes time
+    constexpr int kSteps = 32;
+    std::array<vec3, kSteps + 1> by_foam;
+    for (int step = 0; step <= kSteps && !points.empty(); ++step)
+        by_foam[static_cast<std::size_t>(step)] =
+            of(points.front(),
+               {vec3(0.0f), 0.0f, vec3(0.0f), shading.square(static_cast<float>(step) / kSteps), 0.0f, 0.0f});
+    const float now = shading.bubbles_per_m(0.0f, look.bubbles_m);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const typename Variant::SeenBody body = seen_body(shading, water, points[i]);
+        float foam = body.fresh;
+        if (body.old > 0.0f) foam += body.old * shading.bubbles_per_m(body.age_s, look.bubbles_m) / now;
+        const float place = kSteps * std::sqrt(std::clamp(foam, 0.0f, 1.0f));
+        const auto step = std::min(static_cast<std::size_t>(place), std::size_t{kSteps - 1});
+        albedo[i] = mix(by_foam[step], by_foam[step + 1], place - static_cast<float>(step));
+    }
+}
+
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
                        std::span<SeaRadiance>, const Air*, const FoamPattern&, const FloorSeen&);
 
@@ -177,11 +228,8 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         const typename Variant::SeenFoam seen = foam_at(shading, choice, pattern, p, sky);
-        const bool has_bubbles = choice.whitecaps && water.bubbles > 0.0f;
-        const float covered = has_bubbles ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
-                    fresh = std::min(covered, std::max(p.active, 0.0f));
-        const typename Variant::SeenBody body{
-            p.from_eye_m, shading.pixel_over(p.pixel_m), p.crest, fresh, covered - fresh, p.age_s};
+        typename Variant::SeenBody body = seen_body(shading, water, p);
+        if (!choice.whitecaps) body.fresh = body.old = 0.0f;
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
@@ -258,6 +306,13 @@ float water_entering(const WaterBody& water, glm::vec3 from) {
 
 glm::vec3 body_reflectance(const WaterBody& water) {
     return sea_shading::reflectance_of(water);
+}
+
+void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo) {
+    if (points.size() != albedo.size())
+        throw std::invalid_argument("water_albedo: give one albedo for each SeaPoint");
+    sea_shading::albedo_batch(sky, water, points, albedo);
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,

@@ -94,6 +94,13 @@ float water_entering(const WaterBody& water, glm::vec3 from);
 // A colour's values at the wavelengths of water, 0 … 1 (water.glsl).
 WaterBands bands_of(const glm::vec3& colour);
 
+// The light from the water at points as that of a diffuse surface, for hosts that light the sea themselves: of the irradiance of sun and sky
+// on a level plane the share that leaves again, before the factor (1 − F) of the way out; 0 … 1, 0 in the dark. It counts to_eye,
+// normal and crest, and coverage, active and age_s for the bubbles under foam; on level water, without the foam itself. Throws as
+// shade_sea() for spans of different lengths.
+void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo);
+
 struct Air;
 
 // Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is

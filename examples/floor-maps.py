@@ -37,7 +37,7 @@ def atoll():
     east, north = np.meshgrid(across, -across)
     out = np.hypot(east, north - 120.0) + 14.0 * noise(ATOLL, 2.4, 2)
     depth = 6.5 - 4.2 * step(60.0, 150.0, out) - 1.9 * np.exp(-((out - 172.0) / 15.0) ** 2)
-    depth += 4.0 * step(190.0, 215.0, out) + 22.0 * step(212.0, 262.0, out)
+    depth += 4.0 * step(188.0, 208.0, out) + 30.0 * step(202.0, 234.0, out)
     depth -= 3.0 * np.clip(noise(ATOLL, 1.35, 9, longest=7) - 1.6, 0.0, 1.1) * (1.0 - step(140.0, 165.0, out))  # shoals
     depth += 0.15 * noise(ATOLL, 1.6, 5)
     return np.repeat(np.clip(depth, 0.25, 40.0)[..., None], 3, axis=-1)

@@ -20,8 +20,8 @@ namespace pelagic {
 namespace {
 
 constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
-constexpr double kTexelsADepth =
-    64.0;  // the finer map's: a light's net at that depth has lines some three texels wide
+// The finer map's: the net of light at that depth has lines some three texels wide.
+constexpr double kTexelsADepth = 128.0;
 constexpr int kRowsAtOnce = 64;
 constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
 constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points

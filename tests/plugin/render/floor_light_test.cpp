@@ -56,7 +56,7 @@ Lit lit(const Scene& scene, double elevation_deg, const View& view) {
                                                   std::sin(elevation_deg * kDegree)));
     made.sky.sun_angular_radius = 0.00465f;
     const auto prepared = prepare(scene);
-    const double finest_m = 0.02;
+    const double finest_m = 0.002;
     const Query query = view_query(
         *prepared, {.products = {}, .finest_cell_m = finest_m, .finest_pixel_m = finest_m, .points = 1000});
     made.sea = std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}));
@@ -69,7 +69,7 @@ Lit lit(const Scene& scene, double elevation_deg, const View& view) {
                  .sun_angular_radius = made.sky.sun_angular_radius,
                  .finest_m = finest_m,
                  .side = kSide});
-    made.texel_m = std::max(scene.sea.depth_m / 64.0, finest_m);
+    if (made.floor.has_light()) made.texel_m = 1.0 / static_cast<double>(made.floor.seen_from({}).light.z);
     return made;
 }
 
@@ -93,8 +93,8 @@ TEST(FloorLight, KeepsItsMeanAndGathersWhereWavesFocus) {
                     squares += value * value;
                 }
                 const double mean = sum / (kSide * kSide);
-                // A map of 4 depths has few of the longest waves.
-                EXPECT_NEAR(mean, 1.0, map == 0 ? 0.05 : 0.015) << depth << ' ' << elevation << ' ' << map;
+                // A map of 2 depths has few of the longest waves.
+                EXPECT_NEAR(mean, 1.0, map == 0 ? 0.1 : 0.015) << depth << ' ' << elevation << ' ' << map;
                 if (map > 0) continue;
                 EXPECT_GT(std::sqrt(squares / (kSide * kSide) - mean * mean), depth < 1.0 ? 0.05 : 0.15)
                     << depth << ' ' << elevation;

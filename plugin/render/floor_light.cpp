@@ -75,7 +75,7 @@ struct Falls {
 
 template <class T>
 Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const Beam& beam, double depth_m,
-               double margin_m, const std::atomic<bool>* cancel) {
+               double margin_m, double waves_m, const std::atomic<bool>* cancel) {
     const double s = map.texel_m;
     const int margin = static_cast<int>(std::ceil(margin_m / s));
     Falls falls{.columns = map.side + 2 * margin, .rows = map.side + 2 * margin, .place = {}, .light = {}};
@@ -84,6 +84,8 @@ Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const 
     falls.light.resize(static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(falls.rows));
     const glm::dvec2 from_m = map.from_m - depth_m * beam.tangent * beam.away - margin * s;
     const T footprint = static_cast<T>(s);
+    // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than in the middle.
+    const double range_m = std::max(margin_m - waves_m, 0.0) / std::max(beam.tangent, 0.02);
     std::vector<glm::vec<2, T>> rest;
     std::vector<glm::vec<3, T>> position, normal;
     for (int row = 0; row < falls.rows; row += kRowsAtOnce) {
@@ -120,8 +122,11 @@ Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const 
                 const glm::dvec2 at = origin + glm::dvec2(position[i]);
                 const auto height = static_cast<double>(position[i].z);
                 // The floor's height hardly changes over the way of the light.
-                const double level_z = floor.has_depths() ? -floor.depth_m(at + depth_m * along) : -depth_m;
-                const glm::dvec2 hit = at + std::max(height - level_z, 0.0) * along;
+                double local_m = depth_m;
+                if (floor.has_depths())
+                    local_m =
+                        std::clamp(floor.depth_m(at + depth_m * along), depth_m - range_m, depth_m + range_m);
+                const glm::dvec2 hit = at + std::max(height + local_m, 0.0) * along;
                 falls.place[first + i] = glm::vec2((hit - map.from_m) / s);
             }
         });
@@ -312,14 +317,16 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
                       texels.subspan(i * count, count)};
         const double per_slope =
             depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
-        const double margin_m =
-            std::min(3.0 * std::sqrt(0.5 * all) * per_slope + 3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
-                     0.25 * side * map.texel_m);
+        const double most_m = 0.25 * side * map.texel_m,
+                     waves_m = std::min(
+                         3.0 * std::sqrt(0.5 * all) * per_slope + 3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
+                         most_m);
         const glm::dmat2 hidden = hidden_slopes(frame, map);
         const glm::dmat2 waves(water.waves.x, water.waves.z, water.waves.z, water.waves.y);
         const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
-        gather(falls_on(map, floor, frame, beam, depth_m, margin_m, cancel), map,
-               mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
+        gather(falls_on(map, floor, frame, beam, depth_m, floor.has_depths() ? most_m : waves_m, waves_m,
+                        cancel),
+               map, mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
         const glm::dmat2 spread =
             depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
         // The sun's disc: a uniform one's variance is a quarter of its radius' square.

@@ -93,6 +93,14 @@ def eevee_mirrors_in_facets():
     return bpy.app.version < (4, 2)
 
 
+def dont_light_with(material):
+    """Cycles doesn't look for a mesh of this material as for a lamp, though it glows a little."""
+    if hasattr(material.cycles, "emission_sampling"):  # since 3.5
+        material.cycles.emission_sampling = "NONE"
+    else:
+        material.cycles.sample_as_light = False
+
+
 def blend_by_samples(material):
     """Lets EEVEE mix a material that is transparent in part by chance, in no order; without shadows. Since 4.2 it does."""
     if not hasattr(material, "surface_render_method"):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The water as a volume, for Cycles: what is under the surface shows, dimmed and coloured by what is in the water.
 
-Absorption is the water's. Scattering is isotropic, since the forward part of real scattering goes on nearly as light does
-that isn't scattered, and as much as makes deep water, by the single scattering that Cycles does unless it is asked for
-more, as bright as the opaque water. Twice the backscatter, which would do with all scattering, is a little less.
+Together absorption and scattering are the core's extinction. Scattering is isotropic, since the forward part of real scattering goes
+on nearly as light does that isn't scattered, and as much as makes deep water, by the single scattering that Cycles does unless it is
+asked for more, as bright as the opaque water.
 
-Light comes in straight: Cycles finds no lamp through a surface that bends. Hence for the light from a low sun the way
-through the water is longer than it should be. Seen from above, things stand where refraction shows them.
+Light comes in straight: Cycles finds no lamp through a surface that bends. What it loses on that way is brought to what it would lose
+on the bent one, and of what comes from below the surface sends down its share. Seen from above, things stand where refraction shows them.
 EEVEE keeps the opaque water: a volume fills its object's box there, and the air over the sea with it.
 """
 
@@ -15,23 +15,29 @@ import math
 
 import bpy
 
-from . import compat
+from . import compat, light, upwelling
 from .facets import WATER_INDEX, add_fresnel
 from .module import pelagic
 from .nodes import Tree
 
 SURFACE, VOLUME, OUTPUT = "Clear Surface", "Water Volume", "Clear Water"  # nodes, the last one only where it is switched on
-ABSORPTION, SCATTERING = "Water Absorption", "Water Scattering"
+ABSORPTION, SCATTERING, EXTINCTION = "Water Absorption", "Water Scattering", "Water Extinction"
 
 MARK = "pelagic_floor"  # on the object under clear water
 FLOOR_M, FLOOR_DEPTH_M = 40e3, 500.0
+SCATTERED_ONCE = 0.147
+MOST_GIVEN_BACK = 15.0  # as an exponent: a sun 5 degrees high over the deepest floor that shows
+RETURNED = 0.48  # of a uniform light from below a level surface
+LEAST = 0.05  # of the floor's light, by which it is worth a volume's time
+SKY_SLANT = 1.17  # kSkySlant of water.glsl
+BOTH_WAYS = SKY_SLANT + 1.18  # with the way up to an eye at 45 degrees
 
 
-def add_depths(tree, part, foam, mirror, white, before_air):
-    """Adds what connect() shows. foam: add_foam()'s; mirror, white: shaders, of the reflected light and of foam; before_air: puts
-    the air before a shader."""
-    def named(name, kind, inputs=()):
-        node = tree.node(kind, inputs)
+def add_depths(tree, part, foam, mirror, white, upwards, before_air):
+    """Adds what connect() shows. foam: add_foam()'s; mirror, white: shaders, of the reflected light and of foam; upwards: the vertical;
+    before_air: puts the air before a shader."""
+    def named(name, kind, inputs=(), **settings):
+        node = tree.node(kind, inputs, **settings)
         node.name = node.label = name
         return tree.value(node, 0)
 
@@ -40,23 +46,71 @@ def add_depths(tree, part, foam, mirror, white, before_air):
     out = tree.vector(1.0, 1.0, 1.0) * ((1.0 - part["Fresnel"]) * WATER_INDEX**-2)
     bent = tree.add("ShaderNodeBsdfRefraction", {"Color": out, "Roughness": 0.0, "IOR": WATER_INDEX,
                                                  "Normal": part["Normal"]}, distribution=compat.sharp_refraction())
-    seen = before_air(tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: bent}),
-                                                         2: white}))
+    seen = tree.add("ShaderNodeAddShader", {0: mirror, 1: bent})
+    bubbles = named(upwelling.CLEAR_OUT, "ShaderNodeVectorMath", {0: (0.0, 0.0, 0.0), "Scale": 1.0 - part["Fresnel"]}, operation="SCALE")
+    named(upwelling.CLEAR_LIGHT, "ShaderNodeBsdfDiffuse", {"Color": bubbles, "Normal": upwards})
+    seen = named(upwelling.CLEAR_SUM, "ShaderNodeAddShader", {0: seen})
+    seen = before_air(tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: seen, 2: white}))
 
-    # Towards lamp and sky it is as a level surface for the light that comes in, and for rays that happen to find the sky, too,
-    # or Cycles would count it twice.
+    # Towards lamp and sky, and for rays that happen to find the sky, it is a window without a bend. What such a ray has lost on its way
+    # through the water is brought to what it would have lost on the way of a bent one, under level water: as if it stood at the
+    # angle of refraction.
     cosine = tree.math("ABSOLUTE", tree.value(geometry, "Incoming").parts()[2])
+    below = (1.0 - (1.0 - cosine * cosine) * WATER_INDEX**-2).sqrt()
+    extinction = named(EXTINCTION, "ShaderNodeCombineXYZ")
+    # Only where it leaves the water the first time: beyond, its length is that of its way through air, too.
+    in_water = tree.value(geometry, "Backfacing") * tree.value(path, "Transmission Depth").above(0.5)
+    in_water = in_water * (1.0 - tree.value(path, "Transparent Depth").above(0.5))
+    longer_m = in_water * tree.value(path, "Ray Length") * (1.0 - cosine / below)
     let_in = (1.0 - add_fresnel(tree, cosine)) * (1.0 - foam["Hidden"])
-    straight = tree.add("ShaderNodeBsdfTransparent", {"Color": tree.vector(1.0, 1.0, 1.0) * let_in})
+    given_back = tree.vector(*[(each * longer_m).at_most(MOST_GIVEN_BACK).exp() for each in extinction.parts()])
+    straight = tree.add("ShaderNodeBsdfTransparent", {"Color": given_back * let_in})
+    # And light from below is sent down again, its share of a uniform light. That isn't taken from the window: what comes in through it is
+    # all there, whether by a lamp's ray or by one that finds the sky.
+    mirrored = tree.add("ShaderNodeBsdfDiffuse", {"Color": (RETURNED,) * 3 + (1.0,)})
+    inside = tree.add("ShaderNodeAddShader", {0: straight, 1: mirrored})
+    is_shadow = tree.value(path, "Is Shadow Ray")
     from_below = tree.value(geometry, "Backfacing") * (1.0 - tree.value(path, "Is Camera Ray"))
-    named(SURFACE, "ShaderNodeMixShader", {0: tree.value(path, "Is Shadow Ray").at_least(from_below), 1: seen, 2: straight})
+    window = tree.add("ShaderNodeMixShader", {0: is_shadow, 1: inside, 2: straight})
+    named(SURFACE, "ShaderNodeMixShader", {0: is_shadow.at_least(from_below), 1: seen, 2: window})
     named(VOLUME, "ShaderNodeAddShader", {0: named(ABSORPTION, "ShaderNodeVolumeAbsorption"),
                                           1: named(SCATTERING, "ShaderNodeVolumeScatter")})
 
 
+_clear_to_m = {}  # a water's text → clear_to_m()
+
+
+def clear_to_m(scene):
+    """How deep a floor still shows [m]: of the light that goes down and comes up again LEAST is left there, in the band that goes
+    farthest. None for a scene that isn't valid."""
+    key = repr(scene.water)
+    if key not in _clear_to_m:
+        try:
+            water = pelagic.WaterBody(scene)
+        except (ValueError, pelagic.ShotError):
+            return None
+        if len(_clear_to_m) > 64:
+            _clear_to_m.clear()
+        least = min(a + b for a, b in zip(water.absorption_per_m, water.backscatter_per_m))
+        _clear_to_m[key] = -math.log(LEAST) / (BOTH_WAYS * least)
+    return _clear_to_m[key]
+
+
+def is_seen_through(obj, scene):
+    """Whether an ocean's water is a volume for Cycles: by hand, or where its floor shows and the surface reaches to the horizon."""
+    if obj.pelagic.see_through_by_hand:
+        return obj.pelagic.see_through
+    return scene.water.body and scene.sea.depth_m < (clear_to_m(scene) or 0.0) and reaches_far(obj)
+
+
+def reaches_far(obj):
+    """Whether light comes in all round what is seen: not past the edge of a camera's grid, a cage or a mesh of one's own."""
+    return obj.pelagic.surface.kind == "patch" and obj.pelagic.horizon and not obj.pelagic.own_mesh
+
+
 def connect(obj, material, scene):
     """Makes Cycles show the volume of the scene's water over its floor, or the opaque water."""
-    tree, is_on = material.node_tree, obj.pelagic.see_through
+    tree, is_on = material.node_tree, is_seen_through(obj, scene)
     output = tree.nodes.get(OUTPUT)
     if output is not None and not is_on:
         tree.nodes.remove(output)
@@ -104,18 +158,49 @@ def _add_floor(obj):
 
 
 def coefficients(scene):
-    """(absorption, scattering), (r, g, b) each [1/m]."""
+    """(absorption, scattering), (r, g, b) each [1/m]. Together they are the extinction by which the floor's light is the core's, of six bands;
+    without a floor that shows the core's a + b_b. Of it so much is scattered that deep water has the core's reflectance."""
     deep = copy.copy(scene)
     deep.sea.depth_m = math.inf  # a floor is there to be seen through it
     water = pelagic.WaterBody(deep)
-    scattering = []
-    for absorption, reflectance in zip(water.absorption_per_m, water.reflectance):
-        # Of the light that comes in at the cosine μ₀, b/c / (4 (μ + μ₀)) comes back to μ, scattered once: 0.13 … 0.21 b/c,
-        # 0.15 of a whole sky's. c: absorption and scattering, b. Light that the surface sends down again counts too.
-        back = reflectance / (1.0 - 0.48 * reflectance)
-        share = min(back / 0.16, 0.9)
-        scattering.append(absorption * share / (1.0 - share))
-    return water.absorption_per_m, tuple(scattering)
+    absorption, scattering = [], []
+    for extinction, reflectance in zip(_extinction(scene, water), water.reflectance):
+        # Of the light that comes in at the cosine μ₀, b/c / (4 (μ + μ₀)) comes back to μ, scattered once: with both as in an even sky's
+        # light below the surface and an eye at 45° SCATTERED_ONCE. c: absorption and scattering, b. Light that the surface sends down
+        # again counts too.
+        share = min(reflectance / (1.0 - RETURNED * reflectance) / SCATTERED_ONCE, 0.9)
+        scattering.append(extinction * share)
+        absorption.append(extinction * (1.0 - share))
+    return tuple(absorption), tuple(scattering)
+
+
+def _extinction(scene, water):
+    """(r, g, b) [1/m]. water: of the scene without a floor."""
+    extinction = [a + b for a, b in zip(water.absorption_per_m, water.backscatter_per_m)]
+    near_m = 0.02
+    if not scene.water.body or not 2.0 * near_m < scene.sea.depth_m < (clear_to_m(scene) or 0.0):
+        return extinction
+    tried = copy.copy(scene)
+
+    def of_floor(depth_m):
+        tried.sea.depth_m, tried.water.floor_colour = depth_m, (0.0,) * 3
+        black = upwelling.albedo(tried)[0]
+        tried.water.floor_colour = (0.02,) * 3  # so little that what is sent down again doesn't count
+        return upwelling.albedo(tried)[0] - black
+
+    near = of_floor(near_m)
+    if not near.all():  # in the dark
+        return extinction
+    way_m = _slants(scene) * (scene.sea.depth_m - near_m)
+    left = of_floor(scene.sea.depth_m) / near
+    return [-math.log(min(max(each, 1e-3), 1.0)) / way_m for each in left]
+
+
+def _slants(scene):
+    """1/cosine of the light's way down, sun's and sky's, and up to the eye that upwelling.albedo() is for."""
+    sky, below = light.sky_of(scene), lambda cosine: 1.0 / math.sqrt(1.0 - (1.0 - cosine**2) / WATER_INDEX**2)
+    sun, dome = sky.sun_irradiance[1], sky.sky_irradiance[1]
+    return (sun * below(sky.sun_direction[2]) + dome * SKY_SLANT) / max(sun + dome, 1e-12) + below(upwelling.FROM[2])
 
 
 def node_inputs(scene):
@@ -123,4 +208,5 @@ def node_inputs(scene):
     absorption, scattering = coefficients(scene)
     most, dense = max(absorption), max(scattering)
     return {ABSORPTION: {"Color": tuple(1.0 - each / most for each in absorption) + (1.0,), "Density": most},
-            SCATTERING: {"Color": tuple(each / dense for each in scattering) + (1.0,), "Density": dense}}
+            SCATTERING: {"Color": tuple(each / dense for each in scattering) + (1.0,), "Density": dense},
+            EXTINCTION: dict(zip("XYZ", map(sum, zip(absorption, scattering))))}

@@ -26,6 +26,9 @@ VIEW = "pelagic_view"  # on the world: the camera that they were metered by, Pin
 VIEW_STOPS = {"Filmic": -0.2, "AgX": 0.1}
 SKY_WIDTH = 1024
 STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp
+# Where Cycles clamps indirect light: ten times white, which is 1 in the start-up file, and here a sunlit white of some 25 kcd/m². With the
+# former a lagoon's floor is a third too dark.
+STARTUP_CLAMP, CLAMP = 10.0, 250.0
 PICTURE, DISC = "Pelagic Sky", "Pelagic Sun Disc"  # the world's nodes
 
 
@@ -49,6 +52,9 @@ def ensure_light(bpy_scene, scene, exposure=True):
         _hide_startup_lamp(bpy_scene)
     if exposure:
         world[EXPOSURE] = bpy_scene.view_settings.exposure
+    cycles = getattr(bpy_scene, "cycles", None)
+    if cycles and cycles.sample_clamp_indirect == STARTUP_CLAMP:
+        cycles.sample_clamp_indirect = CLAMP
     update_light(bpy_scene, scene)
 
 

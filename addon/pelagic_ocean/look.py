@@ -6,7 +6,7 @@ import traceback
 import bpy
 from bpy.app.handlers import persistent
 
-from . import drops, handlers, light, material, meshes, ocean, play
+from . import depths, drops, handlers, light, material, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
 from .query import first_ocean
@@ -15,7 +15,7 @@ from .query import first_ocean
 PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or "clock" in field.key["feeds"]
           or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "sea.depth_m", "surface.earth_curvature", "shot.loop_s",
-                            "effects.foam_structure", "effects.foam_streaks", "effects.foam_pattern", "effects.foam_pattern_m", "effects.foam_new_albedo", "effects.foam_old_albedo",
+                            "effects.whitecaps", "effects.foam_structure", "effects.foam_streaks", "effects.foam_pattern", "effects.foam_pattern_m", "effects.foam_new_albedo", "effects.foam_old_albedo",
                             "effects.foam_new_opaque", "effects.foam_old_opaque")
           or "spray" in field.key["feeds"]]
 
@@ -98,7 +98,7 @@ def _follow(bpy_scene, depsgraph):
         sea = play.simulation_of(obj).sea
         of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name
-        wanted = [of_sea, ocean.frame_rate(bpy_scene), obj.pelagic.see_through] + [settings[place] for place in PLACES]
+        wanted = [of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
         is_first = first_ocean(bpy_scene) == obj
         view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None
         seen = view, bpy_scene.view_settings.view_transform

@@ -5,16 +5,17 @@ import math
 
 import bpy
 
-from . import compat, depths
-from .facets import WATER_INDEX, add_facets, transformed
+from . import compat, depths, upwelling
+from .facets import add_facets, transformed
 from .foam import OPACITY, PICTURE, add_foam
-from .light import extinction_per_m, packed_image, sky_of
+from .light import extinction_per_m, packed_image
 from .module import pelagic
 from .nodes import Tree
 
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
-VERSION = 5
+VERSION = 6
 AIR, AIR_SKY = "Air Extinction", "Air Sky"  # nodes
+THIN = "Crest Light"  # the node: how much more light comes through high crests of water without a body
 JUST_ABOVE = 0.006  # the horizon: half a row of the sky's picture
 
 
@@ -33,17 +34,20 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
     changes."""
     material = next((m for m in obj.data.materials if m and MARK in m), None)
     if material is not None:
-        _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
+        _set(material, "Water Color", (*map(float, upwelling.albedo(scene)[0]), 1.0))
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
         _set(material, "Foam Structure", scene.effects.foam_structure)
         _set(material, "Foam Streaks", scene.effects.foam_streaks)
         _set(material, "Foam Color", (scene.effects.foam_new_albedo,) * 3 + (1.0,))
         _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
+        if material[MARK] >= 6 and (scene.water.body or f"{MARK} {THIN}" in material):
+            _set(material, THIN, 0.0 if scene.water.body else 2.0)  # a body's crests are upwelling.py's
         _show_picture(material, scene)
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
         depths.connect(obj, material, scene)
+        upwelling.connect(material, scene)
         if significant_height_m is not None:
             _set(material, "Wave Height", max(significant_height_m, 1e-3))
         if dense_foam is not None:
@@ -126,7 +130,7 @@ def new_material():
     picture_m = labelled("ShaderNodeValue", "Foam Picture Size", 0.0)
     fresh_opacity = labelled("ShaderNodeValue", "Active Foam Density", OPACITY)
     old_opacity = labelled("ShaderNodeValue", "Residual Foam Density", OPACITY)
-    crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
+    crest_light = labelled("ShaderNodeValue", THIN, 2.0)
     wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
     clock = tree.node("ShaderNodeCombineXYZ")
     clock.name = clock.label = "Time"
@@ -150,10 +154,14 @@ def new_material():
                       vector_type="POINT", convert_from="WORLD", convert_to="OBJECT").parts()[2]
     thin = tree.map_range(height / wave_height, 0.3, 1.0) * crest_light
     lit = water * (tree.vector(1.5, 1.2, 1.0) * thin + (1.0, 1.0, 1.0))
+    lit = tree.add("ShaderNodeVectorMath", {0: lit, 1: (0.0, 0.0, 0.0)}, operation="ADD")
+    lit.socket.node.name = lit.socket.node.label = upwelling.SUM
     body = tree.add("ShaderNodeBsdfDiffuse", {"Color": lit * (1.0 - part["Fresnel"]), "Normal": upwards})
     white = tree.add("ShaderNodeBsdfDiffuse", {"Color": foam["Color"], "Normal": part["Foam Normal"]})
 
     before_air = _add_air(tree)
+    if hasattr(material, "cycles"):
+        compat.dont_light_with(material)  # the air's glow is the camera's alone, and would take a third of all samples from sun and sky
 
     def show(mirror, **settings):
         tree.node("ShaderNodeOutputMaterial", {"Surface": before_air(tree.add("ShaderNodeMixShader", {
@@ -163,7 +171,7 @@ def new_material():
     if not compat.eevee_mirrors_in_facets():
         show(tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"], "Anisotropy": 0.0},
                       distribution="BECKMANN"), target="EEVEE")
-    depths.add_depths(tree, part, foam, mirror, white, before_air)
+    depths.add_depths(tree, part, foam, mirror, white, upwards, before_air)
     return material
 
 
@@ -191,16 +199,3 @@ def put_air(obj, scene, sky):
         if node.image != sky:
             node.image = sky
         _fill(material, AIR, dict(enumerate(extinction_per_m(scene) if sky else (0.0, 0.0, 0.0))))
-
-
-def upwelling_albedo(scene):
-    """(r, g, b): the diffuse reflectance of the sea for light that comes from below its surface, without the factor
-    (1 − Fresnel) on the way out: water_radiance() of water.glsl over the irradiance of the scene's own light, / π."""
-    sky, water = sky_of(scene), pelagic.WaterBody(scene)
-    diffuse, underside = 0.06751, 0.48
-    into_water = water.entering(sky.sun_direction)
-    albedo = []
-    for sun, dome, r in zip(sky.sun_irradiance, sky.sky_irradiance, water.reflectance):
-        down = (sun * into_water + dome * (1.0 - diffuse)) / max(sun + dome, 1e-12)
-        albedo.append(down * r / (1.0 - underside * r) / WATER_INDEX**2)
-    return albedo

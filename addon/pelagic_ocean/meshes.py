@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from . import compat
+from . import compat, upwelling
 
 SIGNATURE = "pelagic_surface"  # the mesh's own property: which surface its vertices are, and how many
 MARKER = "marker"  # instead of that: what saving.py puts into files
@@ -19,7 +19,8 @@ ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
               ("slope_variance", "FLOAT_VECTOR", "vector", "slope_variance"),
               ("whitecap_coverage", "FLOAT", "value", "coverage"),
               ("foam_active", "FLOAT", "value", "foam_active"),
-              ("foam_age", "FLOAT", "value", "foam_age"))
+              ("foam_age", "FLOAT", "value", "foam_age"),
+              (upwelling.ATTRIBUTE, "FLOAT_VECTOR", "vector", upwelling.ATTRIBUTE))  # not the core's: upwelling.py
 
 
 def _signature(surface):

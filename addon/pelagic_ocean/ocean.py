@@ -271,10 +271,12 @@ def migrate(obj):
                 setattr(obj.pelagic, name, True)
     # What nobody changed keeps the value of its time: before version 3 there were no editions, version 3 is the second one's.
     edition = 1 if obj.pelagic.version < 3 else 2
-    for field in FIELDS if obj.pelagic.version < VERSION else ():
+    for field in FIELDS if obj.pelagic.version < 4 else ():
         group = getattr(obj.pelagic, field.table)
         before = next((value for until, value in field.key["defaults_before"] if until > edition), None)
         if before is not None and not group.is_property_set(field.name):
             field.write(group, before)
+    if obj.pelagic.version < 5:  # nobody's water became a volume by itself
+        obj.pelagic.see_through_by_hand = True
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION

@@ -2,9 +2,11 @@
 """The panels: a table of them, their rows from the table of keys. The same ones in the object's properties and in the
 sidebar of the 3D view."""
 
+import math
+
 import bpy
 
-from . import ocean, play
+from . import depths, ocean, play
 from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
@@ -12,9 +14,13 @@ from .presets import PELAGIC_MT_presets
 from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields, unit_of
 from .translations import CONTEXT, say
 
-# Title → tables of keys.
-PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
-          "Light": ("light", "water"), "Output": ("output", "quality")}
+# Title → tables of keys. Water is short, and found above the sea's many rows.
+PANELS = {"Water": (), "Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
+          "Light": ("light",), "Output": ("output", "quality")}
+# The artist's few of the water; what else its table has is in a panel below them.
+WATER = ("water.type", "water.chlorophyll_mg_m3", "sea.depth_m", "water.floor_colour", "water.crest_light", "water.bubbles")
+MORE = "More"
+OPEN = ("Sea", "Water")
 
 def draw_words(layout, text):
     """A message in lines that fit."""
@@ -80,7 +86,10 @@ def _matters(field, settings):
     """Whether a key does anything for the kind of surface that is chosen. The size is that of maps and volumes, too."""
     kind, sized = settings.surface.kind, settings.output.maps or settings.output.volumes or settings.effects.spray or settings.uv_map
     has_size = kind in ("patch", "near-far")
-    return {"surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
+    has_body = settings.water.body
+    return {"water.floor_colour": has_body and settings.sea.use_depth_m, "water.crest_light": has_body,
+            "water.bubbles": has_body and settings.effects.whitecaps,
+            "surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
             "surface.earth_curvature": kind in ("projected-grid", "near-far"),
             "surface.beyond": False}.get(field.path, True)  # of Pelagic's own pictures; here it is horizon
 
@@ -96,6 +105,38 @@ def _draw_tables(layout, settings, tables, title):
         for field in FIELDS:
             if field.table == table and counts(field, settings) and _matters(field, settings):
                 _draw_field(column, getattr(settings, table), field)
+
+
+def _draw_water(layout, obj):
+    settings, scene, layout = obj.pelagic, play.simulation_of(obj).scene, layout.column()
+    for path in WATER:
+        if path in BY_PATH and counts(BY_PATH[path], settings) and _matters(BY_PATH[path], settings):
+            _draw_field(layout, getattr(settings, BY_PATH[path].table), BY_PATH[path])
+    row = _labelled(layout, settings.bl_rna.properties["see_through"].name)
+    row.prop(settings, "see_through_by_hand", text="")
+    if settings.see_through_by_hand:
+        row.prop(settings, "see_through", text="")
+    else:
+        row.label(text="automatic")
+    clear_m = depths.clear_to_m(scene) if scene else None
+    if clear_m:
+        layout.label(text=say("Clear down to {:.0f} m", clear_m) if clear_m >= 3.0 else say("Clear down to {:.1f} m", clear_m), translate=False)
+        if not settings.see_through_by_hand and scene.water.body and not math.isinf(scene.sea.depth_m):
+            draw_words(layout.box(), _why_seen_through(obj, scene, clear_m))
+
+
+def _why_seen_through(obj, scene, clear_m):
+    if scene.sea.depth_m >= clear_m:
+        return "The floor is too deep to show: the water is opaque in Cycles"
+    if not depths.reaches_far(obj):
+        return "The floor gives the water its colour. A patch to the horizon would show the floor itself"
+    return "The floor is near enough to show: for Cycles the water is a volume, which takes longer"
+
+
+def _draw_rest_of_water(layout, settings):
+    for field in FIELDS:
+        if field.table == "water" and field.path not in WATER:
+            _draw_field(layout, settings.water, field)
 
 
 def _draw_quality(layout, settings):
@@ -162,9 +203,11 @@ class Sub:
             _draw_surface(layout, settings)
             if settings.own_mesh:
                 return
+        if self.bl_label == "Water":
+            _draw_water(layout, context.object)
+        if self.bl_label == MORE:
+            _draw_rest_of_water(layout, settings)
         _draw_tables(layout, settings, self.tables, self.bl_label)
-        if self.bl_label == "Light":
-            _draw_own(layout, settings, "see_through")
 
 
 def _draw_vertices(layout, obj):
@@ -197,10 +240,13 @@ def _classes():
         main = type(f"PELAGIC_PT_{where}", (Main, bpy.types.Panel), {**place, "__doc__": None})
         yield main
         for title, tables in PANELS.items():
-            options = set() if title == "Sea" else {"DEFAULT_CLOSED"}
+            options = set() if title in OPEN else {"DEFAULT_CLOSED"}
             yield type(f"PELAGIC_PT_{where}_{title.lower()}", (Sub, bpy.types.Panel),
                        {**place, "bl_label": title, "bl_parent_id": main.__name__, "tables": tables,
                         "bl_options": options, "__doc__": None})
+        yield type(f"PELAGIC_PT_{where}_water_more", (Sub, bpy.types.Panel),
+                   {**place, "bl_label": MORE, "bl_parent_id": f"{main.__name__}_water", "tables": (),
+                    "bl_options": {"DEFAULT_CLOSED"}, "__doc__": None})
 
 
 _registered = []

@@ -17,7 +17,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cages, handlers, meshes, surfaces
+from . import cages, depths, handlers, meshes, surfaces, upwelling
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
 from .properties import FIELDS
@@ -55,6 +55,7 @@ class Simulation:
         self._surface = None  # what identifies the surface that was made last, and it
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
+        self._lit, self._upwelling = None, None  # of which scene
         self._last = None  # the frame that was last asked for, the step to it, the view
         self.is_behind = False  # whether the mesh has waves alone, and waits for the past of their foam
 
@@ -69,6 +70,18 @@ class Simulation:
         if self._warned is not self.scene:
             self._warned, self._warnings = self.scene, () if self.scene.validate() else tuple(self.scene.warnings())
         return self._warnings
+
+    def upwelling(self, is_lit):
+        """upwelling.Upwelling of the settings; None where the water is the same everywhere, or nobody looks, which frees what it holds."""
+        scene = self.scene if is_lit else None
+        if self._lit is not scene:
+            self._lit, self._upwelling = scene, None
+            if scene and (upwelling.has_bubbles(scene) or upwelling.has_crests(scene)):
+                try:
+                    self._upwelling = upwelling.Upwelling(scene)
+                except (ValueError, pelagic.ShotError):  # look.py says so
+                    pass
+        return self._upwelling
 
     @property
     def needs_view(self):
@@ -242,6 +255,21 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     return patch, lambda: surfaces.patch(*patch), None
 
 
+def _eye_of(obj, bpy_scene, depsgraph):
+    """Where the camera is that sees the light in the waves, in the ocean's coordinates [m], and the ocean's axes in the world, rows of a
+    matrix: (3 numbers, 9 numbers). None without a camera, and in water that is seen through."""
+    pinhole = None if depths.is_seen_through(obj, _simulation(obj).scene) else pinhole_of(obj, bpy_scene, depsgraph)
+    turned = obj.evaluated_get(depsgraph).matrix_world.to_3x3().normalized()
+    return pinhole and (tuple(map(float, pinhole.position_m)), tuple(number for row in turned for number in row))
+
+
+def is_lit_in_a_view():
+    """Whether a view of a window shows materials."""
+    manager = bpy.context.window_manager
+    return any(area.type == "VIEW_3D" and area.spaces.active.shading.type in {"RENDERED", "MATERIAL"}
+               for window in (manager.windows if manager else ()) for area in window.screen.areas)
+
+
 def is_seen(obj, depsgraph):
     """Whether anything in this depsgraph shows it; during renders that is another question than in a window."""
     if not obj.evaluated_get(depsgraph).is_evaluated or obj.mode == "EDIT":
@@ -308,7 +336,9 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, *_limits(obj, bpy_scene) if view else ())
-    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
+    lit = simulation.upwelling(bpy_scene.name in _rendering or is_lit_in_a_view())  # it would be a fifth of each frame's time
+    eye = _eye_of(obj, bpy_scene, depsgraph) if lit and upwelling.has_crests(lit.scene) else None
+    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map, lit, eye)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
         return
     if shown == simulation.awaited and not again and not wait and (simulation.is_building or simulation.due or simulation.progress < 1.0):
@@ -330,6 +360,9 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         meshes.move_rest(mesh, surface)
     if surface.faces is not None and not waves:  # a mesh of the user's own keeps its maps
         meshes.keep_uv(mesh, surface, obj.pelagic.uv_map)
+    added = lit and lit.added(arrays, surface, moment.time_s, eye)
+    if added is not None:  # not in arrays themselves, which oceans of other waters share
+        arrays = {**arrays, upwelling.ATTRIBUTE: added}
     meshes.put_frame(mesh, arrays)
     meshes.hand_over(mesh, obj.data)
     simulation.shown, simulation.awaited = (None, shown) if waves else (shown, None)
@@ -405,8 +438,20 @@ def _on_other_data(*_):
         obj.update_tag()
 
 
+def _follow_shading():
+    """Views that begin to show materials say so: nothing else would tell."""
+    bpy.msgbus.clear_by_owner(_simulations)
+    bpy.msgbus.subscribe_rna(key=(bpy.types.View3DShading, "type"), owner=_simulations, args=(), notify=_on_shading)
+
+
+def _on_shading():
+    for obj in oceans():
+        obj.update_tag()
+
+
 @persistent
 def _on_load(*_):
+    _follow_shading()
     _simulations.clear()
     _rendering.clear()
     _on_other_data()
@@ -485,10 +530,12 @@ def register():
     if pelagic is None:
         return
     handlers.add(HANDLERS)
+    _follow_shading()
 
 
 def unregister():
     handlers.remove(HANDLERS)
+    bpy.msgbus.clear_by_owner(_simulations)
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)
     _simulations.clear()

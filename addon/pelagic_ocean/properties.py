@@ -17,7 +17,7 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
 from . import cages
 from .module import pelagic
 
-VERSION = 4  # of the settings in a file; ocean.migrate() brings older ones here
+VERSION = 5  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps",  # and the camera's: they come from the scene
                 "shot.edition"}  # the newest: all settings have values, and a file keeps those of its time (ocean.migrate)
@@ -165,6 +165,11 @@ def entry_fields(field):
 def _touched(group, _context):
     """A setting was changed, by hand or by a script: its object is evaluated again, and play.py sees it then."""
     group.id_data.update_tag()
+
+
+def _chosen_by_hand(settings, context):
+    settings.see_through_by_hand = True
+    _touched(settings, context)
 
 
 def _sentence(text):
@@ -320,9 +325,12 @@ def _ocean_annotations():
             description="The attribute velocity [m/s], for materials and modifiers of your own. With the scene's motion blur it is "
                         "there in any case"),
         "see_through": BoolProperty(
-            name="See Through", default=False, update=_touched,
+            name="See Through", default=False, update=_chosen_by_hand,
             description="What is under the surface shows in Cycles, dimmed and coloured by the water: absorption and scattering "
                         "as a volume, which takes longer to render. Off, the water is opaque, with the same light from below"),
+        "see_through_by_hand": BoolProperty(
+            name="See Through by Hand", default=False, update=_touched,
+            description="Whether you choose if the water is seen through; otherwise it is where its floor is near enough to show"),
         "quality_menu": EnumProperty(
             name="Quality", items=_quality_items(), get=_quality, set=_set_quality, update=_touched,
             description="How much time accuracy may take: a level, or a budget of error or of time that chooses the settings"),

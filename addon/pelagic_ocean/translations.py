@@ -14,7 +14,7 @@ from .properties import FIELDS, entry_fields, label_of
 GERMAN = {
     # Tables of keys, panels
     "Sea": "Seegang", "Waves": "Wellen", "Surface": "Oberfläche", "Effects": "Effekte", "Light": "Licht", "Output": "Ausgabe",
-    "Water": "Wasser", "Quality": "Qualität", "Shot": "Aufnahme", "Presets": "Voreinstellungen", "Floating": "Schwimmt",
+    "Water": "Wasser", "Quality": "Qualität", "Shot": "Aufnahme", "More": "Weiteres", "Presets": "Voreinstellungen", "Floating": "Schwimmt",
     "Pelagic Bake": "Pelagic-Bake", "Pelagic Ocean": "Pelagic-Ozean", "Pelagic Volume": "Pelagic-Volumen",
     "Viewport Preview": "Vorschau in der Ansicht", "Check for the Farm": "Für die Renderfarm prüfen",
     "The mesh is linked, which plays slowly. Object, Relations, Make Local plays fast":
@@ -32,6 +32,8 @@ GERMAN = {
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
     "Visibility": "Sichtweite", "Type": "Wasserart", "Body": "Wasserkörper", "Floor colour": "Farbe des Grundes", "Crest light": "Licht durch Kämme",
+    "Floor pattern": "Muster des Grundes", "Caustics": "Kaustik", "Depth file": "Tiefenkarte", "Depth size": "Breite der Tiefenkarte",
+    "Depth east": "Tiefenkarte, Ost", "Depth north": "Tiefenkarte, Nord",
     "Bubbles": "Blasen", "Whitecaps": "Schaumkronen", "Whitecap law": "Schaumkronengesetz",
     "Sea warmer than air": "See wärmer als Luft", "Whitecap amount": "Menge der Schaumkronen", "Breaking from": "Brecher ab",
     "Foam decay": "Schaumabbau", "Foam drift": "Schaumdrift", "Foam structure": "Schaumstruktur", "Foam streaks": "Schaumstreifen",
@@ -48,7 +50,8 @@ GERMAN = {
     "Custom budget": "Eigenes Budget", "Normal": "Normale", "Velocity": "Geschwindigkeit", "Slope variance": "Neigungsvarianz",
     "Displacement": "Auslenkung", "CatmullClark": "Catmull-Clark", "Level set": "Level-Set",
     # What Blender alone has
-    "To the horizon": "Bis zum Horizont", "UV Map": "UV-Karte", "See Through": "Durchsichtig", "Viewport": "Ansicht",
+    "To the horizon": "Bis zum Horizont", "UV Map": "UV-Karte", "See Through": "Durchsichtig", "See Through by Hand": "Durchsichtig nach Wahl",
+    "Viewport": "Ansicht",
     "Viewport at Most": "Ansicht höchstens", "Size by Hand": "Größe von Hand", "Length": "Länge", "Width": "Breite",
     "Damping": "Dämpfung", "Tilt": "Neigung", "Drift": "Drift", "Folder": "Ordner", "Offset": "Versatz", "Halvings": "Halbierungen",
     "Bake": "Backen", "Exposure": "Belichtung", "Sun and Sky": "Sonne und Himmel", "See the horizon": "Horizont sehen",
@@ -94,6 +97,13 @@ GERMAN = {
     "Building the sea…": "Die See entsteht …", "Foam follows…": "Der Schaum folgt …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
     "The object's own mesh": "Das eigene Netz des Objekts",
     "Waves of {:.1f} m (significant height)": "Signifikante Wellenhöhe {:.1f} m",
+    "Clear down to {:.0f} m": "Klar bis {:.0f} m Tiefe", "Clear down to {:.1f} m": "Klar bis {:.1f} m Tiefe",
+    "The floor is too deep to show: the water is opaque in Cycles":
+        "Der Grund liegt zu tief, um zu sehen zu sein: In Cycles ist das Wasser undurchsichtig",
+    "The floor gives the water its colour. A patch to the horizon would show the floor itself":
+        "Der Grund färbt das Wasser. Ein Ausschnitt bis zum Horizont würde ihn selbst zeigen",
+    "The floor is near enough to show: for Cycles the water is a volume, which takes longer":
+        "Der Grund liegt so nah, dass er zu sehen ist: Für Cycles ist das Wasser ein Volumen, was länger dauert",
     "Vertices: {}": "Punkte: {}", "Viewport: {} of {} vertices": "Ansicht: {} von {} Punkten",
     "Waiting: a view in Rendered or Wireframe shows the mesh": "Wartet: eine Ansicht als Rendering oder Drahtgitter zeigt das Netz",
     "The view is under water, which can't be drawn: raise it":

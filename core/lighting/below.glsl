@@ -34,6 +34,7 @@ struct WaterSight {
     float aside;     // how far it looks away from the sun's side: 0 straight down, and towards the sun
     float returned;  // of what comes up, the part that the surface sends down again
     float floor_m;
+    float gathered;  // the sun's light where it ends on the floor over its mean there, less 1
 };
 
 // Over the irradiance that enters at the surface, of sun and sky: radiance that the eye sees of water and floor. And what is left of
@@ -87,10 +88,11 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
         // what the floor itself loses so slowly.
         vec3 seen = (0.35f * (1.0f - abs(sight.down))) * aside * along_sight(vec3(0.0f), vec3(0.0f), fog, sight) *
                     exp(-both * reflected * max(sight.floor_m - sight.depth_m, 0.0f));
-        if (sight.to_floor) seen += exp(-both * reflected * sight.length_m);
-        seen *= floor_colour / kPi;
-        sun += seen * exp(-by_sun * sight.floor_m);
-        sky += seen * exp(-by_sky * sight.floor_m);
+        vec3 direct = sight.to_floor ? exp(-both * reflected * sight.length_m) : vec3(0.0f);
+        vec3 bare = floor_colour / kPi;
+        vec3 spread_out = exp((-kScatteredAside * sight.floor_m * sight.slant) * max(scattering - 2.0f * own, vec3(0.0f)));
+        sun += bare * (seen + direct * (1.0f + sight.gathered * spread_out)) * exp(-by_sun * sight.floor_m);
+        sky += bare * (seen + direct) * exp(-by_sky * sight.floor_m);
     }
     vec3 again = 1.0f / (1.0f - sight.returned * diffuse);
     sun = again * sun +
@@ -118,6 +120,7 @@ WaterSight water_sight(vec3 direction, float height_m, float surface_m, vec3 to_
     sight.aside = max(across - (sight.to_sun - cosine * direction.z), 0.0f) * level * sqrt(max(level, 0.0f));
     sight.returned = 1.0f - entering_from_sky(look.waves) / square(kWaterIndex);
     sight.floor_m = look.floor_m;
+    sight.gathered = 0.0f;
     return sight;
 }
 
@@ -126,14 +129,30 @@ struct WaterBetween {
     vec3 left;  // part of what is behind
 };
 
-// Of a sight as water_sight() has it; scattering: b [1/m].
-WaterBetween water_between(vec3 direction, float height_m, float surface_m, SeaLight light, WaterBands scattering) {
+// Of a sight as water_sight() has it, from a place relative to the eye; scattering: b [1/m]; blur: the width of what is seen as one a unit of
+// distance, beside a pixel.
+WaterBetween water_between(vec3 from, vec3 direction, float height_m, float surface_m, float blur, SeaLight light,
+                           WaterBands scattering) {
     WaterLook look = light.water;
+    WaterBands bare = look.floor_colour;
+    float gathered = 0.0f;
+    if (surface_m < 0.0f && direction.z < 0.0f && look.floor_m < kNoFloor_m && is_floor_near(from, light.floor)) {
+        float down = max(-direction.z, 0.02f);
+        float wide = sqrt(square(light.floor.pixel) + square(blur)) * inversesqrt(down) / down;
+        SeenFloor there = seen_floor(from, vec2(direction.x, direction.y) / down, wide, 0.0f, light.floor);
+        look.floor_m = max(there.depth_m - height_m, kLeastFloor_m);
+        gathered = there.light - 1.0f;
+        if (light.floor.colours.w > 0.0f) {
+            WaterBands picture = bands_of(there.colour);
+            bare = WaterBands(bare.shorter * picture.shorter, bare.longer * picture.longer);
+        }
+    }
     WaterSight sight = water_sight(direction, height_m, surface_m, light.sun_direction, look);
+    sight.gathered = gathered;
     WaterSeen shorter = seen_in_water(look.absorption.shorter, scattering.shorter, look.backscatter.shorter, kOwnShorter,
-                                      look.floor_colour.shorter, sight);
+                                      bare.shorter, sight);
     WaterSeen longer = seen_in_water(look.absorption.longer, scattering.longer, look.backscatter.longer, kOwnLonger,
-                                     look.floor_colour.longer, sight);
+                                     bare.longer, sight);
     float in_sun = entering(vec3(light.sun_direction.x, light.sun_direction.y, max(light.sun_direction.z, 0.0f)), look.waves);
     vec3 of_sun = light.sun_irradiance * in_sun * colour_of(WaterBands(shorter.sun, longer.sun));
     vec3 of_sky = light.sky_irradiance * entering_from_sky(look.waves) * colour_of(WaterBands(shorter.sky, longer.sky));
@@ -252,17 +271,19 @@ SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam 
     SkyFromBelow sky = sky_from_below(v, frame);
     terms.sky = clear * sky.sky;
     if (kSun) terms.sun = clear * sun_from_below(v, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);
-    WaterBetween between = water_between(-to_eye, height_m, distance_m, light, scattering);
+    WaterBetween between = water_between(vec3(0.0f), -to_eye, height_m, distance_m, 0.0f, light, scattering);
     if (kWater) {
         vec2 mean = mean_visible_slope(visible_slopes(v, frame.variance));
         vec3 f = normalize(vec3(-mean.x, -mean.y, 1.0f));
         vec3 mirrored = upside_down(out_of_frame(frame, 2.0f * dot(v, f) * f - v));
         mirrored = normalize(vec3(mirrored.x, mirrored.y, min(mirrored.z, -1.0e-3f)));
-        terms.sea = clear * (1.0f - sky.through) * water_between(mirrored, 0.0f, -1.0f, light, scattering).light;
+        // A facet's tilt turns the ray by twice as much.
+        float mixed = 2.0f * sqrt(6.0f * max(slope_variance.x + slope_variance.y, 0.0f));
+        terms.sea = clear * (1.0f - sky.through) * water_between(-distance_m * to_eye, mirrored, 0.0f, -1.0f, mixed, light, scattering).light;
     }
     if (kWhitecaps) {
         vec3 above = (light.sun_irradiance + light.sky_irradiance) / kPi;
-        vec3 below = water_between(vec3(0.0f, 0.0f, -1.0f), 0.0f, -1.0f, light, scattering).light;
+        vec3 below = water_between(-distance_m * to_eye, vec3(0.0f, 0.0f, -1.0f), 0.0f, -1.0f, 1.0f, light, scattering).light;
         terms.foam = seen.opacity * (kFoamLetsThrough * (1.0f - seen.white) * above + seen.white * below);
     }
     terms.sun *= between.left;

@@ -20,10 +20,11 @@ using namespace glm;
 template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 struct Shading {
     explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = {},
-                     const FoamImage* of_foam = nullptr)
+                     const FoamImage* of_foam = nullptr, std::span<const float> of_floor = {})
         : map(sky_map),
           seen_air(of_air),
           foam_image(of_foam),
+          floor_values(of_floor),
           kSkyMapSize(static_cast<float>(sky_map.size())),
           kSun(choice.sun),
           kSky(choice.sky),
@@ -42,6 +43,7 @@ struct Shading {
     const SkyMap& map;
     const Air* seen_air;
     const FoamImage* foam_image;
+    const std::span<const float> floor_values;
     const float kSkyMapSize;
     const bool kSun, kSky, kWater, kWhitecaps, kSecondReflection, kMeshMasking;
 
@@ -50,6 +52,7 @@ struct Shading {
         return foam_image->texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(foam_image->side) +
                                   static_cast<std::size_t>(x)];
     }
+    float floor_value(int i) const { return floor_values[static_cast<std::size_t>(i)]; }
     vec4 air_texel(int column, int row) const {
         return seen_air
             ->texels[static_cast<std::size_t>(row) * Air::kWidth + static_cast<std::size_t>(column)];
@@ -63,6 +66,7 @@ struct Shading {
 #include "core/lighting/slopes.glsl"
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
+#include "core/lighting/floor.glsl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
@@ -121,19 +125,26 @@ SeaAlbedo albedo(const WaterBody& body) {
     Variant shading(none);
     // Of irradiance π the radiance is the albedo.
     const vec3 up(0.0f, 0.0f, 1.0f), dark(0.0f), sky(shading.kPi);
-    const glm::vec3 water =
-        body.has_body ? shading.body_radiance({kSeenFrom, 0.0f, kSeenFrom}, up, up, dark, dark, sky,
-                                              look_of<Variant>(body), shading.no_crest_nor_bubbles())
-                      : shading.water_radiance(up, dark, sky, body.reflectance);
+    const glm::vec3 water = body.has_body
+                                ? shading.body_radiance({kSeenFrom, 0.0f, kSeenFrom}, up, up, dark, dark, sky,
+                                                        look_of<Variant>(body), typename Variant::FloorView{},
+                                                        dark, shading.no_crest_nor_bubbles())
+                                : shading.water_radiance(up, dark, sky, body.reflectance);
     return {.water = water,
             .foam = glm::mix(water, vec3(shading.kWhiteFoam), shading.kFoamOpacity),
             .water_index = shading.kWaterIndex};
 }
 
 template <class Variant>
-typename Variant::SeaLight light_of(const Sky& sky, const WaterBody& water) {
-    return {sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
-            sky.sun_irradiance, sky.sky_irradiance, look_of<Variant>(water)};
+typename Variant::SeaLight light_of(const Sky& sky, const WaterBody& water, const FloorSeen& floor) {
+    return {sky.sun_direction,
+            sky.sun_radiance,
+            sky.sun_angular_radius,
+            sky.sun_irradiance,
+            sky.sky_irradiance,
+            look_of<Variant>(water),
+            {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.pixel, floor.depths, floor.depths_per_m,
+             floor.colours, floor.colours_first, floor.light, floor.coarse}};
 }
 
 template <class Variant>
@@ -149,27 +160,76 @@ typename Variant::SeenFoam foam_at(Variant& shading, const LightingChoice& choic
     return shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s, sky.sun_direction);
 }
 
+template <class Variant>
+typename Variant::SeenBody seen_body(Variant& shading, const WaterBody& water, const SeaPoint& p) {
+    const float covered = water.bubbles > 0.0f ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
+                fresh = std::min(covered, std::max(p.active, 0.0f));
+    return {p.from_eye_m, shading.pixel_over(p.pixel_m), p.crest, fresh, covered - fresh, p.age_s};
+}
+
+void albedo_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo) {
+    using Variant = Shading<FresnelFit::Exact, SkyQuality::One>;
+    const SkyMap none;
+    Variant shading(none);
+    typename Variant::WaterLook look = look_of<Variant>(water);
+    const vec3 scale = shading.kPi / max(sky.sun_irradiance + sky.sky_irradiance, vec3(1e-12f));
+    const vec3 beam = (shading.kPi * shading.square(sky.sun_angular_radius)) * sky.sun_radiance;
+    const auto of = [&](const SeaPoint& p, const typename Variant::SeenBody& body) {
+        const vec3 light =
+            look.has_body ? shading.body_radiance(p.to_eye, p.normal, sky.sun_direction, sky.sun_irradiance,
+                                                  beam, sky.sky_irradiance, look, {}, vec3(0.0f), body)
+                          : shading.water_radiance(sky.sun_direction, sky.sun_irradiance, sky.sky_irradiance,
+                                                   look.reflectance);
+        return clamp(light * scale, vec3(0.0f), vec3(1.0f));
+    };
+    const bool is_level = std::all_of(points.begin(), points.end(), [&](const SeaPoint& p) {
+        return p.crest == vec3(0.0f) && p.to_eye == points.front().to_eye &&
+               p.normal == points.front().normal;
+    });
+    if (!is_level) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            albedo[i] = of(points[i], seen_body(shading, water, points[i]));
+        return;
+    }
+    // Nothing but bubbles differs: as much as so much foam has that breaks now. By steps of its root, straight between them, to 1e-4.
+    look.crest_light = 0.0f;  // which level water doesn't know, and takes time
+    constexpr int kSteps = 32;
+    std::array<vec3, kSteps + 1> by_foam;
+    for (int step = 0; step <= kSteps && !points.empty(); ++step)
+        by_foam[static_cast<std::size_t>(step)] =
+            of(points.front(),
+               {vec3(0.0f), 0.0f, vec3(0.0f), shading.square(static_cast<float>(step) / kSteps), 0.0f, 0.0f});
+    const float now = shading.bubbles_per_m(0.0f, look.bubbles_m);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const typename Variant::SeenBody body = seen_body(shading, water, points[i]);
+        float foam = body.fresh;
+        if (body.old > 0.0f) foam += body.old * shading.bubbles_per_m(body.age_s, look.bubbles_m) / now;
+        const float place = kSteps * std::sqrt(std::clamp(foam, 0.0f, 1.0f));
+        const auto step = std::min(static_cast<std::size_t>(place), std::size_t{kSteps - 1});
+        albedo[i] = mix(by_foam[step], by_foam[step + 1], place - static_cast<float>(step));
+    }
+}
+
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
-                       std::span<SeaRadiance>, const Air*, const FoamPattern&);
+                       std::span<SeaRadiance>, const Air*, const FoamPattern&, const FloorSeen&);
 
 template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                  std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
-                 const FoamPattern& foam) {
+                 const FoamPattern& foam, const FloorSeen& floor) {
     using Variant = Shading<kFresnel, kSkyQuality>;
     const bool by_place = air && air->by_place > 0.0f;
-    Variant shading(sky.map, air, choice, foam.picture);
+    Variant shading(sky.map, air, choice, foam.picture, floor.values);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
-    const auto light = light_of<Variant>(sky, water);
+    const auto light = light_of<Variant>(sky, water, floor);
     const auto pattern = pattern_of<Variant>(foam);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         const typename Variant::SeenFoam seen = foam_at(shading, choice, pattern, p, sky);
-        const bool has_bubbles = choice.whitecaps && water.bubbles > 0.0f;
-        const float covered = has_bubbles ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
-                    fresh = std::min(covered, std::max(p.active, 0.0f));
-        const typename Variant::SeenBody body{p.crest, fresh, covered - fresh, p.age_s};
+        typename Variant::SeenBody body = seen_body(shading, water, p);
+        if (!choice.whitecaps) body.fresh = body.old = 0.0f;
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
@@ -185,13 +245,13 @@ using FromBelow = Shading<FresnelFit::Exact, SkyQuality::Nine>;
 
 void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                           float height_m, std::span<const SeaPoint> points, std::span<const float> distance_m,
-                          std::span<SeaRadiance> radiance, const FoamPattern& foam) {
+                          std::span<SeaRadiance> radiance, const FoamPattern& foam, const FloorSeen& floor) {
     using Variant = sea_shading::FromBelow;
     if (points.size() != radiance.size() || points.size() != distance_m.size())
         throw std::invalid_argument(
             "shade_sea_from_below: give a distance and one SeaRadiance for each SeaPoint");
-    Variant shading(sky.map, nullptr, choice, foam.picture);
-    const auto light = sea_shading::light_of<Variant>(sky, water);
+    Variant shading(sky.map, nullptr, choice, foam.picture, floor.values);
+    const auto light = sea_shading::light_of<Variant>(sky, water, floor);
     const auto pattern = sea_shading::pattern_of<Variant>(foam);
     const auto scattering = sea_shading::bands<Variant>(water.scattering);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -209,22 +269,31 @@ void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const Wa
 }
 
 void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& water, float height_m,
-                 std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance) {
+                 std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance,
+                 const FloorSeen& floor) {
     using Variant = sea_shading::FromBelow;
     if (direction.size() != radiance.size())
         throw std::invalid_argument("shade_water: give one SeaRadiance for each direction");
-    Variant shading(sky.map, nullptr, choice);
-    const auto light = sea_shading::light_of<Variant>(sky, water);
+    Variant shading(sky.map, nullptr, choice, nullptr, floor.values);
+    const auto light = sea_shading::light_of<Variant>(sky, water, floor);
     const auto scattering = sea_shading::bands<Variant>(water.scattering);
     for (std::size_t i = 0; i < direction.size(); ++i) {
         radiance[i] = {};
         if (choice.water)
-            radiance[i].sea = shading.water_between(direction[i], height_m, -1.0f, light, scattering).light;
+            radiance[i].sea =
+                shading.water_between(glm::vec3(0.0f), direction[i], height_m, -1.0f, 0.0f, light, scattering)
+                    .light;
     }
 }
 
 SeaAlbedo sea_albedo(const WaterBody& water) {
     return sea_shading::albedo(water);
+}
+
+WaterBands bands_of(const glm::vec3& colour) {
+    const SkyMap none;
+    const auto of = sea_shading::Shading<FresnelFit::Exact, SkyQuality::One>(none).bands_of(colour);
+    return {of.shorter, of.longer};
 }
 
 float water_entering(const WaterBody& water, glm::vec3 from) {
@@ -239,9 +308,16 @@ glm::vec3 body_reflectance(const WaterBody& water) {
     return sea_shading::reflectance_of(water);
 }
 
+void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo) {
+    if (points.size() != albedo.size())
+        throw std::invalid_argument("water_albedo: give one albedo for each SeaPoint");
+    sea_shading::albedo_batch(sky, water, points, albedo);
+}
+
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
-               const FoamPattern& foam) {
+               const FoamPattern& foam, const FloorSeen& floor) {
     if (points.size() != radiance.size()) {
         throw std::invalid_argument("shade_sea: give one SeaRadiance for each SeaPoint");
     }
@@ -258,7 +334,7 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
          sea_shading::shade_batch<FresnelFit(1), SkyQuality(1)>,
          sea_shading::shade_batch<FresnelFit(1), SkyQuality(2)>}};
     kBatches[std::size_t(choice.fresnel)][std::size_t(choice.sky_quality)](choice, sky, water, points,
-                                                                           radiance, air, foam);
+                                                                           radiance, air, foam, floor);
 }
 
 }  // namespace pelagic

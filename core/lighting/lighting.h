@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
@@ -64,6 +65,7 @@ struct SeaPoint {
     glm::vec3 pixel_m{0.0f};
     float active = 1.0f;
     float age_s = 0.0f;
+    glm::vec3 from_eye_m{0.0f};  // in the eye's axes, for the floor below
     // Of the waves longer than kCrestFootprint_m's, for light through crests: slopes and height above the sea at rest [m].
     glm::vec3 crest{0.0f};
 };
@@ -89,25 +91,37 @@ glm::vec3 body_reflectance(const WaterBody& water);
 // level one otherwise.
 float water_entering(const WaterBody& water, glm::vec3 from);
 
+// A colour's values at the wavelengths of water, 0 … 1 (water.glsl).
+WaterBands bands_of(const glm::vec3& colour);
+
+// The light from the water at points as that of a diffuse surface, for hosts that light the sea themselves: of the irradiance of sun and sky
+// on a level plane the share that leaves again, before the factor (1 − F) of the way out; 0 … 1, 0 in the dark. It counts to_eye,
+// normal and crest, and coverage, active and age_s for the bubbles under foam; on level water, without the foam itself. Throws as
+// shade_sea() for spans of different lengths.
+void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                  std::span<glm::vec3> albedo);
+
 struct Air;
 
 // Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is
 // another one have their own light (place.glsl). Without it all have that of `sky`. foam: the pattern that their rest_m are
-// relative to; without it foam is smooth. Each depends on its point and the arguments alone,
+// relative to; without it foam is smooth. floor: as the eye sees it; without it, it is level and evenly lit. Each depends on its point and the arguments alone,
 // and is finite for finite points. Throws std::invalid_argument if the spans differ in length, or if
 // choice.sky is on and the sky has no map.
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr,
-               const FoamPattern& foam = {});
+               const FoamPattern& foam = {}, const FloorSeen& floor = {});
 
 // The same for an eye in a body of water, at this height above the sea at rest [m], that sees the points from below at these distances
 // [m] through the water. `sea` has what the water between scatters.
 void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                           float height_m, std::span<const SeaPoint> points, std::span<const float> distance_m,
-                          std::span<SeaRadiance> radiance, const FoamPattern& foam = {});
+                          std::span<SeaRadiance> radiance, const FoamPattern& foam = {},
+                          const FloorSeen& floor = {});
 
 // What such an eye sees in these directions (unit) where they don't meet the surface: the water, and its floor.
 void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& water, float height_m,
-                 std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance);
+                 std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance,
+                 const FloorSeen& floor = {});
 
 }  // namespace pelagic

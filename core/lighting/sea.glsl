@@ -8,6 +8,7 @@ struct SeaLight {
     vec3 sun_irradiance;
     vec3 sky_irradiance;
     WaterLook water;
+    FloorView floor;
 };
 
 struct SeaTerms {
@@ -51,7 +52,7 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam se
         vec3 up = light.water.has_body
                       ? body_radiance(to_eye, frame.normal, light.sun_direction, light.sun_irradiance,
                                       (kPi * square(light.sun_angular_radius)) * light.sun_radiance, light.sky_irradiance,
-                                      light.water, body)
+                                      light.water, light.floor, slope_variance, body)
                       : water_radiance(light.sun_direction, light.sun_irradiance, light.sky_irradiance,
                                        light.water.reflectance);
         terms.sea = clear * shown * up;

@@ -28,6 +28,7 @@
 #include <stdexcept>
 
 #include "core/lighting/colour.h"
+#include "core/lighting/lighting.h"
 
 namespace pelagic {
 namespace {
@@ -83,16 +84,6 @@ Optics optics_at(double wavelength, const WaterChoice& water) {
 // Of the primaries of Rec. 709 under its white, D65, to the nearest band.
 constexpr std::array<double, 3> kDominant_nm{610.0, 550.0, 460.0};
 
-constexpr std::array<double, 6> kWavelengths_nm{440.0, 480.0, 520.0, 555.0, 590.0, 630.0};
-
-// What red, green and blue of 1 are there: three smooth functions of which colour_of() (water.glsl) gives the colour back, and whose sum is 1.
-constexpr std::array<std::array<double, 3>, 6> kBandsOfColour{{{0.0516, -0.0255, 0.9739},
-                                                               {0.0290, 0.2116, 0.7594},
-                                                               {-0.0388, 0.9227, 0.1161},
-                                                               {-0.0117, 1.1012, -0.0895},
-                                                               {0.6852, 0.2819, 0.0329},
-                                                               {0.9342, -0.0108, 0.0766}}};
-
 float& band(WaterBands& of, std::size_t i) {
     const int place = static_cast<int>(i % 3);
     return i < 3 ? of.shorter[place] : of.longer[place];
@@ -126,15 +117,13 @@ WaterBody water_body(const WaterChoice& choice) {
     }
     water.has_body = true;
     water.floor_m = static_cast<float>(std::min(choice.floor_m, 1e9));
-    for (std::size_t i = 0; i < kWavelengths_nm.size(); ++i) {
-        const Optics at = optics_at(kWavelengths_nm[i], choice);
+    for (std::size_t i = 0; i < kWaterBands_nm.size(); ++i) {
+        const Optics at = optics_at(kWaterBands_nm[i], choice);
         band(water.absorption, i) = static_cast<float>(at.absorption);
         band(water.backscatter, i) = static_cast<float>(at.backscatter);
         band(water.scattering, i) = static_cast<float>(at.scattering);
-        const auto [red, green, blue] = kBandsOfColour[i];
-        band(water.floor_colour, i) = static_cast<float>(
-            std::clamp(glm::dot(choice.floor_colour, glm::dvec3(red, green, blue)), 0.0, 1.0));
     }
+    water.floor_colour = bands_of(glm::vec3(choice.floor_colour));
     return water;
 }
 

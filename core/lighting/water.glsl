@@ -37,6 +37,8 @@ struct WaterLook {
 
 // What a place of the sea has, beside its shape and its foam.
 struct SeenBody {
+    vec3 from_eye;  // [m]
+    float pixel_m;  // as wide as a pixel there
     vec3 crest;   // of the long waves: slopes and height [m]
     float fresh;  // coverage of what breaks now, and of what earlier breaking has left
     float old;
@@ -44,7 +46,7 @@ struct SeenBody {
 };
 
 SeenBody no_crest_nor_bubbles() {
-    return SeenBody(vec3(0.0f), 0.0f, 0.0f, 0.0f);
+    return SeenBody(vec3(0.0f), 0.0f, vec3(0.0f), 0.0f, 0.0f, 0.0f);
 }
 
 const float kNoFloor_m = 1.0e6f;
@@ -55,6 +57,17 @@ vec3 colour_of(WaterBands of) {
     return vec3(dot(vec3(0.1158f, -0.2020f, -0.1900f), of.shorter) + dot(vec3(0.1239f, 0.3314f, 0.8208f), of.longer),
                 dot(vec3(-0.1265f, 0.1778f, 0.3372f), of.shorter) + dot(vec3(0.5619f, 0.1017f, -0.0521f), of.longer),
                 dot(vec3(0.8196f, 0.2605f, 0.0272f), of.shorter) + dot(vec3(-0.0372f, -0.0654f, -0.0047f), of.longer));
+}
+
+// What red, green and blue of 1 are at these wavelengths: three smooth functions of which colour_of() gives the colour back, and whose sum is 1.
+WaterBands bands_of(vec3 colour) {
+    float r = colour.x;
+    float g = colour.y;
+    float b = colour.z;
+    return WaterBands(clamp(r * vec3(0.0516f, 0.0290f, -0.0388f) + g * vec3(-0.0255f, 0.2116f, 0.9227f) + b * vec3(0.9739f, 0.7594f, 0.1161f),
+                            vec3(0.0f), vec3(1.0f)),
+                      clamp(r * vec3(-0.0117f, 0.6852f, 0.9342f) + g * vec3(1.1012f, 0.2819f, -0.0108f) + b * vec3(-0.0895f, 0.0329f, 0.0766f),
+                            vec3(0.0f), vec3(1.0f)));
 }
 
 // Of what falls on a rough sea from a direction (in its level frame) the part that enters: by reciprocity what an eye there wouldn't
@@ -83,6 +96,7 @@ struct WaterWay {
     float bubbles;    // ¾ of their cross-section over the volume: b_g L [-], times the coverage of the foam over them
     float bubbles_m;
     float floor_m;
+    float gathered;  // the sun's light on the floor over its mean, less 1
 };
 
 // Upward radiance just below the surface over the irradiance that enters there: of the sun, of the sky, of the sun through a crest, and
@@ -132,8 +146,12 @@ WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_col
         float scattered = 0.954f;
         vec3 reflected = 1.02f * sqrt(1.0f + 4.7f * u);
         vec3 bare = floor_colour / kPi;
+        // What particles scatter on by a few degrees is gathered no more. They scatter 1/0.018 of what they scatter back (Petzold 1972), half
+        // of it by more than that.
+        vec3 spread = exp((-0.53f / 0.018f * way.floor_m * way.sun) * max(backscatter - own, vec3(0.0f)));
+        vec3 lit = 1.0f + way.gathered * spread;
         sun = sun * (1.0f - exp(-depth * (way.sun + way.eye * scattered))) +
-              bare * exp(-depth * (way.sun + way.eye * reflected));
+              bare * lit * exp(-depth * (way.sun + way.eye * reflected));
         sky = sky * (1.0f - exp(-depth * (kSkySlant + way.eye * scattered))) +
               bare * exp(-depth * (kSkySlant + way.eye * reflected));
         // Up and down again it goes at all angles.
@@ -195,9 +213,9 @@ float bubbles_per_m(float age_s, float depth_m) {
 }
 
 // The radiance just above the surface, before the factor (1 − F̄) of transmission outwards: level axes, the normal facing the eye.
-// sun_beam: the sun's irradiance across its beam.
+// sun_beam: the sun's irradiance across its beam. hidden: slope variances of unresolved waves.
 vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, vec3 sun_beam, vec3 sky_irradiance, WaterLook look,
-                   SeenBody seen) {
+                   FloorView of_floor, vec3 hidden, SeenBody seen) {
     WaterWay way;
     float in_sky = entering_from_sky(look.waves);
     way.returned = 1.0f - in_sky / square(kWaterIndex);
@@ -205,9 +223,23 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     // Snell's ray through the facet, which is never less steep than a level one's.
     float facing = clamp(dot(normal, to_eye), 0.0f, 1.0f);
     float below = refracted_cosine(facing);
-    float down = to_eye.z / kWaterIndex + (below - facing / kWaterIndex) * normal.z;
-    way.eye = 1.0f / clamp(down, 0.3f, 1.0f);
+    vec3 up_ray = to_eye / kWaterIndex + (below - facing / kWaterIndex) * normal;
+    float down = clamp(up_ray.z, 0.3f, 1.0f);
+    way.eye = 1.0f / down;
     way.floor_m = look.floor_m;
+    way.gathered = 0.0f;
+    WaterBands bare = look.floor_colour;
+    if (look.floor_m < kNoFloor_m && is_floor_near(seen.from_eye, of_floor)) {
+        // A facet's tilt moves the ray by (1 − 1/n) of it; a normal distribution of variance v is as wide as a box of √(12 v).
+        float blur = (1.0f - 1.0f / kWaterIndex) * sqrt(6.0f * max(hidden.x + hidden.y, 0.0f));
+        SeenFloor there = seen_floor(seen.from_eye, vec2(up_ray.x, up_ray.y) / -down, blur, seen.pixel_m, of_floor);
+        way.floor_m = there.depth_m;
+        way.gathered = there.light - 1.0f;
+        if (of_floor.colours.w > 0.0f) {
+            WaterBands picture = bands_of(there.colour);
+            bare = WaterBands(bare.shorter * picture.shorter, bare.longer * picture.longer);
+        }
+    }
     way.bubbles_m = look.bubbles_m;
     way.bubbles = look.bubbles * look.bubbles_m *
                   (seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) + seen.old * bubbles_per_m(seen.age_s, look.bubbles_m));
@@ -217,8 +249,8 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     way.crest_m = crest.way_m;
     way.crest_per_m = look.crest_per_m;
 
-    WaterBack shorter = water_back(look.absorption.shorter, look.backscatter.shorter, kOwnShorter, look.floor_colour.shorter, way);
-    WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, kOwnLonger, look.floor_colour.longer, way);
+    WaterBack shorter = water_back(look.absorption.shorter, look.backscatter.shorter, kOwnShorter, bare.shorter, way);
+    WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, kOwnLonger, bare.longer, way);
     vec3 into = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves);
     vec3 back = colour_of(WaterBands(shorter.sun, longer.sun));
     vec3 of_sun = into * back;

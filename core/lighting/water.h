@@ -1,6 +1,7 @@
 // The optics of the water body, from what it contains.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 
 namespace pelagic {
@@ -8,7 +9,11 @@ namespace pelagic {
 // Values at 440, 480, 520 nm and at 555, 590, 630 nm. One wavelength for each channel errs by 0.07 in a path's transmittance, six by 0.006.
 struct WaterBands {
     glm::vec3 shorter{0.0f}, longer{0.0f};
+    bool operator==(const WaterBands&) const = default;
 };
+
+// [nm]
+inline constexpr std::array<double, 6> kWaterBands_nm{440.0, 480.0, 520.0, 555.0, 590.0, 630.0};
 
 struct WaterBody {
     glm::vec3 reflectance{
@@ -30,6 +35,7 @@ struct WaterBody {
     float crest_per_m = 0.0f;                // wavenumber of the waves that have crests [1/m]; 0: none
     float bubbles = 0.0f;                    // times the bubbles' backscatter
     float bubbles_m = 0.0f;                  // their depth, e-folding
+    bool operator==(const WaterBody&) const = default;
 };
 
 struct WaterChoice {

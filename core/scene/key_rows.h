@@ -201,6 +201,7 @@ struct About {
     const char* accepted = "";  // instead of what type and range say
     KeyPartSet key_parts = {};
     bool may_be_infinite = false;
+    bool is_picture = false;
     const char* other_word = "";
     std::size_t most_entries = ~std::size_t{0};
     bool are_entries_independent = true;

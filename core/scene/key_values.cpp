@@ -147,6 +147,7 @@ Key key_about(const About& about, KeyType type) {
     if (!key.soft && key.range && (type == KeyType::Number || type == KeyType::Integer))
         key.soft = SoftRange{key.range->low, key.range->high};
     key.may_be_infinite = about.may_be_infinite;
+    key.is_picture = about.is_picture;
     key.most_entries = about.most_entries;
     key.are_entries_independent = about.are_entries_independent;
     key.other_word = about.other_word;
@@ -168,6 +169,19 @@ Problem unknown_word(const Key& key, const std::string& path, std::string_view w
     return {path, quoted_text(word),
             "is not one of the words" + (near.empty() ? "" : ", the nearest is " + quoted_text(near)),
             "one of " + words_text(key.choices)};
+}
+
+std::vector<const Key*> picture_keys(const Scene& scene) {
+    std::vector<const Key*> named;
+    for (const Key& key : keys())
+        if (key.is_picture && key.get(scene) != key.fallback) named.push_back(&key);
+    return named;
+}
+
+void replace_pictures(Scene& scene,
+                      const std::function<std::string(const Key&, const std::string& path)>& by) {
+    for (const Key* key : picture_keys(scene))
+        key->set(scene, by(*key, std::get<std::string>(key->get(scene))));
 }
 
 std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& value) {

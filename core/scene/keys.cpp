@@ -129,6 +129,32 @@ void add_sea(Built& out) {
                                  .soft = SoftRange{1.0, 1e4, true},
                                  .key_parts = kWaves,
                                  .may_be_infinite = true}),
+        row<&SeaState::depth_file>(
+            {.name = "depth_file",
+             .help =
+                 "how deep the floor lies that is seen, in metres: a picture of depths from above, north at its top, grey or its red; "
+                 "beyond it the floor goes to depth_m. Waves are those of depth_m",
+             .accepted = "\"none\", or the path of an .exr, from the shot file's folder",
+             .key_parts = key_parts(KeyPart::Water),
+             .is_picture = true}),
+        row<&SeaState::depth_size_m>({.name = "depth_size_m",
+                                      .help = "from west to east of that picture",
+                                      .unit = "m",
+                                      .range = limits::kSurfaceSize_m,
+                                      .soft = SoftRange{10.0, 1e4, true},
+                                      .key_parts = key_parts(KeyPart::Water)}),
+        row<&SeaState::depth_east_m>({.name = "depth_east_m",
+                                      .help = "where its middle is, towards +x",
+                                      .unit = "m",
+                                      .range = limits::kCameraCoordinate_m,
+                                      .soft = SoftRange{-1e3, 1e3},
+                                      .key_parts = key_parts(KeyPart::Water)}),
+        row<&SeaState::depth_north_m>({.name = "depth_north_m",
+                                       .help = "the same towards +y",
+                                       .unit = "m",
+                                       .range = limits::kCameraCoordinate_m,
+                                       .soft = SoftRange{-1e3, 1e3},
+                                       .key_parts = key_parts(KeyPart::Water)}),
         row<&SeaState::spectrum>({.name = "spectrum",
                                   .help = "how the energy is shared among the wavelengths",
                                   .key_parts = kWaves}),
@@ -541,7 +567,8 @@ void add_light_and_water(Built& out) {
                               "clear daylight, or a picture of a sky: lat-long, middle column +x, azimuth "
                               "growing to the left, top row the zenith; its sun is found in it",
                           .accepted = "\"daylight\", or the path of an .exr, from the shot file's folder",
-                          .key_parts = kLight}),
+                          .key_parts = kLight,
+                          .is_picture = true}),
         row<&Light::turbidity>(
             {.name = "turbidity",
              .help = "haze of the daylight's air; 2 is the open sea's, 3 land's, 6 is hazy",
@@ -590,6 +617,20 @@ void add_light_and_water(Built& out) {
              .help = "what the floor reflects: red, green, blue; pale sand, 0.36, 0.31, 0.23",
              .range = limits::kFloorColour,
              .key_parts = kWater}),
+        row<&Water::floor_pattern>(
+            {.name = "floor_pattern",
+             .help =
+                 "what the floor looks like near, times its colour: plain, or a picture that tiles, its top to the north",
+             .accepted =
+                 "\"plain\", or the path of an .exr, square, with a side of 1, 2 ... 1024 pixels, from the shot file's folder",
+             .key_parts = kWater,
+             .is_picture = true}),
+        row<&Water::floor_pattern_m>({.name = "floor_pattern_m",
+                                      .help = "the side of that picture on the floor",
+                                      .unit = "m",
+                                      .range = limits::kFoamPattern_m,
+                                      .soft = SoftRange{0.5, 50.0, true},
+                                      .key_parts = kWater}),
         row<&Water::crest_light>(
             {.name = "crest_light",
              .help =
@@ -601,6 +642,13 @@ void add_light_and_water(Built& out) {
         row<&Water::bubbles>(
             {.name = "bubbles",
              .help = "how much the bubbles under foam brighten the water; 1 is as computed, 0 none",
+             .range = limits::kWaterGain,
+             .soft = SoftRange{0.0, 3.0},
+             .key_parts = kWater}),
+        row<&Water::caustics>(
+            {.name = "caustics",
+             .help =
+                 "how much waves gather the sun's light on a floor that is seen; 1 is as computed, 0 even light",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0},
              .key_parts = kWater}));
@@ -671,7 +719,8 @@ void add_effects_and_quality(Built& out) {
              .accepted =
                  "\"lace\", or the path of an .exr, square, with a side of 16, 32 ... 4096 pixels, from the shot file's "
                  "folder",
-             .key_parts = key_parts(KeyPart::Water)}),
+             .key_parts = key_parts(KeyPart::Water),
+             .is_picture = true}),
         row<&Effects::foam_pattern_m>({.name = "foam_pattern_m",
                                        .help = "the side of that picture on the water",
                                        .unit = "m",

@@ -116,6 +116,7 @@ struct Key {
     bool may_be_infinite = false;      // besides what is in the range
     bool is_optional = false;          // a number that may be left out, and has no default
     bool is_required = false;          // in an entry: it has no default
+    bool is_picture = false;           // a text: its fallback, or the path of an .exr in its place
     std::int64_t least = 0;            // of an integer, or each of two: what its member holds
     std::int64_t largest = 0;          // likewise
     std::vector<std::string> choices;  // of words
@@ -159,6 +160,12 @@ const Key& key_of(std::string_view path);
 
 // Throws std::logic_error for a key that has none.
 KeyValue value_of(const Scene& scene, const Key& key);
+
+// The keys whose pictures a scene names by their paths.
+std::vector<const Key*> picture_keys(const Scene& scene);
+// Changes each of those paths.
+void replace_pictures(Scene& scene,
+                      const std::function<std::string(const Key&, const std::string& path)>& by);
 
 // Puts a value into the scene. An integer does for a number. The problem, if the value isn't of the key's
 // type or is a word that isn't one of the choices; the scene is then as it was. Ranges are validate()'s.

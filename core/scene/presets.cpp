@@ -125,8 +125,8 @@ std::vector<Preset> named_seas() {
                         {2.5, 0.5, 50.0}));
 
     Scene lagoon;
-    lagoon.sea.wind_speed_mps = 4.0;
-    lagoon.sea.fetch_m = 2e3;
+    lagoon.sea.wind_speed_mps = 2.5;
+    lagoon.sea.fetch_m = 1e3;
     lagoon.sea.depth_m = 2.5;
     lagoon.light = {.sun_elevation_deg = 55.0, .sun_azimuth_deg = 60.0};
     lagoon.water = {.type = WaterType::JerlovIB, .floor_colour = {0.55, 0.50, 0.40}};

@@ -489,23 +489,23 @@ bool is_exr(std::string_view path) {
 
 void check_foam_pattern(SceneChecker& check, const Effects& effects) {
     const Effects usual;
-    if (effects.foam_pattern == usual.foam_pattern) {
-        if (effects.foam_pattern_m != usual.foam_pattern_m && check.is_good("effects.foam_pattern_m"))
-            check.refuse({"effects.foam_pattern_m", number_text(effects.foam_pattern_m),
-                          "is the size of a picture of foam, and effects.foam_pattern is \"lace\"",
-                          number_text(usual.foam_pattern_m) + ", or effects.foam_pattern = \"PATH.exr\""});
-    } else if (!is_exr(effects.foam_pattern)) {
-        check.refuse({"effects.foam_pattern", quoted_text(effects.foam_pattern),
-                      "is neither \"lace\" nor a picture",
-                      "\"lace\", or the path of a picture that tiles, an .exr"});
+    if (effects.foam_pattern != usual.foam_pattern) return;
+    if (effects.foam_pattern_m != usual.foam_pattern_m && check.is_good("effects.foam_pattern_m"))
+        check.refuse({"effects.foam_pattern_m", number_text(effects.foam_pattern_m),
+                      "is the size of a picture of foam, and effects.foam_pattern is \"lace\"",
+                      number_text(usual.foam_pattern_m) + ", or effects.foam_pattern = \"PATH.exr\""});
+}
+
+void check_pictures(SceneChecker& check, const Scene& scene) {
+    for (const Key* key : picture_keys(scene)) {
+        const std::string path = std::get<std::string>(value_of(scene, *key));
+        if (!is_exr(path))
+            check.refuse({key->path, quoted_text(path),
+                          "is neither " + value_text(*key, key->fallback) + " nor a picture", key->accepted});
     }
 }
 
 void check_light(SceneChecker& check, const Light& light) {
-    if (light.sky != Light{}.sky && !is_exr(light.sky)) {
-        check.refuse({"light.sky", quoted_text(light.sky), "is neither a sky's name nor a picture",
-                      "\"daylight\", or the path of a lat-long picture, an .exr"});
-    }
     if (light.sky != Light{}.sky) return;
     const auto refuse = [&](const char* key, double value, double unused, const char* problem) {
         if (value == unused || !check.is_good(key)) return;
@@ -625,6 +625,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_near_far(check, scene);
     check_planet(check, scene);
     check_cage(check, scene.surface);
+    check_pictures(check, scene);
     check_foam_pattern(check, scene.effects);
     check_light(check, scene.light);
     check_water(check, scene.water);

@@ -158,7 +158,7 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
 }
 
 usd::Material material_of(const Plan& plan) {
-    const SeaAlbedo albedo = sea_albedo(make_water(plan.from->scene));
+    const SeaAlbedo albedo = sea_albedo(make_water(plan.from->scene, plan.from->spectrum));
     // As decimals: the float 1.34 isn't.
     return {.ior = std::round(static_cast<double>(albedo.water_index) * 1e6) / 1e6,
             .roughness = roughness(plan),
@@ -211,6 +211,12 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
         {"sky_unit", radiance_unit(scene)},
         {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
+    if (const WaterText water = water_text(make_water(scene, plan.from->spectrum));
+        !water.wavelengths_nm.empty())
+        stage.custom_data.insert(stage.custom_data.end(),
+                                 {{"water_wavelengths_nm", water.wavelengths_nm},
+                                  {"water_absorption_per_m", water.absorption_per_m},
+                                  {"water_backscatter_per_m", water.backscatter_per_m}});
     for (const DescribedKey& key :
          described(scene, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts)))
         stage.custom_data.push_back({key.identifier(), custom_value(key)});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <variant>
 
 #include "core/base/constants.h"
 #include "core/lighting/air.h"
@@ -21,6 +23,7 @@
 #include "core/lighting/primaries.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
+#include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "core/spectrum/directional_spectrum.h"
@@ -84,6 +87,39 @@ Problem sky_problem(const Scene& scene, const std::string& problem, const std::s
 Problem foam_problem(const Scene& scene, const std::string& problem) {
     return {"effects.foam_pattern", quoted_text(scene.effects.foam_pattern), line_text(problem),
             "a picture in OpenEXR, square, with a side of 16, 32 ... 4096 pixels, not all of one brightness"};
+}
+
+constexpr int kMostDepths = 2048, kMostColours = 1024;  // a side
+
+// What is wrong with a picture of the floor, as far as can be said without its pixels.
+std::vector<Problem> check_floor_picture(const Scene& scene, const Key& key) {
+    const std::string path = std::get<std::string>(value_of(scene, key));
+    const bool is_depths = key.path == "sea.depth_file";
+    const auto problem = [&](const std::string& text, const std::string& accepted) {
+        return std::vector{Problem{key.path, quoted_text(path), line_text(text), accepted}};
+    };
+    try {
+        const exr::RgbFile file(path);
+        const int width = file.width(), height = file.height();
+        const bool is_good = is_depths
+                                 ? std::max(width, height) <= kMostDepths
+                                 : width == height && width <= kMostColours && (width & (width - 1)) == 0;
+        if (is_good) return {};
+        return problem("has " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
+                       is_depths ? "a picture of up to 2048 pixels a side"
+                                 : "a square picture with a side of 1, 2 ... 1024 pixels");
+    } catch (const exr::ReadError& error) {
+        return problem(error.problem(), error.accepted());
+    }
+}
+
+// The keys of pictures of the floor that the scene names.
+std::vector<const Key*> floor_keys(const Scene& scene) {
+    std::vector<const Key*> named = picture_keys(scene);
+    std::erase_if(named, [](const Key* key) {
+        return key->path != "sea.depth_file" && key->path != "water.floor_pattern";
+    });
+    return named;
 }
 
 bool has_foam_picture(const Scene& scene) {
@@ -158,6 +194,8 @@ std::vector<Problem> check_sky(const Scene& scene) {
 std::vector<Problem> check_scene(const Scene& scene) {
     std::vector<Problem> problems = check_sky(scene);
     for (Problem& problem : check_foam_picture(scene)) problems.push_back(std::move(problem));
+    for (const Key* key : floor_keys(scene))
+        for (Problem& problem : check_floor_picture(scene, *key)) problems.push_back(std::move(problem));
     if (!validate(scene).empty()) return problems;
     for (Problem& problem : impossible_waves(scene.sea)) problems.push_back(std::move(problem));
     return problems;
@@ -174,13 +212,19 @@ std::string picture_content(const Scene& scene) {
     for (const Problem& problem : check_foam_picture(scene)) throw std::invalid_argument(text_of(problem));
     if (has_foam_picture(scene))
         content += content_of(scene.effects.foam_pattern, foam_problem(scene, "can't be read"));
+    for (const Key* key : floor_keys(scene)) {
+        for (const Problem& problem : check_floor_picture(scene, *key))
+            throw std::invalid_argument(text_of(problem));
+        const std::string path = std::get<std::string>(value_of(scene, *key));
+        content += content_of(path, {key->path, quoted_text(path), "can't be read", key->accepted});
+    }
     return content;
 }
 
 Scene portable(Scene scene) {
-    const auto name = [](std::string& path) { path = std::filesystem::path(path).filename().string(); };
-    if (scene.light.sky != Light{}.sky) name(scene.light.sky);
-    if (has_foam_picture(scene)) name(scene.effects.foam_pattern);
+    replace_pictures(scene, [](const Key&, const std::string& path) {
+        return std::filesystem::path(path).filename().string();
+    });
     return scene;
 }
 
@@ -207,7 +251,10 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
     WaterChoice choice = choice_of(scene.water);
     choice.has_body = scene.water.body;
     choice.floor_colour = scene.water.floor_colour;
-    choice.floor_m = scene.sea.depth_m;
+    // Of a map of depths each place has its own; as one depth it is sea.depth_m, beyond sight.
+    constexpr double kUnseen_m = 1e5;
+    choice.floor_m = scene.sea.depth_file == SeaState{}.depth_file ? scene.sea.depth_m
+                                                                   : std::min(scene.sea.depth_m, kUnseen_m);
     WaterBody water = water_body(choice);
     if (!water.has_body) return water;
     water.reflectance = body_reflectance(water);
@@ -231,6 +278,78 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
         scene.sea.swell.empty() ? spectrum.m0() : DirectionalSpectrum(wind, scene.waves.band_gains).m0();
     water.bubbles_m = static_cast<float>(0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0));
     return water;
+}
+
+Floor make_floor(const Scene& scene, double rest_m) {
+    // Nobody sees deeper; beyond a map of depths the floor falls so far.
+    constexpr double kDeepest_m = 500.0;
+    Floor floor(rest_m - std::min(scene.sea.depth_m, kDeepest_m));
+    for (const Key* key : floor_keys(scene)) {
+        const std::string path = std::get<std::string>(value_of(scene, *key));
+        const auto refuse = [&](const std::string& problem, const std::string& accepted) {
+            throw std::invalid_argument(
+                text_of(Problem{key->path, quoted_text(path), line_text(problem), accepted}));
+        };
+        for (const Problem& problem : check_floor_picture(scene, *key))
+            throw std::invalid_argument(text_of(problem));
+        try {
+            exr::RgbPixels picture = exr::read_rgb(path);
+            const auto width = static_cast<std::size_t>(picture.width),
+                       height = static_cast<std::size_t>(picture.height);
+            std::vector<glm::vec3> pixels;  // rows from the south
+            pixels.reserve(width * height);
+            for (std::size_t row = height; row-- > 0;)
+                for (std::size_t x = 0; x < width; ++x) {
+                    const auto& [red, green, blue] = picture.pixels[row * width + x];
+                    pixels.emplace_back(red, green, blue);
+                }
+            if (key->path == "sea.depth_file") {
+                std::vector<float> depths;
+                depths.reserve(pixels.size());
+                for (const glm::vec3& pixel : pixels) {
+                    if (!std::isfinite(pixel.x)) refuse("has depths that are no numbers", "depths in metres");
+                    depths.push_back(std::clamp(pixel.x, 0.01f, 1e5f));
+                }
+                const double size_m = scene.sea.depth_size_m;
+                const glm::dvec2 size(size_m, size_m * picture.height / picture.width);
+                floor.set_depths({picture.width, picture.height}, std::move(depths),
+                                 glm::dvec2(scene.sea.depth_east_m, scene.sea.depth_north_m) - 0.5 * size,
+                                 size);
+            } else {
+                for (const glm::vec3& pixel : pixels)
+                    if (!std::isfinite(pixel.x + pixel.y + pixel.z) ||
+                        std::min({pixel.x, pixel.y, pixel.z}) < 0.0f)
+                        refuse("has colours that are negative or no numbers", "linear colours, 0 and more");
+                floor.set_colours(picture.width, pixels, scene.water.floor_pattern_m);
+            }
+        } catch (const exr::ReadError& error) {
+            refuse(error.problem(), error.accepted());
+        }
+    }
+    return floor;
+}
+
+WaterText water_text(const WaterBody& water) {
+    if (!water.has_body) return {};
+    const auto six = [](const auto& value_of) {
+        std::string text;
+        for (int i = 0; i < 6; ++i) {
+            std::array<char, 32> number{};
+            std::snprintf(number.data(), number.size(), "%.3g", value_of(i));
+            text += (i > 0 ? ", " : "") + std::string(number.data());
+        }
+        return text;
+    };
+    const auto of = [](const WaterBands& bands, int i) {
+        return static_cast<double>(i < 3 ? bands.shorter[i] : bands.longer[i - 3]);
+    };
+    const auto a = [&](int i) { return of(water.absorption, i); };
+    const auto b = [&](int i) { return of(water.backscatter, i); };
+    return {.wavelengths_nm = six([](int i) { return kWaterBands_nm[static_cast<std::size_t>(i)]; }),
+            .absorption_per_m = six(a),
+            .backscatter_per_m = six(b),
+            .fading_per_m =
+                six([&](int i) { return a(i) + 4.18 * (1.0 - 0.52 * std::exp(-10.8 * a(i))) * b(i); })};
 }
 
 std::string light_content(const Scene& scene) {

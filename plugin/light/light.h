@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
@@ -24,7 +25,11 @@ std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
 // Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);
-// What make_sky() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
+// The floor below a sea that rests at a height [m]: level at sea.depth_m, or as the pictures say that sea.depth_file and water.floor_pattern
+// are the paths of. Depths below a centimetre are one: land isn't seen. Throws std::invalid_argument, naming the key and the file, for a picture that
+// can't be read or isn't one of a floor.
+Floor make_floor(const Scene& scene, double rest_m = 0.0);
+// What make_sky(), make_floor() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
 // without any. Throws std::invalid_argument for a file that can't be read.
 std::string picture_content(const Scene& scene);
 // Of make_sky()'s alone.
@@ -39,6 +44,12 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg 
 // What is in the shot's water. Of a body some milliseconds, since it needs the sea's spectrum (prepare()); who has that passes it on.
 WaterBody make_water(const Scene& scene);
 WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum);
+// What a body of water does to light, as text, at the six wavelengths of WaterBands: absorption, backscattering, and how fast the light of a high
+// sun fades on its way down (Lee et al. 2005) [1/m]; empty without a body.
+struct WaterText {
+    std::string wavelengths_nm, absorption_per_m, backscatter_per_m, fading_per_m;
+};
+WaterText water_text(const WaterBody& water);
 // What the light depends on, as text: while it stays the same, sky and make_foam_picture() do. Water and how foam looks are no part of it.
 std::string light_content(const Scene& scene);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without

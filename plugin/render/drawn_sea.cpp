@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -167,6 +168,12 @@ DrawnSea::DrawnSea(const PreparedScene& prepared, bool has_levels)
         half_side_m_ = 0.5 * scene.surface.size_m;
         made_of_ = "patch " + number_text(scene.surface.size_m);
     }
+}
+
+double DrawnSea::rest_m() const {
+    if (has_grid_ || coarse_.height_m.empty()) return 0.0;
+    return std::accumulate(coarse_.height_m.begin(), coarse_.height_m.end(), 0.0) /
+           static_cast<double>(coarse_.height_m.size());
 }
 
 DrawnSea::Needs DrawnSea::needs(std::span<const SeaView> seen) const {

@@ -62,6 +62,9 @@ class DrawnSea {
     // projected grid, where that isn't the scene's.
     void lay_out(const SeaView& seen, SeaMesh& mesh, std::optional<double> cell_px = {}) const;
 
+    // The height [m] at which it rests: a cage's mean, where that is all there is.
+    double rest_m() const;
+
     // Whether it can be drawn from below as well: an open sea whose water has a body.
     bool has_below() const { return has_body_ && has_grid_ && !half_side_m_ && !cage_; }
     // Whether all of a picture looks through water, whatever the waves are.

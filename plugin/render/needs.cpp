@@ -13,8 +13,10 @@
 #include "core/plan/spray.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
+#include "plugin/light/light.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/drawn_sea.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/glare.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/render.h"
@@ -134,6 +136,8 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
+    if (const std::size_t floor = floor_light_bytes(scene, make_water(scene, plan.from->spectrum)); floor > 0)
+        need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");

@@ -196,6 +196,9 @@ class RendererOf final : public Impl {
         air_height_m_ = height_m;
         stop_if(watch.cancel);
         lay_out_mesh(watch);
+        if (sea_.water().has_body)
+            sea_.light_floor_before(view_, drawn_.needs({view_, frame_}).finest_pixel_m, drawn_.rest_m(),
+                                    watch.cancel);
         find_drops(pass, watch);
         stop_if(watch.cancel);
     }
@@ -394,13 +397,19 @@ class RendererOf final : public Impl {
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
     }
 
+    FloorEye eye() const {
+        return {.position_m = view_.position_m,
+                .curvature_per_m = mesh_.points.curvature_per_m,
+                .pixel_tangent = view_.pixel_tangent()};
+    }
+
     void light_water(int first_row) {
         if (batch_.water.empty()) return;
         std::vector<glm::vec3> direction;
         for (const std::size_t sample : batch_.water)
             direction.emplace_back(view_.direction(seen_at(first_row, sample)));
         batch_.lit.resize(batch_.water.size());
-        sea_.light_water(static_cast<float>(view_.position_m.z), direction, batch_.lit);
+        sea_.light_water(eye(), direction, batch_.lit);
         for (std::size_t i = 0; i < batch_.water.size(); ++i)
             batch_.radiance[batch_.water[i]] = batch_.lit[i];
     }
@@ -453,12 +462,12 @@ class RendererOf final : public Impl {
         const std::size_t count = batch_.sea.size();
         SeenSea<T>& seen = batch_.seen;
         seen.origin_m = mesh_.points.origin_m;
+        seen.eye = eye();
         seen.resize(count);
         const bool is_flat = mesh_.normal.empty();
         seen.rest_normal.resize(is_flat ? 0 : count);
         seen.crest.resize(crest_.empty() ? 0 : count);
         seen.from_below.resize(batch_.under.empty() ? 0 : count);
-        seen.eye_m = static_cast<float>(view_.position_m.z);
         for (std::size_t i = 0; i < seen.from_below.size(); ++i)
             seen.from_below[i] = batch_.under[batch_.sea[i]];
         const glm::dvec3 eye = view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0);

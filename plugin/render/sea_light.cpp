@@ -4,12 +4,14 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "core/lighting/background.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/spray_map.h"
 
 namespace pelagic {
@@ -78,6 +80,30 @@ void SeaLight<T>::find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2,
 }
 
 template <class T>
+void SeaLight<T>::light_floor_before(const View& view, double finest_m, double rest_m,
+                                     const std::atomic<bool>* cancel) {
+    if (floor_m_ != rest_m) {
+        floor_ = make_floor(plan().from->scene, rest_m);
+        floor_m_ = rest_m;
+    }
+    // Its maps lie still: through a lens' other places they are as good.
+    constexpr double kLens_m = 0.1;
+    const bool is_lit = floor_lit_before_ &&
+                        glm::distance(floor_lit_before_->position_m, view.position_m) < kLens_m &&
+                        glm::distance(floor_lit_before_->forward, view.forward) < kLens_m;
+    if (is_lit || !choice_.water || !choice_.sun || sky_.sun_irradiance == glm::vec3(0.0f)) return;
+    light_floor(floor_, frame(),
+                {.view = view,
+                 .water = water_,
+                 .sun_direction = sky_.sun_direction,
+                 .sun_angular_radius = sky_.sun_angular_radius,
+                 .gain = plan().from->scene.water.caustics,
+                 .finest_m = finest_m},
+                cancel);
+    floor_lit_before_ = view;
+}
+
+template <class T>
 void SeaLight<T>::answer(const SeenSea<T>& seen) {
     ProductSet wanted = plan().queries[kQuery].query.products;
     wanted &= ~products(Product::Position, Product::Displacement,
@@ -95,6 +121,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
     const std::vector<float>& coverage = answers_.numbers(Product::Coverage);
     points_.resize(seen.size());
     const FoamPattern foam = foam_pattern(foam_, seen.origin_m);
+    const FloorSeen floor = seen.eye ? floor_.seen_from(*seen.eye) : FloorSeen{};
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, seen.size(), kShadeGrain),
         [&](const tbb::blocked_range<std::size_t>& range) {
@@ -107,7 +134,8 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                               .up = seen.up[i],
                               .mesh_variance = seen.mesh_variance[i],
                               .rest_m = glm::vec2(seen.rest[i]),
-                              .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i])};
+                              .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i]),
+                              .from_eye_m = -seen.distance_m[i] * seen.to_eye[i]};
             if (!seen.crest.empty())
                 for (std::size_t i = range.begin(); i < range.end(); ++i) points_[i].crest = seen.crest[i];
             if (foam_lives())
@@ -123,11 +151,11 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                 while (last < range.end() && is_below(last) == is_below(first)) ++last;
                 const auto part = [&](auto& of) { return std::span(of).subspan(first, last - first); };
                 if (is_below(first)) {
-                    shade_sea_from_below(choice_, sky, water_, seen.eye_m, part(points_),
-                                         part(seen.distance_m), part(lit), foam);
+                    shade_sea_from_below(choice_, sky, water_, static_cast<float>(seen.eye->position_m.z),
+                                         part(points_), part(seen.distance_m), part(lit), foam, floor);
                     continue;
                 }
-                shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam);
+                shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam, floor);
                 if (choice_.air) see_through(air, part(seen.to_eye), part(seen.distance_m), part(lit));
                 see_through_spray(spray, part(seen.to_eye), part(seen.distance_m), part(lit));
             }
@@ -135,13 +163,13 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
 }
 
 template <class T>
-void SeaLight<T>::light_water(float eye_m, std::span<const glm::vec3> direction,
+void SeaLight<T>::light_water(const FloorEye& eye, std::span<const glm::vec3> direction,
                               std::span<SeaRadiance> lit) const {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, direction.size(), kShadeGrain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                          shade_water(choice_, sky_, water_, eye_m,
+                          shade_water(choice_, sky_, water_, static_cast<float>(eye.position_m.z),
                                       direction.subspan(range.begin(), range.size()),
-                                      lit.subspan(range.begin(), range.size()));
+                                      lit.subspan(range.begin(), range.size()), floor_.seen_from(eye));
                       });
 }
 

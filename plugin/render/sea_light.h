@@ -13,6 +13,7 @@
 #include "core/effects/sea_at_time.h"
 #include "core/evaluate/values.h"
 #include "core/lighting/air.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
@@ -29,7 +30,9 @@ namespace pelagic {
 // Places of the sea and how they are seen, an entry each.
 template <class T>
 struct SeenSea {
-    glm::dvec2 origin_m{0.0};          // of places at rest
+    glm::dvec2 origin_m{0.0};  // of places at rest
+    // From which to_eye and distance_m are, for the floor below; without: it is level and evenly lit.
+    std::optional<FloorEye> eye;
     std::vector<glm::vec<2, T>> rest;  // [m]
     std::vector<T> pixel_m;  // the pixel's footprint at rest, as in Points (core/evaluate/evaluate.h)
     std::vector<glm::vec<2, T>> pixel_axis_m;
@@ -40,9 +43,8 @@ struct SeenSea {
     std::vector<float> mesh_variance;
     // As SeaPoint::crest, by find_crests(); empty: the water is lit as level water.
     std::vector<glm::vec3> crest;
-    // Whether the eye, which is so high above the sea at rest [m], sees the place from below; empty: it sees none so.
+    // Whether the eye sees the place from below; empty: it sees none so.
     std::vector<std::uint8_t> from_below;
-    float eye_m = 0.0f;
     // Normals of the surface at rest, of any length, as in Points; empty: it is flat everywhere.
     std::vector<glm::vec<3, T>> rest_normal;
 
@@ -82,7 +84,10 @@ class SeaLight {
     const Frame<T>& frame() const { return state_.frame(); }
 
     // As Frame's.
-    void set(double time_s, const std::atomic<bool>* cancel = nullptr) { state_.set(time_s, cancel); }
+    void set(double time_s, const std::atomic<bool>* cancel = nullptr) {
+        floor_lit_before_.reset();
+        state_.set(time_s, cancel);
+    }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none. `drops`: its large
@@ -96,12 +101,18 @@ class SeaLight {
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
 
-    // What an eye in the water, so high above the sea at rest [m], sees in these directions (unit) where there is no surface.
-    void light_water(float eye_m, std::span<const glm::vec3> direction, std::span<SeaRadiance> lit) const;
+    // What an eye in the water sees in these directions (unit) where there is no surface.
+    void light_water(const FloorEye& eye, std::span<const glm::vec3> direction,
+                     std::span<SeaRadiance> lit) const;
 
     // SeaPoint::crest at places of a flat sea at rest, by their footprints [m], width and long axis; empty where the water knows no crests.
     void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,
                      const std::vector<glm::vec<2, T>>& axis_m, std::vector<glm::vec3>& crest) const;
+
+    // The sun's light on the floor before a camera at the frame's time (light_floor()), where it is seen. finest_m: the finest footprint of the
+    // plan's query; rest_m: the height at which the sea rests there. Throws BuildCancelled.
+    void light_floor_before(const View& view, double finest_m, double rest_m,
+                            const std::atomic<bool>* cancel = nullptr);
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
@@ -119,6 +130,9 @@ class SeaLight {
     Sky sky_;
     WaterBody water_;
     FoamLook foam_;
+    Floor floor_;
+    std::optional<double> floor_m_;         // the height at rest that it is for
+    std::optional<View> floor_lit_before_;  // at the frame's time
     std::shared_ptr<const Sea<T>> sea_;
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;

@@ -1,5 +1,6 @@
 """Water that is seen through: what lies under a level sea, in Cycles."""
 
+import math
 import sys
 import tempfile
 from pathlib import Path
@@ -10,7 +11,7 @@ from harness import *  # noqa: F403
 
 enable(sky_width=None)
 import pelagic
-from pelagic_ocean import compat, depths, light, material, nodes
+from pelagic_ocean import compat, depths, light, material, nodes, upwelling
 from pictures import cycles_exr
 
 SAMPLES = 24
@@ -24,13 +25,14 @@ def square(name, half_m, z_m):
     return obj
 
 
-def level_sea(water="ocean"):
-    """A level sea seen through, from straight above; its scene and object."""
+def level_sea(water="ocean", depth_m=math.inf, sun_deg=60.0, floor=0.4):
+    """A level sea seen through, from straight above, over sand where it isn't deep; its scene and object."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy_scene = bpy.context.scene
     obj = square("Sea", 3e3, 0.0)
     scene = pelagic.Scene()
-    scene.light.sun_elevation_deg = 60.0
+    scene.light.sun_elevation_deg = sun_deg
+    scene.sea.wind_speed_mps, scene.sea.depth_m, scene.water.floor_colour = 0.5, depth_m, (floor,) * 3
     scene.light.turbidity = 3.0  # the clearer the air, the more of the light goes down straight: another 2 % of that
     scene.water.type = water
     light.ensure_light(bpy_scene, scene)
@@ -49,6 +51,11 @@ def seen(samples=SAMPLES):
         pixels = cycles_exr(Path(folder) / "picture.exr", (16, 16), samples)
     assert np.isfinite(pixels).all()
     return pixels[..., :3].mean((0, 1))
+
+
+def bent_cosine(cosine):
+    """Below the surface, of light at this one above it."""
+    return np.sqrt(1.0 - (1.0 - cosine**2) / 1.34**2)
 
 
 def painted(white):
@@ -79,7 +86,7 @@ with checking("a plane under a level sea is dimmed by the water over it, on the 
         c = np.sum(depths.coefficients(scene), axis=0)
         plane = square("Plane", 20.0, 0.0)
         ratio = of_plane(plane, -2.5) / of_plane(plane, -0.5)
-        expected = np.exp(-2.0 * c * (1.0 + 1.0 / pelagic.Sky(scene).sun_direction[2]))
+        expected = np.exp(-2.0 * c * (1.0 + 1.0 / bent_cosine(pelagic.Sky(scene).sun_direction[2])))
         print("  ", water, ratio, expected)
         assert np.allclose(ratio, expected, rtol=0.01)
 
@@ -120,6 +127,54 @@ with checking("deep water is as bright as it is opaque"):
         opaque = seen()
         print("  ", water, clear / opaque)
         assert np.allclose(clear, opaque, rtol=0.15)
+
+# Alone this sees that the volume's colours are the core's, with what the surface sends down again and the bent way of a low sun.
+with checking("water over a floor that is seen through is as bright as opaque water of the core's colour"):
+    for water, depth_m, sun_deg, floor in (("jerlov-IB", 2.0, 70.0, 0.9), ("coastal", 2.0, 12.0, 0.5), ("jerlov-IB", 20.0, 35.0, 0.5)):
+        scene, obj = level_sea(water, depth_m, sun_deg, floor)
+        clear = seen(2 * SAMPLES)
+        obj.pelagic.see_through = False
+        material.update_material(obj, scene)
+        # The opaque water is for an eye at 45 degrees.
+        straight_down, aslant = (upwelling.albedo(scene, to_eye=eye)[0] for eye in (np.array([[0, 0, 1]], np.float32), None))
+        opaque = seen() * (1.0 + (straight_down - aslant) / np.maximum(aslant, 1e-3))
+        print("  ", water, depth_m, sun_deg, np.round(clear, 3), np.round(clear / opaque, 3))
+        assert np.allclose(clear, opaque, rtol=0.15, atol=0.02 * opaque.max())
+
+with checking("the volume's coefficients are finite and not negative, in the dark and in a puddle, too"):
+    scene = pelagic.Scene()
+    for depth_m, sun_deg, water in ((2.5, -30.0, "ocean"), (0.01, 40.0, "ocean"), (0.05, 0.0, "turbid"), (1e6, 40.0, "jerlov-9C")):
+        scene.sea.depth_m, scene.light.sun_elevation_deg, scene.water.type = depth_m, sun_deg, water
+        found = np.array(depths.coefficients(scene))
+        assert np.isfinite(found).all() and (found >= 0.0).all() and found.sum() > 0.0, (depth_m, sun_deg, found)
+
+with checking("by itself water is seen through where its floor shows, out to the horizon; and as somebody chooses"):
+    fresh_file()
+    obj = add_ocean(horizon=True, water__type="jerlov-IB")
+
+    def is_clear():
+        bpy.context.view_layer.update()
+        assert (depths.OUTPUT in obj.data.materials[0].node_tree.nodes) == (len(obj.children) == 1)
+        return len(obj.children) == 1
+
+    assert not is_clear()
+    change(obj, sea__use_depth_m=True, sea__depth_m=20.0)
+    assert is_clear()
+    scene = pelagic.Scene()
+    scene.water.type = "jerlov-IB"
+    water, clear_m = pelagic.WaterBody(scene), depths.clear_to_m(scene)
+    least = min(a + b for a, b in zip(water.absorption_per_m, water.backscatter_per_m))
+    assert math.isclose(math.exp(-2.35 * least * clear_m), 0.05, rel_tol=0.02) and 25.0 < clear_m < 60.0, clear_m
+    for settings in ({"water__type": "turbid"}, {"sea__depth_m": 1.1 * clear_m}, {"water__body": False}, {"surface__kind": "projected-grid"}):
+        before = {path: getattr(getattr(obj.pelagic, path.split("__")[0]), path.split("__")[1]) for path in settings}
+        change(obj, **settings)
+        assert not is_clear(), settings
+        change(obj, **before)
+        assert is_clear(), settings
+    obj.pelagic.see_through = False
+    assert not is_clear()
+    obj.pelagic.see_through_by_hand = False
+    assert is_clear()
 
 with checking("the switch of an ocean brings the floor and takes it away"):
     fresh_file()

@@ -146,6 +146,17 @@ with checking("a file of the second edition has its water, and today's waves"):
         got = (obj.pelagic.sea.growth, obj.pelagic.water.body)
         assert got == (obj.pelagic.sea.bl_rna.properties["growth"].default, False), got
 
+with checking("a file from before water was seen through by itself keeps its body, and opaque water"):
+    for obj in ocean.oceans():
+        obj.pelagic.version = 4
+        obj.pelagic.water.property_unset("body")
+        obj.pelagic.property_unset("see_through_by_hand")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "fourth.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "fourth.blend"))
+    for obj in ocean.oceans():
+        got = (obj.pelagic.water.body, obj.pelagic.see_through_by_hand, obj.pelagic.see_through, obj.pelagic.version)
+        assert got == (True, True, False, properties.VERSION), got
+
 with checking("appended into another file, it plays there"):
     fresh_file()
     with bpy.data.libraries.load(path) as (source, target):

@@ -12,7 +12,7 @@ import math
 
 import pelagic
 from mathutils import Matrix, Vector
-from pelagic_ocean import light, material, ocean, play
+from pelagic_ocean import light, material, ocean, play, upwelling
 from pictures import LUMINANCE, cycles_exr
 
 SAMPLES = 64
@@ -26,8 +26,8 @@ def fresnel(cosine, index=1.34):
     return 0.5 * (across**2 + along**2)
 
 
-def flat_sea(**settings):
-    """A level square of sea with constant attributes, its scene, light and material; no ripples, which would be one slope
+def flat_sea(bubbles=0.0, **settings):
+    """A level square of sea with constant attributes, what bubbles add among them, its scene, light and material; no ripples, which would be one slope
     for all of it."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy_scene = bpy.context.scene
@@ -45,9 +45,13 @@ def flat_sea(**settings):
     obj = bpy.data.objects.new("Sea", mesh)
     bpy_scene.collection.objects.link(obj)
     scene = pelagic.Scene()
-    scene.water.bubbles = 0.0  # the material has none
     scene.light.sun_elevation_deg, scene.light.sun_azimuth_deg = 30.0, 20.0
     light.ensure_light(bpy_scene, scene)
+    scene.water.bubbles = bubbles
+    if bubbles and "whitecap_coverage" in settings:  # as play.py does
+        foam = {"coverage": np.full(4, settings["whitecap_coverage"], np.float32)}
+        added = mesh.attributes.new(upwelling.ATTRIBUTE, "FLOAT_VECTOR", "POINT")
+        added.data.foreach_set("vector", upwelling.Upwelling(scene).added(foam, corners, 0.0).ravel())
     made = material.ensure_material(obj, scene)
     made.node_tree.nodes["Pelagic Facets"].inputs["Ripples"].default_value = 0.0
     data = bpy.data.cameras.new("Camera")
@@ -92,8 +96,8 @@ with checking("the world is the core's sky, at its place, and the lamp its sun")
 
 with checking("rough water and foam are the core's, facing the sun and away from it"):
     for variance, coverage in (((0.03, 0.015, 0.005), 0.0), ((0.02, 0.02, 0.0), 0.5)):
-        scene = flat_sea(slope_variance=variance, whitecap_coverage=coverage)
-        for angle, azimuth in ((45, 20), (80, 20), (80, 200)):
+        scene = flat_sea(1.0, slope_variance=variance, whitecap_coverage=coverage)
+        for angle, azimuth in ((45, 20), (80, 20), (80, 200), (20, 200)):
             picture, to_eye = seen(angle, azimuth)
             ratio = picture / core(scene, to_eye, variance, coverage)
             print("  ", variance, coverage, angle, azimuth, np.round(ratio, 3))

@@ -1,24 +1,33 @@
 // The water's formulas (core/lighting/water.glsl) beside Monte Carlo programs that know only Fresnel, Snell, and what
+// scatters and absorbs: `bench_water [transmission] [column] [furnace] [crest] [caustics]`, without an argument all of them.
 // scatters and absorbs: `bench_water [transmission] [column] [furnace] [crest] [below]`, without an argument all of them.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/evaluate/evaluate.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/water.h"
+#include "core/plan/plan.h"
+#include "core/waves/sea.h"
 #include "pelagic/scene.h"
 #include "plugin/light/light.h"
+#include "plugin/render/floor_light.h"
 #include "tests/bench/lots.h"
 #include "tests/bench/timing.h"
 #include "tests/core/lighting/optics.h"
@@ -913,7 +922,7 @@ void crests() {
             const glm::vec3 normal(glm::normalize(glm::dvec3(is_level ? 0.0 : -point.slope, 0.0, 1.0)));
             return static_cast<double>(shading.body_radiance(glm::vec3(-looks), normal, glm::vec3(sun.to()),
                                                              irradiance, glm::vec3(1.0f), glm::vec3(0.0f),
-                                                             here, seen)[channel]);
+                                                             here, {}, glm::vec3(0.0f), seen)[channel]);
         };
         for (std::size_t i = 0; i < kCrestSuns.size(); ++i) {
             point.said[i] = said(kCrestSuns[i], false, 1.0f);
@@ -971,6 +980,69 @@ void crests() {
     for (const CrestPoint& point : points)
         for (const double one : point.noise) noise.add(0.0, one);
     std::printf("    noise: rms %.2f in ln\n", noise.rms_noise());
+}
+
+// ---- The sun's light on the floor
+
+void caustics() {
+    std::printf(
+        "The sun's light on a floor below a sea of 4 m/s and 2 km of fetch, over what a level sea lets fall there: mean and contrast of the\n"
+        "finer and of the coarser map; the time beside that of 1 Mi places of the same frame, positions and normals\n");
+    for (const double depth_m : {0.5, 2.5, 10.0, 20.0})
+        for (const double elevation : {15.0, 30.0, 60.0, 85.0}) {
+            Scene scene;
+            scene.sea.wind_speed_mps = 4.0;
+            scene.sea.fetch_m = 2e3;
+            scene.sea.depth_m = depth_m;
+            scene.water.type = WaterType::JerlovIB;
+            const auto prepared = prepare(scene);
+            const double finest_m = 0.01;
+            const Query query = view_query(
+                *prepared,
+                {.products = {}, .finest_cell_m = finest_m, .finest_pixel_m = finest_m, .points = 1 << 20});
+            const auto sea =
+                std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}));
+            Frame<float> frame(sea);
+            frame.set(3.0);
+            FloorLightWanted wanted;
+            wanted.view.position_m = {0.0, 0.0, 3.0};
+            wanted.view.forward = {0.0, 0.0, -1.0};
+            wanted.view.up = {0.0, 1.0, 0.0};
+            wanted.water = make_water(scene, prepared->spectrum);
+            const double e = elevation * kDegree;
+            wanted.sun_direction = glm::vec3(glm::dvec3(std::cos(e), 0.0, std::sin(e)));
+            wanted.sun_angular_radius = 0.00465f;
+            wanted.finest_m = finest_m;
+            Floor floor(-depth_m);
+            const auto begun = std::chrono::steady_clock::now();
+            light_floor(floor, frame, wanted);
+            const auto lit = std::chrono::steady_clock::now();
+            std::vector<glm::vec2> rest(std::size_t{1} << 20);
+            for (std::size_t i = 0; i < rest.size(); ++i)
+                rest[i] = 0.02f * glm::vec2(static_cast<float>(i % 1024), static_cast<float>(i / 1024));
+            std::vector<glm::vec3> position(rest.size()), normal(rest.size());
+            Results<float> results;
+            results.set(Product::Position, {position.data()});
+            results.set(Product::Normal, {normal.data()});
+            evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
+            const auto ended = std::chrono::steady_clock::now();
+            std::printf("    %4.1f m, %2.0f°:", depth_m, elevation);
+            const std::size_t count =
+                static_cast<std::size_t>(wanted.side) * static_cast<std::size_t>(wanted.side);
+            for (std::size_t map = 0; map < 2; ++map) {
+                double sum = 0.0, squares = 0.0;
+                for (std::size_t i = 0; i < count; ++i) {
+                    const auto light = static_cast<double>(floor.values()[map * count + i]);
+                    sum += light;
+                    squares += light * light;
+                }
+                const double mean = sum / static_cast<double>(count);
+                std::printf(" %.3f (%.2f)", mean,
+                            std::sqrt(std::max(squares / static_cast<double>(count) - mean * mean, 0.0)));
+            }
+            std::printf("; %.1f times\n", std::chrono::duration<double>(lit - begun).count() /
+                                              std::chrono::duration<double>(ended - lit).count());
+        }
 }
 
 // ---- What an eye in deep water sees, below a level surface
@@ -1152,11 +1224,10 @@ void below() {
 
 int main(int argc, char** argv) {
     using Table = std::pair<std::string, void (*)()>;
-    const std::vector<Table> tables{{"transmission", pelagic::bench::transmission},
-                                    {"column", pelagic::bench::columns},
-                                    {"furnace", pelagic::bench::furnaces},
-                                    {"crest", pelagic::bench::crests},
-                                    {"below", pelagic::bench::below}};
+    const std::vector<Table> tables{
+        {"transmission", pelagic::bench::transmission}, {"column", pelagic::bench::columns},
+        {"furnace", pelagic::bench::furnaces},          {"crest", pelagic::bench::crests},
+        {"caustics", pelagic::bench::caustics},         {"below", pelagic::bench::below}};
     for (const auto& [name, print] : tables) {
         const bool asked =
             argc < 2 || std::any_of(argv + 1, argv + argc, [&](const char* said) { return name == said; });

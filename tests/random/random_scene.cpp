@@ -171,8 +171,7 @@ class Draw {
     std::string text(const Key& key) {
         if (key.path == "light.sky")
             return chance(kPictureOfSky) ? kSkyName : std::get<std::string>(key.fallback);
-        if (key.path == "effects.foam_pattern")
-            return chance(0.5) ? kFoamName : std::get<std::string>(key.fallback);
+        if (key.is_picture) return chance(0.5) ? kFoamName : std::get<std::string>(key.fallback);
         if (key.path == "shot.name") {
             constexpr std::string_view kLetters =
                 "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -351,7 +350,8 @@ class Drawing {
         if (made_.value(kSpectrumFile))
             for (auto& [name, bytes] : random_buoy(draw_)) made_.files[name] = std::move(bytes);
         if (is("light.sky", std::string(kSkyName))) made_.files[kSkyName] = random_sky(light_);
-        if (is("effects.foam_pattern", std::string(kFoamName))) made_.files[kFoamName] = random_foam(light_);
+        for (const char* key : {"effects.foam_pattern", "sea.depth_file", "water.floor_pattern"})
+            if (is(key, std::string(kFoamName))) made_.files[kFoamName] = random_foam(light_);
         return std::move(made_);
     }
 

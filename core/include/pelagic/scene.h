@@ -110,6 +110,11 @@ struct SeaState {
     double wind_direction_deg = 0.0;                           // blowing towards, counter-clockwise from +x
     double fetch_m = 300e3;                                    // > 0
     double depth_m = std::numeric_limits<double>::infinity();  // > 0
+    // The floor that is seen where it isn't level: "none", or the path of a picture of depths [m], how wide it is and where its middle lies.
+    // Waves are those of depth_m.
+    std::string depth_file = "none";
+    double depth_size_m = 100.0;  // > 0
+    double depth_east_m = 0.0, depth_north_m = 0.0;
     SpectrumKind spectrum = SpectrumKind::Jonswap;
     GrowthLaw growth = GrowthLaw::HeightAndPeak;
     // The tail and the spreading that take the spectrum's place beyond a few peak wavenumbers.
@@ -214,8 +219,11 @@ struct Water {
     // Light in the water by the ways of sun and eye, with a floor at sea.depth_m; false: one colour for the whole sea.
     bool body = true;
     glm::dvec3 floor_colour{0.36, 0.31, 0.23};  // of that floor, 0 … 1, linear Rec. 709
+    std::string floor_pattern = "plain";        // or the path of a picture, times that colour
+    double floor_pattern_m = 4.0;               // the side of that picture, > 0
     double crest_light = 1.0;  // ≥ 0, times what waves' shape does to that light, crests above all
     double bubbles = 1.0;      // ≥ 0, times the bubbles below foam
+    double caustics = 1.0;     // ≥ 0, times the pattern of the sun's light on the floor
 };
 
 // [effects]

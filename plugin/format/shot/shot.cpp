@@ -117,16 +117,18 @@ bool is_file(const std::filesystem::path& file) {
     return file.native().find('\0') == std::string::npos && std::filesystem::is_regular_file(file, ignored);
 }
 
-// A picture is data of the hosts that make pictures: here only its place is found. usual: the word in its place.
-void find_picture(Reader& reader, const std::filesystem::path& folder, const char* key, std::string& path,
-                  const std::string& usual) {
-    if (path == usual || reader.has_failed(key)) return;
-    const std::filesystem::path file = folder / path;
-    if (!is_file(file))
-        reader.refuse({key, quoted_text(path),
-                       "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
-                       quoted_text(usual) + ", or the path of an .exr, from the shot file's folder"});
-    path = file.string();
+// A picture is data of the hosts that make pictures: here only its place is found.
+void find_pictures(Reader& reader, const std::filesystem::path& folder, Scene& scene) {
+    replace_pictures(scene, [&](const Key& key, const std::string& path) {
+        if (reader.has_failed(key.path)) return path;
+        const std::filesystem::path file = folder / path;
+        if (!is_file(file))
+            reader.refuse(
+                {key.path, quoted_text(path),
+                 "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
+                 value_text(key, key.fallback) + ", or the path of an .exr, from the shot file's folder"});
+        return file.string();
+    });
 }
 
 }  // namespace
@@ -152,11 +154,11 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     load_measured(reader, file.parent_path(), scene.sea);
     load_cage(reader, file.parent_path(), scene.surface);
     load_camera(reader, file.parent_path(), scene.camera);
-    find_picture(reader, file.parent_path(), "light.sky", scene.light.sky, Light{}.sky);
-    find_picture(reader, file.parent_path(), "effects.foam_pattern", scene.effects.foam_pattern,
-                 Effects{}.foam_pattern);
+    find_pictures(reader, file.parent_path(), scene);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
-    if (!reader.has_failed("light.sky") && !reader.has_failed("effects.foam_pattern"))
+    const std::vector<const Key*> pictures = picture_keys(scene);
+    if (std::none_of(pictures.begin(), pictures.end(),
+                     [&](const Key* key) { return reader.has_failed(key->path); }))
         for (Problem& problem : check_scene(scene)) reader.refuse_value(std::move(problem));
     if (reader.problem_count() > 0) throw ShotError(reader.report());
     return scene;

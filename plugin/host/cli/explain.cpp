@@ -138,6 +138,11 @@ void print_memory(const Scene& scene, const RenderOptions& options, const Plan& 
     if (scene.output.mesh != MeshFormat::None)
         std::cout << "The camera of the bake's stage takes " << bytes_text(camera_layer_bytes(scene))
                   << ", for all frames of the shot together.\n";
+    const WaterBody water = make_water(scene);
+    if (const WaterText text = water_text(water); !text.wavelengths_nm.empty())
+        std::cout << "The water at " << text.wavelengths_nm << " nm absorbs " << text.absorption_per_m
+                  << " and scatters back " << text.backscatter_per_m
+                  << " a metre; a high sun's light fades by " << text.fading_per_m << " a metre of depth.\n";
     std::cout << "Pictures of " << scene.camera.resolution.x << " × " << scene.camera.resolution.y << " hold "
               << memory_text(render_memory(scene, options, frames, alone ? 1 : kPicturesInFlight, threads))
               << ".\n"

@@ -34,11 +34,11 @@ void main() {
         write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
         return;
     }
-    SeenBody body = SeenBody(point_crest(), 0.0, 0.0, 0.0);
+    SeenBody body = SeenBody(pixel_ray() * point_distance_m(), pixel_over(pixel), point_crest(), 0.0, 0.0, 0.0);
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);
         float fresh = min(covered, max(all.breaking, 0.0));
-        body = SeenBody(body.crest, fresh, covered - fresh, all.age_s);
+        body = SeenBody(body.from_eye, body.pixel_m, body.crest, fresh, covered - fresh, all.age_s);
     }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),

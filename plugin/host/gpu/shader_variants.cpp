@@ -8,6 +8,7 @@
 #include "core/lighting/lighting.h"
 #include "core/plan/taps.h"
 #include "plugin/host/gpu/packed_foam.h"
+#include "plugin/host/gpu/uniforms.h"
 
 namespace pelagic {
 namespace {
@@ -74,6 +75,8 @@ const std::vector<std::string_view>& lighting_files() {
                                                      "core/lighting/slopes.glsl",
                                                      "core/lighting/sun.glsl",
                                                      "core/lighting/sky.glsl",
+                                                     "plugin/host/gpu/floor_uniforms.glsl",
+                                                     "core/lighting/floor.glsl",
                                                      "core/lighting/water.glsl",
                                                      "core/lighting/foam.glsl",
                                                      "plugin/host/gpu/foam_uniforms.glsl",
@@ -119,13 +122,14 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            ";\n";
 }
 
-std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
+std::string lighting_constants(const LightingChoice& choice, int sky_map_size, bool floor_maps) {
     const int lookups = choice.sky_quality == SkyQuality::One    ? 1
                         : choice.sky_quality == SkyQuality::Nine ? 9
                                                                  : 0;
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
            constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
-           constant("kFoamCell_m", kFoamCell_m) + constant("kAirColumns", Air::kColumns) +
+           constant("kFoamCell_m", kFoamCell_m) + constant("kFloorColumns", kFloorColumns) +
+           constant("kFloorMaps", floor_maps) + constant("kAirColumns", Air::kColumns) +
            constant("kAirRows", Air::kRows) + constant("kAirHorizonRow", Air::kHorizonRow) +
            constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
            constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
@@ -160,24 +164,24 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
-    return {
-        query_constants(layout, coverage, options.is_shaped) + lighting_constants(lighting, sky_map_size) +
-            picture_constants(options) + (lives ? foam_constants() : std::string()),
-        is_lit_afterwards(options)
-            ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
-            : joined({query_files(),
-                      {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
-        joined(
-            {query_files(),
-             {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-             {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-             lighting_files(),
-             {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
-             spray_files(lighting),
-             {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
-             output_files(options),
-             {"plugin/host/gpu/false_colour.glsl", points_file(options),
-              shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
+    return {query_constants(layout, coverage, options.is_shaped) +
+                lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
+                (lives ? foam_constants() : std::string()),
+            is_lit_afterwards(options)
+                ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
+                : joined({query_files(),
+                          {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
+            joined({query_files(),
+                    {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
+                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+                    lighting_files(),
+                    {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
+                     "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
+                    output_files(options),
+                    {"plugin/host/gpu/false_colour.glsl", points_file(options),
+                     shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {
@@ -192,7 +196,7 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
     LightingChoice lighting = options.lighting;
     lighting.sky = lighting.sky && sky_map_size > 0;
     lighting.spray = lighting.spray && !options.for_host;
-    return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
+    return {lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options),
             {"plugin/host/gpu/full_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl"},

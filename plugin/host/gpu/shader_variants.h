@@ -43,6 +43,6 @@ const std::vector<std::string_view>& lighting_files();
 // The files of the shared formulas and of the query; their constants.
 const std::vector<std::string_view>& query_files();
 std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped = false);
-std::string lighting_constants(const LightingChoice& choice, int sky_map_size);
+std::string lighting_constants(const LightingChoice& choice, int sky_map_size, bool floor_maps = false);
 
 }  // namespace pelagic

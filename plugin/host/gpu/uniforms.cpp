@@ -66,6 +66,17 @@ std::vector<Uniform> water_uniforms(const WaterBody& water) {
             {"water_bubbles", 2, glm::vec4(water.bubbles, water.bubbles_m, 0.0f, 0.0f)}};
 }
 
+std::vector<Uniform> floor_uniforms(const FloorSeen& floor) {
+    return {{"floor_level", 4,
+             glm::vec4(floor.is_seen ? 1.0f : 0.0f, floor.z_m, floor.curvature_per_m, floor.pixel)},
+            {"floor_depths", 4, floor.depths},
+            {"floor_depths_per_m", 4, floor.depths_per_m},
+            {"floor_colours", 4, floor.colours},
+            number("floor_colours_first", static_cast<double>(floor.colours_first)),
+            {"floor_light_maps", 4, floor.light},
+            {"floor_coarse", 4, floor.coarse}};
+}
+
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {
     return {vector("foam_pattern_cell", pattern.cell),
             vector("foam_pattern_rest", pattern.rest),

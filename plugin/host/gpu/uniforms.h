@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/lighting/air.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/spray.h"
@@ -26,6 +27,9 @@ std::vector<Uniform> query_uniforms(const SeaLayout& layout);
 // Of light_uniforms.glsl.
 std::vector<Uniform> light_uniforms(const Sky& sky);
 std::vector<Uniform> water_uniforms(const WaterBody& water);
+// Of floor_uniforms.glsl; floor_maps is a picture of that many columns.
+std::vector<Uniform> floor_uniforms(const FloorSeen& floor);
+inline constexpr int kFloorColumns = 2048;
 // Of foam_uniforms.glsl.
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern);
 // Of air_table.glsl.

@@ -520,7 +520,8 @@ const std::vector<PanelSection>& panel_sections() {
           "effects.foam_old_albedo", "effects.foam_new_opaque", "effects.foam_old_opaque"}},
         {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
         {"Water",
-         {"water.type", "water.chlorophyll_mg_m3", "water.body", "water.crest_light", "water.bubbles"}},
+         {"water.type", "water.chlorophyll_mg_m3", "water.body", "water.caustics", "water.crest_light",
+          "water.bubbles"}},
         {"Picture", {"surface.cell_px"}}};
     return sections;
 }

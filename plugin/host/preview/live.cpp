@@ -61,7 +61,8 @@ void LiveSea::ask(const Scene& scene) {
     builder_.ask(scene);
 }
 
-void LiveSea::show(double time_s, const std::optional<View>& eye, const std::optional<View>& spray_from) {
+void LiveSea::show(double time_s, const std::optional<View>& eye, const std::optional<View>& spray_from,
+                   const std::optional<FloorWanted>& floor) {
     auto built = builder_.take();
     std::shared_ptr<const LiveBuild> build;
     {
@@ -71,6 +72,8 @@ void LiveSea::show(double time_s, const std::optional<View>& eye, const std::opt
         if (!eye) water_over_eye_m_.reset();
         spray_from_ = spray_from;
         if (!spray_from) spray_.reset();
+        floor_wanted_ = floor;
+        if (!floor) floor_.reset();
         if (built) {
             build_.swap(built);
             ++seas_;
@@ -131,6 +134,11 @@ std::shared_ptr<const Spray> LiveSea::newest_spray() const {
     return spray_;
 }
 
+std::shared_ptr<const Floor> LiveSea::newest_floor() const {
+    const std::lock_guard lock(mutex_);
+    return floor_;
+}
+
 std::shared_ptr<const LiveDrops> LiveSea::newest_drops() {
     if (!drops_asked_) return nullptr;
     if (auto made = drops_worker_->take()) drops_ = std::move(made);
@@ -154,9 +162,17 @@ void LiveSea::compute_frames() {
     std::shared_ptr<const LiveBuild> tried;
     std::optional<double> tried_s;
     std::optional<View> tried_eye, tried_spray;
+    std::optional<FloorWanted> tried_floor;
     const auto spray_before = [&](const View& view) {
         return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->drawn->grid_options(),
                                                             kSprayMap, are_drops_near(tried->scene, view)));
+    };
+    const auto lit_floor = [&](const FloorWanted& wanted) {
+        auto floor = std::make_shared<Floor>(*wanted.floor);
+        FloorLightWanted light = wanted.light;
+        light.finest_m = tried->drawn->needs({light.view, tried->scene.shot.first_frame}).finest_pixel_m;
+        light_floor(*floor, *frame, light);
+        return floor;
     };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {
@@ -165,20 +181,25 @@ void LiveSea::compute_frames() {
     for (;;) {
         wake_.wait(lock, [&] {
             return stopping_ || wants_frame() ||
-                   (frame && ((eye_ && eye_ != tried_eye) || (spray_from_ && spray_from_ != tried_spray)));
+                   (frame && ((eye_ && eye_ != tried_eye) || (spray_from_ && spray_from_ != tried_spray) ||
+                              (floor_wanted_ && floor_wanted_ != tried_floor)));
         });
         if (stopping_) return;
         tried_eye = eye_;
         tried_spray = spray_from_;
+        tried_floor = floor_wanted_;
         if (!wants_frame()) {  // the eye has moved over a sea that stands still
             lock.unlock();
             std::optional<double> water_m;
             if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
             std::shared_ptr<const Spray> spray;
             if (tried_spray) spray = spray_before(*tried_spray);
+            std::shared_ptr<const Floor> floor;
+            if (tried_floor) floor = lit_floor(*tried_floor);
             lock.lock();
             if (eye_) water_over_eye_m_ = water_m;
             if (spray_from_) spray_ = spray;
+            if (floor_wanted_) floor_ = floor;
             continue;
         }
         tried = build_;
@@ -188,6 +209,7 @@ void LiveSea::compute_frames() {
         std::string error;
         std::optional<double> water_m;
         std::shared_ptr<const Spray> spray;
+        std::shared_ptr<const Floor> floor;
         try {
             if (!frame || &frame->sea() != tried->sea.get()) {
                 frame.reset();  // before the new one is made: halves the peak memory
@@ -206,6 +228,7 @@ void LiveSea::compute_frames() {
             slot.packing_ms = milliseconds(transformed, Clock::now());
             if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
             if (tried_spray) spray = spray_before(*tried_spray);
+            if (tried_floor) floor = lit_floor(*tried_floor);
         } catch (...) {
             error = message_of(std::current_exception());
             frame.reset();
@@ -216,6 +239,7 @@ void LiveSea::compute_frames() {
         if (!error.empty()) continue;
         if (eye_) water_over_eye_m_ = water_m;
         if (spray_from_) spray_ = spray;
+        if (floor_wanted_) floor_ = floor;
         slot.number = ++frames_;
         std::swap(written_, waiting_);
         fresh_ = true;

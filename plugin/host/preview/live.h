@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/effects/spray_drops.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/spray.h"
 #include "core/plan/memory.h"
 #include "core/surface/view.h"
@@ -23,6 +24,7 @@
 #include "pelagic/scene.h"
 #include "plugin/host/gpu/live_worker.h"
 #include "plugin/host/preview/sea_renderer.h"
+#include "plugin/render/floor_light.h"
 
 namespace pelagic {
 
@@ -92,8 +94,15 @@ class LiveSea {
     void ask(const Scene& scene);
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
     // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the waves
-    // (is_among_waves()), for water_over_eye(). `spray_from`: a camera for newest_spray() and newest_drops().
-    void show(double time_s, const std::optional<View>& eye = {}, const std::optional<View>& spray_from = {});
+    // (is_among_waves()), for water_over_eye(). `spray_from`: a camera for newest_spray() and newest_drops(). `floor`: for newest_floor(),
+    // without its finest_m.
+    struct FloorWanted {
+        std::shared_ptr<const Floor> floor;
+        FloorLightWanted light;
+        bool operator==(const FloorWanted&) const = default;
+    };
+    void show(double time_s, const std::optional<View>& eye = {}, const std::optional<View>& spray_from = {},
+              const std::optional<FloorWanted>& floor = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
     // The height z [m] of the surface above the eye, in the latest frame computed; nullopt for one in the air.
@@ -104,6 +113,8 @@ class LiveSea {
     // Its drops that are seen one by one, of the latest request that is done: of some earlier time, and elsewhere, where the
     // camera moves far. Null before the first, and where that camera sees none.
     std::shared_ptr<const LiveDrops> newest_drops();
+    // The floor that was asked for, lit through the latest frame computed; null before the first.
+    std::shared_ptr<const Floor> newest_floor() const;
     LiveStatus status() const;
 
   private:
@@ -123,6 +134,8 @@ class LiveSea {
     std::optional<View> eye_, spray_from_;
     std::optional<double> water_over_eye_m_;
     std::shared_ptr<const Spray> spray_;
+    std::optional<FloorWanted> floor_wanted_;
+    std::shared_ptr<const Floor> floor_;
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;

@@ -22,6 +22,7 @@
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 #include "plugin/render/under_water.h"
@@ -141,6 +142,10 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     if (planned.scene.surface.kind == SurfaceKind::Cage)
         need.add("the cage's surface", planned.drawn->surface_bytes(points) + points * sizeof(glm::vec4),
                  "lower surface.cage_level, or raise surface.cell_px");
+    if (const std::size_t floor =
+            floor_light_bytes(planned.scene, make_water(planned.scene, planned.plan.from->spectrum));
+        floor > 0)
+        need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (render_options(planned.scene).lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
                  "set effects.spray to false");
@@ -226,7 +231,6 @@ void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>&
 OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, const OffscreenWatch& watch) {
     const auto sea = std::make_shared<const Sea<float>>(planned.plan, watch.sea);
     SeaRenderer renderer;
-    renderer.set_sky(sky, make_water(planned.scene));
     const View view = view_at(planned.scene.camera, planned.frame);
     const LightingChoice lighting = render_options(planned.scene).lighting;
     Frame<float> state(sea);
@@ -241,10 +245,24 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
                           planned.mesh.triangles);
     else if (!from_below)
         planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
+    const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
+    if (water.has_body) {
+        const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
+        if (lighting.water && lighting.sun)
+            light_floor(*floor, state,
+                        {.view = view,
+                         .water = water,
+                         .sun_direction = sky.sun_direction,
+                         .sun_angular_radius = sky.sun_angular_radius,
+                         .gain = planned.scene.water.caustics,
+                         .finest_m = planned.drawn->needs({view, planned.frame}).finest_pixel_m});
+        renderer.set_floor(floor);
+    }
+    renderer.set_sky(sky, water);
     if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);
-        light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
+        light_spray(spray, lighting, sky, water, law_coverage(planned.scene));
         const auto drops = std::make_shared<std::vector<SprayDrop>>();
         if (are_near && !spray.empty())
             SprayDrops<float>(*sea, kDropsSquare_m)

@@ -36,6 +36,7 @@ enum OtherUnit : int {
     kSprayMapUnit,
     kDither,
     kFoamImage,
+    kFloorMaps,
     kPictures
 };
 
@@ -90,7 +91,7 @@ struct SeaRenderer::Implementation {
     void set_foam_image(const std::shared_ptr<const FoamImage>& image);
     void draw_sea(const View& view, const SeaMesh& mesh, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
-    void draw_drops(const View& view, double curvature_per_m, const DrawOptions& options);
+    void draw_drops(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
     GLint largest_texture = 0;
@@ -109,6 +110,9 @@ struct SeaRenderer::Implementation {
     GlTexture foam_texture;
     std::shared_ptr<const FoamImage> foam_image;  // that the texture has
     bool has_foam_texture = false;
+    std::shared_ptr<const Floor> floor;
+    double curvature_per_m = 0.0;  // of the picture's sea
+    GlTexture floor_maps;
     GlTexture spray_map;
     std::vector<Uniform> spray;  // empty: there is none
     struct Drops {
@@ -172,6 +176,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     glUniform1i(program.uniform("spray_map"), kSprayMapUnit);
     glUniform1i(program.uniform("dither"), kDither);
     glUniform1i(program.uniform("foam_image"), kFoamImage);
+    glUniform1i(program.uniform("floor_maps"), kFloorMaps);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     // No program reads two of these kinds.
     glUniform1i(program.uniform("sea_depth"), kPictures);
@@ -296,6 +301,11 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
     set_uniforms(program, water);
+    bind_texture(kFloorMaps, floor_maps);
+    set_uniforms(program, floor_uniforms(floor ? floor->seen_from({.position_m = view.position_m,
+                                                                   .curvature_per_m = curvature_per_m,
+                                                                   .pixel_tangent = tangent})
+                                               : FloorSeen{}));
     if (spray.empty()) return;
     bind_texture(kSprayMapUnit, spray_map);
     set_uniforms(program, spray);
@@ -421,8 +431,7 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
 }
 
 // Over the picture, from the farthest on.
-void SeaRenderer::Implementation::draw_drops(const View& view, double curvature_per_m,
-                                             const DrawOptions& options) {
+void SeaRenderer::Implementation::draw_drops(const View& view, const DrawOptions& options) {
     const std::vector<SeenDrop> seen =
         seen_drops(*drops->drops, {.view = view,
                                    .curvature_per_m = curvature_per_m,
@@ -522,6 +531,26 @@ void SeaRenderer::set_water(const WaterBody& water) {
     implementation_->water = water_uniforms(water);
 }
 
+void SeaRenderer::set_floor(std::shared_ptr<const Floor> floor) {
+    Implementation& of = *implementation_;
+    if (of.floor == floor) return;
+    of.floor = std::move(floor);
+    if (!of.floor || of.floor->values().empty()) return;
+    const std::vector<float>& values = of.floor->values();
+    const auto columns = static_cast<std::size_t>(kFloorColumns);
+    const std::size_t rows = values.size() / columns, rest = values.size() % columns;
+    edit_texture(of.floor_maps);
+    texels_as_they_are();
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, kFloorColumns, static_cast<GLsizei>(rows + (rest > 0 ? 1 : 0)), 0,
+                 GL_RED, GL_FLOAT, nullptr);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kFloorColumns, static_cast<GLsizei>(rows), GL_RED, GL_FLOAT,
+                    values.data());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(rows), static_cast<GLsizei>(rest),
+                    rest > 0 ? 1 : 0, GL_RED, GL_FLOAT, values.data() + rows * columns);
+}
+
 void SeaRenderer::set_spray(const Spray& spray, std::shared_ptr<const std::vector<SprayDrop>> drops,
                             double late_s) {
     Implementation& of = *implementation_;
@@ -603,6 +632,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
     of.near_m = options.behind_glass ? kFrontGlass_m : kNear_m;
+    of.curvature_per_m = mesh.points.curvature_per_m;
     of.begin_picture(view.resolution, options.layers);
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
     {
@@ -612,8 +642,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
         of.draw_sky(view, drawn);
-        if (of.drops && drawn.lighting.spray && !of.picture_plain)
-            of.draw_drops(view, mesh.points.curvature_per_m, drawn);
+        if (of.drops && drawn.lighting.spray && !of.picture_plain) of.draw_drops(view, drawn);
     }
 
     of.end_picture();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/effects/spray_drops.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/spray.h"
 #include "core/surface/view.h"
@@ -60,6 +61,8 @@ class SeaRenderer {
     void set_sky(const Sky& sky, const WaterBody& water);
     // Under the same sky, as when the sea is another one.
     void set_water(const WaterBody& water);
+    // The floor below the sea, with its light at the frame's time; null: level and evenly lit.
+    void set_floor(std::shared_ptr<const Floor> floor);
     // What the next pictures have between their eye and the sea; none before the first call. drops: those that are seen one
     // by one, which the map lacks, as they were so long ago.
     void set_spray(const Spray& spray, std::shared_ptr<const std::vector<SprayDrop>> drops = {},

@@ -438,6 +438,14 @@ class Preview {
     std::string water_content() const { return canonical(controls_.scene, key_parts(KeyPart::Water)); }
     void take_water() {
         water_ = make_water(controls_.scene);
+        floor_.reset();
+        floor_error_.clear();
+        if (water_.has_body) try {
+                floor_ = std::make_shared<const Floor>(
+                    make_floor(controls_.scene, frame_ ? frame_->build->drawn->rest_m() : 0.0));
+            } catch (const std::invalid_argument& error) {  // a picture that is gone
+                floor_error_ = error.what();
+            }
         water_from_ = water_content();
     }
 
@@ -459,7 +467,8 @@ class Preview {
         const bool may_be_wet = frame_ == nullptr || frame_->build->drawn->may_be_under_waves(view);
         const auto only_if = [&](bool wanted) { return wanted ? std::optional<View>(view) : std::nullopt; };
         has_spray_ = render_options(controls_.scene).lighting.spray;
-        sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_));
+        sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_),
+                  floor_before(view));
         const std::shared_ptr<const LiveBuild> before = frame_ ? frame_->build : nullptr;
         frame_ = sea_.newest();
         if ((frame_ && frame_->build != before) || water_content() != water_from_) {
@@ -485,7 +494,7 @@ class Preview {
                     : "the camera is under water, which can't be drawn: raise it (E), or wait for "
                       "the wave to pass";
         if (frame_ != nullptr && std::exchange(uploaded_, frame_->number) != frame_->number) upload();
-        for (const std::string& error : {upload_error_, save_error_})
+        for (const std::string& error : {upload_error_, floor_error_, save_error_})
             if (readout_.message.empty()) readout_.message = error;
         if (frame_ != nullptr && frame_->build->note != note_) {
             note_ = frame_->build->note;
@@ -549,12 +558,27 @@ class Preview {
             show_spray(view);
         else
             renderer_.set_spray({});
+        const std::shared_ptr<const Floor> lit_floor = sea_.newest_floor();
+        renderer_.set_floor(lit_floor ? lit_floor : floor_);
         renderer_.draw(view, *mesh, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
         renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)),
                        white_balance(controls_.scene.camera.white_balance_k));
         readout_.times.gpu = renderer_.times();
+    }
+
+    // The floor as it is lit before a camera, where it is seen at all.
+    std::optional<LiveSea::FloorWanted> floor_before(const View& view) const {
+        constexpr int kSide = 512;  // half of a single picture's: each frame has one
+        if (!floor_ || !sky_ || !(floor_->has_depths() || shows_floor(water_, -floor_->z_m()))) return {};
+        return LiveSea::FloorWanted{.floor = floor_,
+                                    .light = {.view = view,
+                                              .water = water_,
+                                              .sun_direction = sky_->sky.sun_direction,
+                                              .sun_angular_radius = sky_->sky.sun_angular_radius,
+                                              .gain = controls_.scene.water.caustics,
+                                              .side = kSide}};
     }
 
     // The spray before the last camera for which it is ready, and its drops.
@@ -644,6 +668,7 @@ class Preview {
     double metered_wind_mps_ = 0.0;
     float exposure_ = 1.0f;
     WaterBody water_;
+    std::shared_ptr<const Floor> floor_;  // null: the water has no body
     std::string water_from_;
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
@@ -657,7 +682,7 @@ class Preview {
     double foam_time_s_ = 0.0;
     bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false,
          lacks_drops_ = false;  // that are still to come
-    std::string upload_error_, save_error_, note_;
+    std::string upload_error_, floor_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;
     LiveSea sea_{LiveLimits{.memory = machine::memory_limit_or(options_.max_memory_bytes),
                             .texture = renderer_.largest_texture()}};

@@ -33,16 +33,17 @@ namespace {
 namespace py = pybind11;
 using Range = tbb::blocked_range<std::size_t>;
 
-constexpr std::size_t kGrain = 256;  // points a task computes
+constexpr std::size_t kGrain = 256;         // points a task computes
+constexpr std::size_t kAlbedoGrain = 4096;  // those of water_albedo(), of which each task makes a table
 constexpr std::size_t kShaded =
     kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
 
 // work(range) over as many points, by all threads, until it is interrupted.
 template <class Work>
-void over_points(py::ssize_t count, const Work& work) {
+void over_points(py::ssize_t count, const Work& work, std::size_t grain = kGrain) {
     Watch watch{py::none(), py::none()};
     beside_others(watch, [&] {
-        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), grain), [&](const Range& range) {
             if (!*watch.flag()) work(range);
         });
     });
@@ -227,6 +228,48 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
     return written;
 }
 
+struct AlbedoArguments {
+    py::object to_eye, coverage, foam_active, foam_age, normal, crest, out;
+};
+
+py::object albedo_of(const PythonSky& sky, const WaterBody& water, AlbedoArguments given) {
+    Copies copies;
+    const auto [to_eye, count] = readable_vectors(given.to_eye, {"to_eye"}, copies);
+    const auto vectors = [&, n = count](const py::object& object, const char* name) {
+        return object.is_none() ? Strided<const glm::vec3>{}
+                                : readable_vectors(object, {name, n}, copies).view;
+    };
+    const auto numbers = [&, n = count](const py::object& object, const char* name) {
+        return object.is_none() ? Strided<const float>{} : readable_numbers(object, {name, n}, copies);
+    };
+    const auto normal = vectors(given.normal, "normal"), crest = vectors(given.crest, "crest");
+    const auto coverage = numbers(given.coverage, "coverage"),
+               active = numbers(given.foam_active, "foam_active"),
+               age_s = numbers(given.foam_age, "foam_age");
+    if (given.out.is_none()) given.out = py::array_t<float>({count, py::ssize_t{3}});
+    const Strided<glm::vec3> albedo = writable_vectors(given.out, {"out", count}, copies);
+    over_points(
+        count,
+        [&, towards = to_eye](const Range& range) {
+            std::vector<SeaPoint> points(range.size());
+            std::vector<glm::vec3> made(range.size());
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const std::size_t at = range.begin() + i;
+                points[i].to_eye = towards[at];
+                if (normal) points[i].normal = normal[at];
+                if (crest) points[i].crest = crest[at];
+                if (coverage) points[i].coverage = coverage[at];
+                if (active) points[i].active = active[at];
+                if (age_s) points[i].age_s = age_s[at];
+            }
+            water_albedo(*sky.sky, water, points, made);
+            for (std::size_t i = 0; i < points.size(); ++i) albedo[range.begin() + i] = made[i];
+        },
+        kAlbedoGrain);
+    copies.give_back();
+    return given.out;
+}
+
 }  // namespace
 
 SkyQuality sky_quality_of(const std::string& word) {
@@ -260,6 +303,23 @@ void add_light(py::module_& module) {
             py::arg("direction"),
             "The part of light from a direction (a unit vector) that the surface lets in: a rough surface of a body of "
             "water, a level one without.");
+    module.def(
+        "water_albedo",
+        [](const PythonSky& sky, const WaterBody& water, const py::object& to_eye, const py::object& coverage,
+           const py::object& foam_active, const py::object& foam_age, const py::object& normal,
+           const py::object& crest, const py::object& out) {
+            return albedo_of(sky, water, {to_eye, coverage, foam_active, foam_age, normal, crest, out});
+        },
+        py::arg("sky"), py::arg("water"), py::arg("to_eye"), py::kw_only(), py::arg("coverage") = py::none(),
+        py::arg("foam_active") = py::none(), py::arg("foam_age") = py::none(), py::arg("normal") = py::none(),
+        py::arg("crest") = py::none(), py::arg("out") = py::none(),
+        "float32 (n, 3), 0 to 1: the light from the water as a diffuse surface's, for renderers that light it themselves: "
+        "of the irradiance of sun and sky on a level plane the share that leaves again towards the eye, before the factor "
+        "(1 - Fresnel's term) of the way out; 0 in the dark. Into out, where that is given.\n\n"
+        "to_eye: float32 (n, 3), unit, from the sea to the eye. coverage, foam_active, foam_age: float32 (n,), as "
+        "evaluate() gives them, for the bubbles under foam, which itself isn't in it; without foam_active all foam breaks "
+        "now. normal: float32 (n, 3), unit, default up. crest: float32 (n, 3), of waves longer than 2 m: slopes along x and "
+        "y, and height [m]; default none.");
     module.def(
         "foam_picture", &foam_picture_of, py::arg("scene"),
         "float32 (side, side, 1), rows from the top: the picture of effects.foam_pattern by rank, as a variable of normal "

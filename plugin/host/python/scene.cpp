@@ -183,8 +183,10 @@ py::list described_keys() {
 std::string text_of_shot(const Scene& scene) {
     Scene placed = scene;
     const auto absolute = [](std::string& path) { path = std::filesystem::absolute(path).string(); };
-    if (placed.light.sky != Light{}.sky) absolute(placed.light.sky);
-    if (placed.effects.foam_pattern != Effects{}.foam_pattern) absolute(placed.effects.foam_pattern);
+    replace_pictures(placed, [&](const Key&, std::string path) {
+        absolute(path);
+        return path;
+    });
     if (placed.sea.measured) absolute(placed.sea.measured->file);
     if (placed.surface.cage) {
         if (placed.surface.cage_file.empty())
@@ -200,8 +202,8 @@ std::string text_of_shot(const Scene& scene) {
                 Problem{std::string(key), quoted_text(path),
                         "has bytes that aren't UTF-8, which no shot file can have", "a path in UTF-8"}));
     };
-    require_utf8("light.sky", placed.light.sky);
-    require_utf8("effects.foam_pattern", placed.effects.foam_pattern);
+    for (const Key* key : picture_keys(placed))
+        require_utf8(key->path, std::get<std::string>(value_of(placed, *key)));
     if (placed.sea.measured) require_utf8(kSpectrumFile, placed.sea.measured->file);
     if (placed.surface.cage) require_utf8(kCageFile, placed.surface.cage_file);
     return shot_text(placed);

@@ -27,7 +27,8 @@ PARAMETERS = {
 # The same where a name means another thing in one place.
 PARAMETERS_OF = {("__init__", "points"): "ArrayLike"} | {("shade", name): ARRAY for name in ("normal", "slope_variance")} | {
     (function, name): f"{ARRAY} | None" for function in ("evaluate", "begin")
-    for name in ("normal", "slope_variance", "slope_variance_at_rest", "foam_active", "foam_age")}
+    for name in ("normal", "slope_variance", "slope_variance_at_rest", "foam_active", "foam_age")} | {
+    ("water_albedo", name): f"{ARRAY} | None" for name in ("foam_active", "foam_age", "normal", "crest")}
 
 # Results that are objects, dictionaries and tuples to pybind11, by the name after the last dot.
 RESULTS = {
@@ -39,7 +40,7 @@ RESULTS = {
     "uniforms": "dict[str, Any]", "foam": "dict[str, Any]", "water": "dict[str, Any]", "textures": "dict[str, Any]", "limit": "dict[str, Any]", "take_foam": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
     "triangles": "NDArray[np.uint32]", "size": "tuple[int, int]", "at_origin": f"tuple[NDArray[np.uint8], {ARRAY} | None]",
     "products": "tuple[str, ...]", "origin_m": "tuple[float, float]", "resolution": "tuple[int, int]", "shift": "tuple[float, float]",
-    "foam_picture": f"{ARRAY} | None", "air": f"tuple[dict[str, Any], {ARRAY}]", "progress": "tuple[Any, ...] | None", "result": "Any",
+    "foam_picture": f"{ARRAY} | None", "water_albedo": ARRAY, "air": f"tuple[dict[str, Any], {ARRAY}]", "progress": "tuple[Any, ...] | None", "result": "Any",
     **{name: "tuple[float, float, float]" for name in
        ("position_m", "right", "up", "forward", "sun_direction", "sun_radiance", "sun_irradiance", "sky_irradiance",
         "reflectance", "absorption_per_m", "backscatter_per_m")},

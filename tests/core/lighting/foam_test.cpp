@@ -109,7 +109,7 @@ TEST(Foam, HidesWhatItsOpacitySays) {
     Inputs inputs(33);
     const Optics::SeaLight light{
         normalize(vec3(0.5f, 0.0f, 0.3f)), vec3(1e4f), float(kFoamRadius), vec3(0.7f), vec3(1.0f),
-        plain_water(vec3(0.02f))};
+        plain_water(vec3(0.02f)),          {}};
     for (int i = 0; i < 1000; ++i) {
         const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.1, 0.9);
         const vec3 up(0.0f, 0.0f, 1.0f);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <random>
+#include <span>
 
 #include "core/lighting/foam_structure.h"
 
@@ -28,6 +29,9 @@ struct Optics {
     bool kSun = true, kSky = true, kWater = true, kWhitecaps = true;
 
     const FoamImage* foam_image = nullptr;
+    std::span<const float> floor_values{};
+
+    float floor_value(int i) const { return floor_values[static_cast<std::size_t>(i)]; }
 
     vec3 sky_lookup(vec2 u, float level) const { return lookup(u, level); }
     float foam_image_texel(int x, int y) const {
@@ -40,6 +44,7 @@ struct Optics {
 #include "core/lighting/slopes.glsl"
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
+#include "core/lighting/floor.glsl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"

@@ -100,9 +100,13 @@ TEST(Sea, BatchIsTheSharedSource) {
             optics.kSkyMapSize = static_cast<float>(sky.map.size());
             optics.kSkyLookups = quality == SkyQuality::One ? 1 : quality == SkyQuality::Nine ? 9 : 0;
             optics.kExactFresnel = fresnel == FresnelFit::Exact;
-            const Optics::SeaLight light{sky.sun_direction,      sky.sun_radiance,
-                                         sky.sun_angular_radius, sky.sun_irradiance,
-                                         sky.sky_irradiance,     plain_water(kWaterBody.reflectance)};
+            const Optics::SeaLight light{sky.sun_direction,
+                                         sky.sun_radiance,
+                                         sky.sun_angular_radius,
+                                         sky.sun_irradiance,
+                                         sky.sky_irradiance,
+                                         plain_water(kWaterBody.reflectance),
+                                         {}};
             const std::vector<SeaRadiance> found =
                 shaded({.sky_quality = quality, .fresnel = fresnel}, sky, points);
             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -161,8 +165,13 @@ TEST(Sea, ReflectedAndRefractedShareTheLight) {
             const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.4, 0.5);
             const auto terms = optics.sea_radiance(v, vec3(0.0f, 0.0f, 1.0f), s, optics.no_foam(),
                                                    optics.no_crest_nor_bubbles(),
-                                                   {vec3(0.0f, 0.0f, -1.0f), vec3(0.0f), 0.00465f, vec3(0.0f),
-                                                    vec3(1.0f), plain_water(vec3(0.1f))});
+                                                   {vec3(0.0f, 0.0f, -1.0f),
+                                                    vec3(0.0f),
+                                                    0.00465f,
+                                                    vec3(0.0f),
+                                                    vec3(1.0f),
+                                                    plain_water(vec3(0.1f)),
+                                                    {}});
             const vec3 from_water =
                 optics.water_radiance(vec3(0.0f, 0.0f, -1.0f), vec3(0.0f), vec3(1.0f), vec3(0.1f));
             EXPECT_NEAR(terms.sky.x + terms.sea.x / from_water.x, 1.0f, lookups == 1 ? 1e-5f : 0.035f)
@@ -181,9 +190,9 @@ TEST(Sea, WavesMirrorTheSunInOtherWaves) {
     const vec3 ahead = normalize(vec3(-0.9f, 0.0f, 0.42f));
     const auto frame = optics.slope_frame(up, s);
     const auto shown = [&](vec3 l) {
-        const auto terms =
-            optics.sea_radiance(v, up, s, optics.no_foam(), optics.no_crest_nor_bubbles(),
-                                {l, vec3(1.0f), 0.00465f, vec3(0.0f), vec3(0.0f), plain_water(vec3(0.0f))});
+        const auto terms = optics.sea_radiance(
+            v, up, s, optics.no_foam(), optics.no_crest_nor_bubbles(),
+            {l, vec3(1.0f), 0.00465f, vec3(0.0f), vec3(0.0f), plain_water(vec3(0.0f)), {}});
         return terms.sun.x / optics.sun_reflection(v, l, frame, vec3(1.0f), 0.00465f).x;
     };
     EXPECT_GT(shown(ahead), 1.01f);

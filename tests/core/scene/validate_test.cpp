@@ -104,6 +104,13 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) { s.water.chlorophyll_mg_m3 = v; }},
         {"water.crest_light", limits::kWaterGain, [](Scene& s, double v) { s.water.crest_light = v; }},
         {"water.bubbles", limits::kWaterGain, [](Scene& s, double v) { s.water.bubbles = v; }},
+        {"water.caustics", limits::kWaterGain, [](Scene& s, double v) { s.water.caustics = v; }},
+        {"water.floor_pattern_m", limits::kFoamPattern_m,
+         [](Scene& s, double v) { s.water.floor_pattern_m = v; }},
+        {"sea.depth_size_m", limits::kSurfaceSize_m, [](Scene& s, double v) { s.sea.depth_size_m = v; }},
+        {"sea.depth_east_m", limits::kCameraCoordinate_m, [](Scene& s, double v) { s.sea.depth_east_m = v; }},
+        {"sea.depth_north_m", limits::kCameraCoordinate_m,
+         [](Scene& s, double v) { s.sea.depth_north_m = v; }},
         {"surface.cell_px", limits::kCell_px, [](Scene& s, double v) { s.surface.cell_px = v; }},
     };
     for (const Case& c : cases) {
@@ -213,6 +220,10 @@ TEST(Validate, FramesSeedAndLoop) {
     });
     expect_refused([](Scene& s) { s.effects.foam_pattern = "bubbles"; },
                    {"effects.foam_pattern", "\"bubbles\"", "\"lace\", or the path"});
+    expect_refused([](Scene& s) { s.sea.depth_file = "bay.png"; },
+                   {"sea.depth_file", "\"bay.png\"", "\"none\", or the path"});
+    expect_refused([](Scene& s) { s.water.floor_pattern = ""; },
+                   {"water.floor_pattern", "\"\"", "\"plain\", or the path"});
     expect_refused([](Scene& s) { s.effects.foam_pattern_m = 4.0; },
                    {"effects.foam_pattern_m", "4", "10, or effects.foam_pattern = \"PATH.exr\""});
     expect_good([](Scene& s) {

@@ -279,7 +279,7 @@ inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseSh
         return {value_of(slower, key_of(path)), value_of(between, key_of(path))};
     }
     if (path == "light.sky") return {base.skies.begin(), base.skies.end()};
-    if (path == "effects.foam_pattern") return {base.foams.begin(), base.foams.end()};
+    if (path != "light.sky" && key_of(path).is_picture) return {base.foams.begin(), base.foams.end()};
     if (path == "quality.max_error") return {0.3, 0.1};
     if (path == "quality.frame_ms") return {1.0, 3.0};
     if (path == "surface.cage_level") return {std::int64_t{1}, std::int64_t{3}, std::string("adaptive")};

@@ -226,7 +226,7 @@ TEST_F(Cli, TheProgramNeedsNoFileBesideIt) {
 TEST_F(Cli, ExplainPrintsThePlanAndWritesNothing) {
     const Ended ended = cli({"explain", "small.toml"});
     EXPECT_EQ(ended.status, 0) << ended.err;
-    for (const char* part : {"normal", "velocity", "displacement", "transform"})
+    for (const char* part : {"normal", "velocity", "displacement", "transform", "nm absorbs"})
         EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
     EXPECT_EQ(files_below(folder()).size(), 1u);
     // Explaining a sea of 8192² points is as quick as any: no transform is planned, nothing of that size

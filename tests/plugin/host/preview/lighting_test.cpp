@@ -68,6 +68,7 @@ struct Functions {
     const FoamImage& foam_image;
     const float kSkyMapSize;
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
+    float floor_value(int) const { return 0.0f; }
     float foam_image_texel(int x, int y) const {
         return foam_image.texels[static_cast<std::size_t>(y * foam_image.side + x)];
     }
@@ -95,6 +96,7 @@ struct Functions {
 #include "core/lighting/slopes.glsl"
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
+#include "core/lighting/floor.glsl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
@@ -148,14 +150,17 @@ struct Functions {
     PELAGIC_BOTH(whole_sea,
                  SeaTerms t = sea_radiance(
                      vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),
-                     SeenBody(vec3(0.3f * nn.x, 0.3f * nn.y, aa), 0.2f * ww, 0.3f * bb, 20.0f * cc),
+                     SeenBody(vec3(vv.x, vv.y, -2.0f), 0.05f * ww, vec3(0.3f * nn.x, 0.3f * nn.y, aa),
+                              0.2f * ww, 0.3f * bb, 20.0f * cc),
                      SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f, vec3(80.0f, 70.0f, 60.0f),
                               vec3(10.0f, 12.0f, 15.0f),
                               WaterLook(vec3(0.01f, 0.03f, 0.05f), cc > 0.3f,
                                         WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
                                         WaterBands(vec3(0.004f), vec3(0.003f)),
                                         WaterBands(vec3(0.2f), vec3(0.3f)), bb > 0.5f ? 3.0f : 1.0e9f,
-                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f)));
+                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
+                              FloorView(aa > 0.1f, -4.0f, 1.0e-7f, 1.0e-3f, vec4(0.0f), vec4(0.0f),
+                                        vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f))));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(below,
                  SeaTerms t = sea_from_below(
@@ -166,7 +171,9 @@ struct Functions {
                                         WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
                                         WaterBands(vec3(0.004f), vec3(0.003f)),
                                         WaterBands(vec3(0.2f), vec3(0.3f)), cc > 0.3f ? 12.0f : 1.0e9f,
-                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f)),
+                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
+                              FloorView(aa > 0.1f, 15.0f * bb - 14.0f, 1.0e-7f, 1.0e-3f, vec4(0.0f),
+                                        vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f))),
                      WaterBands(vec3(0.1f), vec3(0.07f)));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(screen, return vec4(display_colour(vec3(aa, bb, ww), 2.0f), 0.0f);)

@@ -109,6 +109,15 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
     compare_frame("of trains", scene);
 }
 
+// Through the slopes of the waves, lit through them.
+TEST(PreviewsPicture, IsTheCpusOfAFloor) {
+    Scene scene = scene_of({0.0, 0.0, 2.5}, {8.0, 3.0, 0.0});
+    scene.sea.wind_speed_mps = 3.0;
+    scene.sea.depth_m = 2.5;
+    scene.sea.depth_file = std::string(PELAGIC_SOURCE_DIR) + "/examples/data/atoll.exr";
+    scene.water.floor_pattern = std::string(PELAGIC_SOURCE_DIR) + "/examples/data/tiles.exr";
+    compare_frame("a floor", scene);
+}
 TEST(PreviewsPicture, IsTheCpusOfCopiesAtRandomOffsets) {
     Scene scene = scene_of({3e4, -60.0, 12.0}, {3e4, 0.0, 0.0});
     scene.waves.tiling = Tiling::Random;

@@ -138,6 +138,39 @@ class Shade(unittest.TestCase):
         self.assertLess(flat, 0.4)
         self.assertEqual(pelagic.WaterBody(level).entering((1.0, 0.0, -0.1)), pelagic.WaterBody(level).entering((1.0, 0.0, 0.0)))
 
+    def test_the_water_as_a_diffuse_surface(self):
+        def albedo(water, **points):
+            return pelagic.water_albedo(self.sky, water, self.to_eye, **points)
+
+        # The light of the lit sea, before what the surface keeps: of a level one Fresnel's part, at 36.87 degrees 0.0231.
+        irradiance = np.array(self.sky.sun_irradiance) + np.array(self.sky.sky_irradiance)
+        level = albedo(self.water)
+        sea = self.lit(slope_variance=vectors(300, (1e-7, 1e-7, 0.0)))["sea"]
+        np.testing.assert_allclose(level * irradiance / np.pi * (1.0 - 0.0231), sea, rtol=5e-3)
+        plain = scene_with_sun()
+        plain.water.body = False
+        self.assertTrue((albedo(pelagic.WaterBody(plain)) != level).any())
+        # Bubbles: the more foam, the brighter, and less under what is old.
+        foam = np.linspace(0.0, 1.0, 300).astype(np.float32)
+        fresh = albedo(self.water, coverage=foam)
+        old = albedo(self.water, coverage=foam, foam_active=0.0 * foam, foam_age=0.0 * foam + 5.0)
+        np.testing.assert_allclose(fresh[0], level[0], atol=1e-6)
+        self.assertTrue((np.diff(fresh[:, 1]) > 0.0).all() and (old < fresh)[1:, 1].all() and (old > level)[1:, 1].all())
+        np.testing.assert_allclose(albedo(self.water, coverage=foam, foam_active=0.0 * foam, foam_age=0.0 * foam), fresh, atol=1e-6)
+        # Many that differ by their foam alone are looked up in a table; beside one that differs otherwise each is computed.
+        crest = np.zeros((300, 3), np.float32)
+        crest[0] = (0.2, 0.0, 0.5)
+        np.testing.assert_allclose(albedo(self.water, coverage=foam, crest=crest)[1:], fresh[1:], atol=2e-4)
+        # A face towards the sun has more of its light than one that leans away, and out keeps what else its array holds.
+        towards = np.sign(self.sky.sun_direction[0])
+        crest[:, 0] = np.where(foam > 0.5, -0.3, 0.3) * towards
+        wide = np.full((300, 5), 9.0, np.float32)
+        pelagic.water_albedo(self.sky, self.water, self.up, crest=crest, out=wide[:, 1:4])
+        self.assertTrue((wide[250, 2:4] > 1.05 * wide[50, 2:4]).all(), wide[[50, 250]])
+        np.testing.assert_array_equal(wide[:, [0, 4]], 9.0)
+        with self.assertRaisesRegex(ValueError, "coverage: its shape"):
+            albedo(self.water, coverage=foam[:3])
+
     def test_foam_takes_its_share(self):
         none, half, full = (self.lit(coverage=np.full(300, share, np.float32)) for share in (0.0, 0.5, 1.0))
         for name, array in self.lit().items():

@@ -1,0 +1,81 @@
+// The floor of the sea: how deep it lies from place to place, what it reflects there, and the light of the sun on it (floor.glsl).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+namespace pelagic {
+
+// As floor.glsl has it, from an eye.
+struct FloorSeen {
+    bool is_seen = false;
+    float z_m = 0.0f, curvature_per_m = 0.0f, pixel = 0.0f;
+    glm::vec4 depths{0.0f}, depths_per_m{0.0f}, colours{0.0f};
+    float colours_first = 0.0f;
+    glm::vec4 light{0.0f}, coarse{0.0f};
+    std::span<const float> values{};
+};
+
+struct FloorEye {
+    glm::dvec3 position_m{0.0};    // in the world
+    double curvature_per_m = 0.0;  // of the earth, round which the sea lies below it
+    double pixel_tangent = 0.0;    // that one of its pixels covers
+};
+
+// Values of a float's whole numbers: maps are no larger together.
+inline constexpr std::size_t kMostFloorValues = std::size_t{1} << 24;
+
+class Floor {
+  public:
+    // Level, at this height of the world [m]. Not finite: there is none.
+    explicit Floor(double z_m = -1e9) : z_m_(z_m) {}
+
+    // Depths below the sea at rest [m], > 0, rows from the south, over a rectangle of the world that begins at from_m. Beyond it they go over to the
+    // level floor.
+    // Throws std::invalid_argument for sizes that aren't positive, another number of values, or too many.
+    void set_depths(glm::ivec2 columns_rows, std::vector<float> depths_m, glm::dvec2 from_m,
+                    glm::dvec2 size_m);
+    // A picture of side × side texels, a power of two, rows from the south, that repeats every size_m from the world's origin on: times the floor's
+    // colour. Throws as set_depths().
+    void set_colours(int side, std::span<const glm::vec3> colours, double size_m);
+
+    double z_m() const { return z_m_; }
+    bool has_depths() const { return depth_size_.x > 0; }
+    // Depth below the sea at rest at a place of the world [m].
+    double depth_m(glm::dvec2 place_m) const;
+
+    // What waves make of the sun's light on the floor, times what a level sea lets fall there.
+    struct Light {
+        int side = 0;                        // texels of each of two maps, rows from the south; 0: none
+        double texel_m = 0.0;                // of the finer one; kFloorLightStep times as much of the coarser
+        std::array<glm::dvec2, 2> from_m{};  // corners of both, in the world
+        double gain = 1.0;
+    };
+    // The maps' values, for who writes them: 2 · side², the finer one's first. Kept until the next call.
+    std::span<float> set_light(const Light& light);
+    bool has_light() const { return light_.side > 0; }
+
+    // Kept while the floor isn't changed.
+    FloorSeen seen_from(const FloorEye& eye) const;
+    const std::vector<float>& values() const { return values_; }
+
+  private:
+    double z_m_;
+    glm::ivec2 depth_size_{0};
+    glm::dvec2 depth_from_m_{0.0}, depth_per_m_{0.0};
+    int colour_side_ = 0;
+    double colour_m_ = 1.0;
+    std::size_t colours_first_ = 0, light_first_ = 0;
+    Light light_;
+    std::vector<float> values_;  // depths, colours, light
+};
+
+// Texels of the coarser map of light over those of the finer.
+inline constexpr double kFloorLightStep = 4.0;
+
+}  // namespace pelagic

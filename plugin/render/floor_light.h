@@ -1,0 +1,42 @@
+// What the waves of a frame make of the sun's light on the floor: caustics (core/lighting/floor.h).
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+#include "core/lighting/floor.h"
+#include "core/lighting/water.h"
+#include "core/surface/view.h"
+#include "core/waves/frame.h"
+#include "pelagic/scene.h"
+
+namespace pelagic {
+
+// Before which camera, of which sun, through what water.
+struct FloorLightWanted {
+    View view;
+    WaterBody water;
+    glm::vec3 sun_direction{0.0f, 0.0f, 1.0f};
+    float sun_angular_radius = 0.0f;
+    double gain = 1.0;
+    double finest_m = 0.0;  // the finest footprint of the frame's query 0
+    int side = 1024;        // texels of a map
+    bool operator==(const FloorLightWanted&) const = default;
+};
+
+// What making them holds, at most, and they themselves [bytes].
+std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side = FloorLightWanted{}.side);
+
+// Whether the water lets so much of the floor's light out that its pattern shows: to a hundredth of what falls on it, at the clearest of the
+// wavelengths.
+bool shows_floor(const WaterBody& water, double depth_m);
+
+// Sets the floor's light, or takes it away where nothing of it shows. Cells of the sea, as wide as a map's texels, send what they let in by
+// Snell's law for their own slopes to the floor, where it is spread by the slopes that they don't resolve and by the sun's disc. So all light
+// arrives somewhere, and its mean is 1. The maps lie before the camera, on texels of the world, so that they are the same
+// whatever it sees. All threads of the calling arena. Throws BuildCancelled.
+template <class T>
+void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
+                 const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace pelagic

@@ -32,7 +32,8 @@
 namespace pelagic {
 
 // Where the preview's view volume begins [m]: far enough for the depth buffers of GPUs. A rendered picture's begins at
-// the eye: wide lenses close to the water see much of it at less than this depth.
+// the eye: wide lenses close to the water see much of it at less than this depth. Where it may be under water both begin at the
+// front glass (waterline.h).
 inline constexpr double kNear_m = 0.05;
 
 // One frame, HDR, rows from the top, x fastest; in the sky's units. The layers add up to the picture:

@@ -1,5 +1,5 @@
-// A camera under water. Renderer draws what it sees in an open sea whose water has a body, and so does the preview where all of the picture looks
-// through water; where the water has none, in a cage's pool, and by others, such pictures are refused.
+// A camera under water. Renderer draws what it sees in an open sea whose water has a body, and so do the preview's pictures, its window where all of it
+// looks through water; where the water has none, in a cage's pool, and by others, such pictures are refused.
 #pragma once
 
 #include <optional>

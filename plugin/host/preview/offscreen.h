@@ -62,8 +62,8 @@ struct OffscreenWatch {
 };
 
 // One sample per pixel. Needs a current context. The GPU computes in single precision; a note says so if
-// quality.level asks for double. Throws std::invalid_argument for a camera under water,
-// unless all of its picture looks through water that has a body (plugin/render/under_water.h), and BuildCancelled.
+// quality.level asks for double. Throws std::invalid_argument for a camera under water
+// where that can't be drawn (plugin/render/under_water.h), and BuildCancelled.
 OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky,
                                   const OffscreenWatch& watch = {});
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -25,6 +26,7 @@
 #include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 #include "plugin/render/under_water.h"
+#include "plugin/render/waterline.h"
 
 namespace pelagic {
 namespace {
@@ -47,11 +49,8 @@ void check_size(glm::ivec2 size) {
 }
 
 // Positions of the mesh's points, relative to its origin, with the waves that its cells resolve.
-std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea, double time_s,
-                                    const SeaMesh& mesh) {
+std::vector<glm::vec3> positions_of(const Frame<float>& frame, const SeaMesh& mesh) {
     const ProjectedGrid& grid = mesh.points;
-    Frame<float> frame(sea);
-    frame.set(time_s);
     std::vector<glm::vec3> positions(grid.rest_m.size());
     Results<float> results;
     results.set(Product::Position, {positions.data()});
@@ -100,6 +99,12 @@ constexpr std::size_t kDrawnBytes = 8 * sizeof(glm::vec4) + sizeof(float),
 // Mesa's driver in software, with its compiler and the programs of this sea.
 constexpr std::size_t kDriverBytes = std::size_t{64} << 20;
 
+// Whether some of the picture may look through water, and some through air: both are drawn.
+bool is_half_below(const DrawnSea& drawn, const View& view) {
+    return drawn.has_below() && !drawn.is_below(view) &&
+           glass_heights(view).lowest_m <= drawn.grid_options().bounds.height_m;
+}
+
 std::string smaller() {
     return "ask for a smaller picture (--size) or raise surface.cell_px";
 }
@@ -127,7 +132,10 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
                  "lower effects.foam_decay_s");
     const glm::ivec2 size = planned.scene.camera.resolution;
     need.add("the picture",
-             static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * (kDrawnBytes + kReadBytes),
+             static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                 (kDrawnBytes +
+                  (is_half_below(*planned.drawn, view_at(planned.scene.camera, planned.frame)) ? 2 : 1) *
+                      kReadBytes),
              "ask for a smaller picture (--size)");
     const std::size_t points = planned.mesh.points.rest_m.size();
     need.add("the camera's grid of points", points * kPointBytes, smaller());
@@ -178,9 +186,10 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     planned.drawn->lay_out(seen, planned.mesh);
     double finest_pixel_m = needs.finest_pixel_m;
     if (has_levels) {
-        const auto sea = std::make_shared<const Sea<float>>(of_points);
-        const double in_view_m = finest_pixel_in_view(
-            seen.view, planned.mesh, positions_of(sea, planned.scene.shot.time_s(frame), planned.mesh));
+        Frame<float> state(std::make_shared<const Sea<float>>(of_points));
+        state.set(planned.scene.shot.time_s(frame));
+        const double in_view_m =
+            finest_pixel_in_view(seen.view, planned.mesh, positions_of(state, planned.mesh));
         // The level below, as every point reads the two levels beside its footprint.
         finest_pixel_m = std::max(first_level_m(needs.finest_pixel_m),
                                   level_below_m(std::min(in_view_m, needs.finest_cell_m)));
@@ -191,6 +200,16 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
 }
 
 namespace {
+
+// Takes the pixels that look through water from another picture.
+void take_below(const Waterline& waterline, const Picture& below, Picture& picture) {
+    const auto width = static_cast<std::size_t>(picture.resolution.x);
+    for (std::size_t at = 0; at < picture.layers.size(); ++at) {
+        if (!waterline.is_under(glm::dvec2(at % width, at / width) + 0.5)) continue;
+        picture.layers[at] = below.layers[at];
+        picture.sea[at] = below.sea[at];
+    }
+}
 
 // Uploads what earlier breaking has left where the picture's pixels are.
 void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
@@ -219,7 +238,13 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
     const bool from_below = planned.drawn->is_below(view);
     if (planned.drawn->has_below()) refuse_in_floor(planned.scene, planned.frame);
-    if (!from_below) planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
+    std::optional<Waterline> waterline;
+    if (is_half_below(*planned.drawn, view))
+        waterline.emplace(view, grid.bounds.height_m, planned.mesh.points.origin_m,
+                          std::span<const glm::vec3>(positions_of(state, planned.mesh)),
+                          planned.mesh.triangles);
+    else if (!from_below)
+        planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
     if (water.has_body) {
         const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
@@ -249,13 +274,19 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     if (lives)
         upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.mesh,
                     watch.foam_past);
-    renderer.draw(view, planned.mesh,
-                  {.lighting = lighting,
-                   .foam = make_foam(planned.scene, make_foam_picture(planned.scene),
-                                     lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
-                   .from_below = from_below,
-                   .layers = true});
-    OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
+    const FoamLook foam = make_foam(planned.scene, make_foam_picture(planned.scene),
+                                    lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0);
+    const auto draw = [&](bool below) {
+        renderer.draw(view, planned.mesh,
+                      {.lighting = lighting,
+                       .foam = foam,
+                       .from_below = below,
+                       .behind_glass = waterline.has_value(),
+                       .layers = true});
+        return renderer.read_layers();
+    };
+    OffscreenPicture drawn{draw(from_below), renderer.device(), {}};
+    if (waterline) take_below(*waterline, draw(true), drawn.picture);
     if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =
             "the preview computes in single precision, quality.level \"reference\" in double: "

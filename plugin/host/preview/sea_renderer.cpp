@@ -24,6 +24,7 @@
 #include "plugin/host/preview/sea_textures.h"
 #include "plugin/host/preview/shader_program.h"
 #include "plugin/render/seen_drops.h"
+#include "plugin/render/waterline.h"
 
 namespace pelagic {
 namespace {
@@ -134,6 +135,7 @@ struct SeaRenderer::Implementation {
     GlTexture depth;
     glm::ivec2 picture_size{0};
     bool picture_layers = false, picture_plain = false;
+    double near_m = kNear_m;  // of the picture that is drawn
 
     std::map<std::string, ShaderProgram> programs;  // by ShaderVariant::key()
     GlStageTimer timer;
@@ -345,13 +347,13 @@ void SeaRenderer::Implementation::draw_mesh(const ShaderProgram& program, const 
     glUniform1f(program.uniform("eye_height_m"), static_cast<float>(view.position_m.z));
     glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(mesh.points.curvature_per_m));
     upload_mesh(mesh);
-    const glm::mat4 clip(view.clip_from(glm::dvec3(mesh.points.origin_m, 0.0), kNear_m));
+    const glm::mat4 clip(view.clip_from(glm::dvec3(mesh.points.origin_m, 0.0), near_m));
     glUniformMatrix4fv(program.uniform("clip_from_grid"), 1, GL_FALSE, glm::value_ptr(clip));
     // Reversed depth, near/distance, keeps precision out to the horizon.
     if (reversed_depth)
-        glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(kNear_m));
+        glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(near_m));
     else
-        glUniform2f(program.uniform("depth_of_distance"), 1.0f, static_cast<float>(-2.0 * kNear_m));
+        glUniform2f(program.uniform("depth_of_distance"), 1.0f, static_cast<float>(-2.0 * near_m));
     glDrawElements(GL_TRIANGLES, grid_index_count, GL_UNSIGNED_INT, nullptr);
 }
 
@@ -467,7 +469,7 @@ void SeaRenderer::Implementation::draw_drops(const View& view, const DrawOptions
     set_common(program, view);
     glUniform2f(program.uniform("picture_size"), static_cast<float>(view.resolution.x),
                 static_cast<float>(view.resolution.y));
-    const auto near = static_cast<float>(kNear_m);
+    const auto near = static_cast<float>(near_m);
     if (reversed_depth)
         glUniform3f(program.uniform("nearness_of_depth"), 0.0f, 1.0f, near);
     else
@@ -590,6 +592,7 @@ void SeaRenderer::upload_foam(std::shared_ptr<const PackedFoam> foam) {
 SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const SeaMesh& mesh) {
     Implementation& of = *implementation_;
     const KeptFramebuffer kept;
+    of.near_m = kNear_m;
     of.begin_picture(view.resolution, of.picture_layers);
     // No pixel of the sea has a footprint of 0.
     glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
@@ -628,6 +631,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     drawn.is_shaped = !mesh.normal.empty();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
+    of.near_m = options.behind_glass ? kFrontGlass_m : kNear_m;
     of.curvature_per_m = mesh.points.curvature_per_m;
     of.begin_picture(view.resolution, options.layers);
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;

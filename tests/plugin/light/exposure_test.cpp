@@ -143,6 +143,23 @@ TEST(Exposure, DoesNotBurnFoam) {
     EXPECT_GT(with * foam, 1.2f);
 }
 
+// Whichever way it looks: down, to the side, up. Deep blue has all of its light in one channel, which is a little brighter then than a sea's.
+TEST(Exposure, MetersWhatAnEyeInTheWaterSees) {
+    for (const double z_m : {-3.0, -10.0, -25.0})
+        for (const double up : {-2.0, 0.0, 2.0}) {
+            Scene scene = scene_in({50.0, 3.0});
+            scene.sea.wind_speed_mps = 5.0;
+            scene.camera.position_m = {0.0, 0.0, z_m};
+            scene.camera.look_at_m = {0.0, 1.0, z_m + up};
+            double sum = 0.0;
+            const std::vector<glm::vec3> colours = displayed(scene);
+            for (const glm::vec3 shown : colours)
+                sum += static_cast<double>(std::max({shown.x, shown.y, shown.z}));
+            EXPECT_GT(sum / static_cast<double>(colours.size()), 0.25) << z_m << ' ' << up;
+            EXPECT_LT(sum / static_cast<double>(colours.size()), 0.85) << z_m << ' ' << up;
+        }
+}
+
 // Night, and a sky that is black or very bright: finite.
 TEST(Exposure, IsFinite) {
     Scene scene = scene_in({-30.0, 3.0});

@@ -48,6 +48,25 @@ TEST(Water, OfJerlovsTypesDimsLightAsHeSaw) {
     }
 }
 
+// In all directions: sea water twice its backscatter, particles 55 to 200 times theirs, at most minerals' 1/0.018.
+TEST(Water, ScattersMostlyAhead) {
+    for (const WaterType type :
+         {WaterType::Ocean, WaterType::JerlovI, WaterType::Jerlov5C, WaterType::Turbid}) {
+        const WaterBody water = make_water(with_type(type));
+        for (int i = 0; i < 3; ++i) {
+            const float own = 0.00144f * std::pow((i == 0   ? 440.0f
+                                                   : i == 1 ? 480.0f
+                                                            : 520.0f) /
+                                                      500.0f,
+                                                  -4.32f);
+            const float particles = water.scattering.shorter[i] - 2.0f * own,
+                        back = water.backscatter.shorter[i] - own;
+            EXPECT_GT(particles, 54.0f * back) << i;
+            EXPECT_LT(particles, 200.0f * back) << i;
+        }
+    }
+}
+
 TEST(Water, OfJerlovsTypesHasItsOwnPlankton) {
     Scene scene = with_type(WaterType::JerlovII);
     EXPECT_TRUE(validate(scene).empty());

@@ -70,6 +70,20 @@ TEST(PreviewsPicture, IsTheCpusFromBelow) {
     scene.sea.depth_m = 15.0;
     compare_frame("from below, over a floor", scene);
 }
+TEST(PreviewsPicture, IsTheCpusHalfUnder) {
+    Scene scene = scene_of({0.0, 0.0, -0.04}, {0.0, 10.0, -2.0});
+    scene.camera.fov_deg = 90.0;
+    scene.sea.wind_speed_mps = 3.0;
+    scene.sea.depth_m = 8.0;
+    scene.surface.earth_curvature = false;
+    const auto [cpu, gpu] = compare_frame("half under", scene);
+    // Water alone has no sky in it.
+    const auto below = std::ranges::count_if(cpu.layers, [](const SeaRadiance& of) {
+        return of.sky == glm::vec3(0.0f) && of.air == glm::vec3(0.0f);
+    });
+    EXPECT_GT(below, 20000);
+    EXPECT_LT(below, 210000);
+}
 TEST(PreviewsPicture, IsTheCpusFromAPlaneFarFromTheOrigin) {
     Scene scene = scene_of({1e6, -1e6, 1500.0}, {1e6, -1e6 + 8000.0, 0.0});
     scene.sea.wind_speed_mps = 16.0;

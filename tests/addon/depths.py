@@ -25,14 +25,14 @@ def square(name, half_m, z_m):
     return obj
 
 
-def level_sea(water="ocean", depth_m=math.inf, sun_deg=60.0):
+def level_sea(water="ocean", depth_m=math.inf, sun_deg=60.0, floor=0.4):
     """A level sea seen through, from straight above, over sand where it isn't deep; its scene and object."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy_scene = bpy.context.scene
     obj = square("Sea", 3e3, 0.0)
     scene = pelagic.Scene()
     scene.light.sun_elevation_deg = sun_deg
-    scene.sea.wind_speed_mps, scene.sea.depth_m, scene.water.floor_colour = 0.5, depth_m, (0.55, 0.5, 0.4)
+    scene.sea.wind_speed_mps, scene.sea.depth_m, scene.water.floor_colour = 0.5, depth_m, (floor,) * 3
     scene.light.turbidity = 3.0  # the clearer the air, the more of the light goes down straight: another 2 % of that
     scene.water.type = water
     light.ensure_light(bpy_scene, scene)
@@ -130,8 +130,8 @@ with checking("deep water is as bright as it is opaque"):
 
 # Alone this sees that the volume's colours are the core's, with what the surface sends down again and the bent way of a low sun.
 with checking("water over a floor that is seen through is as bright as opaque water of the core's colour"):
-    for water, depth_m, sun_deg in (("jerlov-IB", 2.5, 55.0), ("coastal", 2.0, 12.0), ("jerlov-IB", 20.0, 35.0)):
-        scene, obj = level_sea(water, depth_m, sun_deg)
+    for water, depth_m, sun_deg, floor in (("jerlov-IB", 2.0, 70.0, 0.9), ("coastal", 2.0, 12.0, 0.5), ("jerlov-IB", 20.0, 35.0, 0.5)):
+        scene, obj = level_sea(water, depth_m, sun_deg, floor)
         clear = seen(2 * SAMPLES)
         obj.pelagic.see_through = False
         material.update_material(obj, scene)

@@ -97,7 +97,7 @@ with checking("the world is the core's sky, at its place, and the lamp its sun")
 with checking("rough water and foam are the core's, facing the sun and away from it"):
     for variance, coverage in (((0.03, 0.015, 0.005), 0.0), ((0.02, 0.02, 0.0), 0.5)):
         scene = flat_sea(1.0, slope_variance=variance, whitecap_coverage=coverage)
-        for angle, azimuth in ((45, 20), (80, 20), (80, 200)):
+        for angle, azimuth in ((45, 20), (80, 20), (80, 200), (20, 200)):
             picture, to_eye = seen(angle, azimuth)
             ratio = picture / core(scene, to_eye, variance, coverage)
             print("  ", variance, coverage, angle, azimuth, np.round(ratio, 3))

@@ -256,15 +256,14 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
 
 
 def _eye_of(obj, bpy_scene, depsgraph):
-    """Where the camera is whose picture shows the light in the waves, in the ocean's coordinates [m], as numbers; None where nobody renders,
-    which spares each frame of the playing its time, and in water that is seen through."""
-    if not (bpy_scene.name in _rendering or _is_rendered_in_a_view()) or depths.is_seen_through(obj, _simulation(obj).scene):
-        return None
-    pinhole = pinhole_of(obj, bpy_scene, depsgraph)
+    """Where the camera is that sees the light in the waves, in the ocean's coordinates [m], as numbers; None without one, and in water that
+    is seen through."""
+    pinhole = None if depths.is_seen_through(obj, _simulation(obj).scene) else pinhole_of(obj, bpy_scene, depsgraph)
     return pinhole and tuple(map(float, pinhole.position_m))
 
 
-def _is_rendered_in_a_view():
+def is_lit_in_a_view():
+    """Whether a view of a window shows materials."""
     manager = bpy.context.window_manager
     return any(area.type == "VIEW_3D" and area.spaces.active.shading.type in {"RENDERED", "MATERIAL"}
                for window in (manager.windows if manager else ()) for area in window.screen.areas)
@@ -336,7 +335,7 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, *_limits(obj, bpy_scene) if view else ())
-    lit = simulation.upwelling
+    lit = simulation.upwelling if bpy_scene.name in _rendering or is_lit_in_a_view() else None  # it would be a fifth of a frame's time
     eye = _eye_of(obj, bpy_scene, depsgraph) if lit and upwelling.has_crests(lit.scene) else None
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map, lit, eye)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):
@@ -438,8 +437,20 @@ def _on_other_data(*_):
         obj.update_tag()
 
 
+def _follow_shading():
+    """Views that begin to show materials say so: nothing else would tell."""
+    bpy.msgbus.clear_by_owner(_simulations)
+    bpy.msgbus.subscribe_rna(key=(bpy.types.View3DShading, "type"), owner=_simulations, args=(), notify=_on_shading)
+
+
+def _on_shading():
+    for obj in oceans():
+        obj.update_tag()
+
+
 @persistent
 def _on_load(*_):
+    _follow_shading()
     _simulations.clear()
     _rendering.clear()
     _on_other_data()
@@ -518,10 +529,12 @@ def register():
     if pelagic is None:
         return
     handlers.add(HANDLERS)
+    _follow_shading()
 
 
 def unregister():
     handlers.remove(HANDLERS)
+    bpy.msgbus.clear_by_owner(_simulations)
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)
     _simulations.clear()

@@ -13,7 +13,7 @@ from harness import *  # noqa: F403
 
 enable(sky_width=None)
 import pelagic
-from pelagic_ocean import depths, ocean, upwelling
+from pelagic_ocean import depths, ocean, play, upwelling
 from pelagic_ocean.properties import FIELDS
 from pictures import core_layers, cycles_exr, shot_in_blender
 
@@ -63,7 +63,10 @@ with checking("the panel Water has the artist's few, those that do something; th
 
 with checking("bubbles: turquoise where foam is, less as it ages, by the core; off there is no attribute and no node"):
     fresh_file()
-    obj = add_ocean(sea__wind_speed_mps=18.0, effects__foam_decay_s=4.0)
+    obj = add_ocean(sea__wind_speed_mps=18.0, effects__foam_decay_s=4.0, water__crest_light=0.0)
+    assert upwelling.ATTRIBUTE not in obj.data.attributes  # nobody looks
+    play.is_lit_in_a_view, is_lit = lambda: True, play.is_lit_in_a_view
+    bpy.context.scene.frame_set(2)
     nodes = obj.data.materials[0].node_tree.nodes
     added, foam = numbers(obj.data, upwelling.ATTRIBUTE), {name: numbers(obj.data, attribute) for name, attribute in (
         ("coverage", "whitecap_coverage"), ("foam_active", "foam_active"), ("foam_age", "foam_age"))}
@@ -77,12 +80,13 @@ with checking("bubbles: turquoise where foam is, less as it ages, by the core; o
     before = added.max()
     change(obj, water__bubbles=2.0)  # live, without another sea
     assert numbers(obj.data, upwelling.ATTRIBUTE).max() > 1.3 * before and upwelling.NODE in nodes
-    change(obj, water__bubbles=0.0, water__crest_light=0.0)
+    change(obj, water__bubbles=0.0)
     assert upwelling.ATTRIBUTE not in obj.data.attributes and upwelling.NODE not in nodes
     change(obj, water__bubbles=1.0)
     assert np.array_equal(numbers(obj.data, upwelling.ATTRIBUTE), added) and upwelling.NODE in nodes
     change(obj, water__body=False)
     assert upwelling.ATTRIBUTE not in obj.data.attributes and upwelling.NODE not in nodes
+    play.is_lit_in_a_view = is_lit
 
 
 def backlit(crest_light):

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import drops, play, sea
+from pelagic_ocean import drops, play, sea, upwelling
 
 picture = sys.argv[-1] if sys.argv[-1].endswith(".png") else str(Path(tempfile.mkdtemp()) / "window.png")
 
@@ -78,6 +78,12 @@ def steps():
         yield lambda: drops.drops_of(obj) and drops.drops_of(obj).data.vertices
         obj.pelagic.effects.spray = obj.pelagic.effects.spray_drops = False
         yield lambda: not drops.drops_of(obj) and not play.simulation_of(obj).is_building
+
+    with checking("the light from the water is in the mesh while a view shows materials"):
+        assert upwelling.ATTRIBUTE not in obj.data.attributes
+        for shading in ("MATERIAL", "SOLID"):
+            area.spaces.active.shading.type = shading
+            yield lambda: (upwelling.ATTRIBUTE in obj.data.attributes) == (shading == "MATERIAL")
 
     with checking("while another sea is built, the old one plays on; then the new one is shown"):
         before, is_done = height(obj), sea.Job.is_done

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # Builds the benchmarks and prints their tables. Some twenty minutes on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all of them:
-#     frame construction query living_foam bake cost_model preview rays trace window ocean baked played memory
+#     frame construction query living_foam bake cost_model preview rays trace window ocean baked played memory blender_water
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
-[ $# -gt 0 ] || set -- frame construction query living_foam bake cost_model preview rays trace window ocean baked played memory
+[ $# -gt 0 ] || set -- frame construction query living_foam bake cost_model preview rays trace window ocean baked played memory blender_water
 targets=()
 for program in "$@"; do
     case $program in
         ocean | played | memory) targets+=(pelagic_python) ;;
-        baked) targets+=(pelagic pelagic_python) ;;
+        baked | blender_water) targets+=(pelagic pelagic_python) ;;
         window) targets+=(pelagic) ;;
         *) targets+=("bench_$program") ;;
     esac
@@ -26,6 +26,7 @@ in_blender() {
 for program in "$@"; do
     case $program in
         baked) in_blender blender_baked.py "$PELAGIC_ROOT/build/release/pelagic" ;;
+        blender_water) in_blender blender_water.py "$PELAGIC_ROOT/build/release/pelagic" ;;
         ocean | played | memory) in_blender "blender_$program.py" ;;
         window) "$here/window.sh" "$PELAGIC_ROOT/build/release/pelagic" ;;
         *) "$PELAGIC_ROOT/build/release/bench/bench_$program" ;;

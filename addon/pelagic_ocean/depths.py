@@ -177,7 +177,8 @@ def coefficients(scene):
 def _extinction(scene, water):
     """(r, g, b) [1/m]. water: of the scene without a floor."""
     extinction = [a + b for a, b in zip(water.absorption_per_m, water.backscatter_per_m)]
-    if not scene.water.body or scene.sea.depth_m >= clear_to_m(scene):
+    near_m = 0.02
+    if not scene.water.body or not 2.0 * near_m < scene.sea.depth_m < (clear_to_m(scene) or 0.0):
         return extinction
     tried = copy.copy(scene)
 
@@ -187,11 +188,11 @@ def _extinction(scene, water):
         tried.water.floor_colour = (0.02,) * 3  # so little that what is sent down again doesn't count
         return upwelling.albedo(tried)[0] - black
 
-    near_m = 0.02
-    if scene.sea.depth_m <= 2.0 * near_m:
+    near = of_floor(near_m)
+    if not near.all():  # in the dark
         return extinction
     way_m = _slants(scene) * (scene.sea.depth_m - near_m)
-    left = of_floor(scene.sea.depth_m) / of_floor(near_m)
+    left = of_floor(scene.sea.depth_m) / near
     return [-math.log(min(max(each, 1e-3), 1.0)) / way_m for each in left]
 
 

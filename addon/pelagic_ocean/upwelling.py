@@ -74,14 +74,19 @@ class Upwelling:
 
     def added(self, arrays, surface, time_s, eye=None):
         """float32 (n, 3): the reflectance that is added at the surface's vertices with these products; of bubbles alone without an
-        eye, (x, y, z) in the object's coordinates [m], which sees the light in the waves. None: nothing anywhere."""
+        eye, which sees the light in the waves: (its place [m] in the object's coordinates, 3 numbers, the object's axes in the world, rows of a
+        matrix, 9). None: nothing anywhere."""
         foam = {}
         if has_bubbles(self.scene) and "coverage" in arrays:
             foam = {name: arrays[name] for name in ("coverage", "foam_active", "foam_age") if name in arrays}
         if eye is not None:
-            towards = np.asarray(eye, np.float32) - arrays["position"]
+            towards = np.asarray(eye[0], np.float32) - arrays["position"]
             towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-6)[:, None]
             normal, crest = self._crests(surface, time_s)
+            if eye[1] != (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0):  # the sun is the world's
+                turn = np.reshape(np.asarray(eye[1], np.float32), (3, 3)).T
+                towards, normal = towards @ turn, normal @ turn
+                crest = np.column_stack([crest[:, :2] @ turn[:2, :2], crest[:, 2]])
             return albedo(self.scene, self._water, towards, normal=normal, crest=crest, **foam) - self._level
         if not foam:
             return None

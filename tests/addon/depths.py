@@ -141,6 +141,13 @@ with checking("water over a floor that is seen through is as bright as opaque wa
         print("  ", water, depth_m, sun_deg, np.round(clear, 3), np.round(clear / opaque, 3))
         assert np.allclose(clear, opaque, rtol=0.15, atol=0.02 * opaque.max())
 
+with checking("the volume's coefficients are finite and not negative, in the dark and in a puddle, too"):
+    scene = pelagic.Scene()
+    for depth_m, sun_deg, water in ((2.5, -30.0, "ocean"), (0.01, 40.0, "ocean"), (0.05, 0.0, "turbid"), (1e6, 40.0, "jerlov-9C")):
+        scene.sea.depth_m, scene.light.sun_elevation_deg, scene.water.type = depth_m, sun_deg, water
+        found = np.array(depths.coefficients(scene))
+        assert np.isfinite(found).all() and (found >= 0.0).all() and found.sum() > 0.0, (depth_m, sun_deg, found)
+
 with checking("by itself water is seen through where its floor shows, out to the horizon; and as somebody chooses"):
     fresh_file()
     obj = add_ocean(horizon=True, water__type="jerlov-IB")

@@ -3,6 +3,7 @@
     water.py -- PELAGIC_PROGRAM
 """
 
+import math
 import sys
 import tempfile
 from pathlib import Path
@@ -13,7 +14,8 @@ from harness import *  # noqa: F403
 
 enable(sky_width=None)
 import pelagic
-from pelagic_ocean import depths, ocean, play, upwelling
+from mathutils import Matrix
+from pelagic_ocean import depths, ocean, play, surfaces, upwelling
 from pelagic_ocean.properties import FIELDS
 from pictures import core_layers, cycles_exr, shot_in_blender
 
@@ -124,6 +126,19 @@ with checking("waves shape the light in the water as in the core's picture, whil
     print("   correlation", round(alike, 2), "amplitude", round(slope, 2), "of", np.round(expected.std() / core_level[sea][:, 1].mean(), 2))
     assert not played and held == [True]
     assert alike > 0.8 and 0.7 < slope < 1.3, (alike, slope)
+
+with checking("an ocean that is turned has the light of the world's sun"):
+    added = []
+    for turn in (0.0, math.radians(90.0)):
+        scene = pelagic.Scene()
+        scene.light.sun_elevation_deg, scene.light.sun_azimuth_deg = 20.0, 30.0 + math.degrees(turn)
+        surface = surfaces.patch(60.0, 20, False)
+        arrays = pelagic.Frame(pelagic.Sea(scene, ("position",), cell_m=surface.levels_m(), pixel_m=surface.levels_m()))
+        arrays.set(3.0)
+        eye = (20.0, -30.0, 4.0), tuple(number for row in Matrix.Rotation(turn, 3, "Z") for number in row)
+        added.append(upwelling.Upwelling(scene).added(arrays.evaluate(surface.rest, cell_m=surface.cell_m), surface, 3.0, eye))
+    # The waves' variances, which let light in, are the same along x and y to some per cent.
+    assert np.abs(added[0]).max() > 1e-3 and np.allclose(*added, atol=0.1 * np.abs(added[0]).max()), np.abs(added[0] - added[1]).max()
 
 # Alone this sees a lagoon as an artist gets it: preset, default settings of Cycles, clear water that came by itself.
 with checking("a lagoon in three steps: added, its preset, rendered; as bright as the core's picture in each band"):

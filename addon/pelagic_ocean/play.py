@@ -71,14 +71,14 @@ class Simulation:
             self._warned, self._warnings = self.scene, () if self.scene.validate() else tuple(self.scene.warnings())
         return self._warnings
 
-    @property
-    def upwelling(self):
-        """upwelling.Upwelling of the settings; None where the water is the same everywhere."""
-        if self._lit is not self.scene:
-            self._lit, self._upwelling = self.scene, None
-            if upwelling.has_bubbles(self.scene) or upwelling.has_crests(self.scene):
+    def upwelling(self, is_lit):
+        """upwelling.Upwelling of the settings; None where the water is the same everywhere, or nobody looks, which frees what it holds."""
+        scene = self.scene if is_lit else None
+        if self._lit is not scene:
+            self._lit, self._upwelling = scene, None
+            if scene and (upwelling.has_bubbles(scene) or upwelling.has_crests(scene)):
                 try:
-                    self._upwelling = upwelling.Upwelling(self.scene)
+                    self._upwelling = upwelling.Upwelling(scene)
                 except (ValueError, pelagic.ShotError):  # look.py says so
                     pass
         return self._upwelling
@@ -336,7 +336,7 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, *_limits(obj, bpy_scene) if view else ())
-    lit = simulation.upwelling if bpy_scene.name in _rendering or is_lit_in_a_view() else None  # it would be a fifth of a frame's time
+    lit = simulation.upwelling(bpy_scene.name in _rendering or is_lit_in_a_view())  # it would be a fifth of each frame's time
     eye = _eye_of(obj, bpy_scene, depsgraph) if lit and upwelling.has_crests(lit.scene) else None
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map, lit, eye)
     if shown == simulation.shown and not again and (is_saving or obj.data.get(meshes.SIGNATURE) != meshes.MARKER):

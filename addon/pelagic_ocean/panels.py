@@ -14,8 +14,8 @@ from .presets import PELAGIC_MT_presets
 from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields, unit_of
 from .translations import CONTEXT, say
 
-# Title → tables of keys.
-PANELS = {"Sea": ("sea", "shot"), "Water": (), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
+# Title → tables of keys. Water is short, and found above the sea's many rows.
+PANELS = {"Water": (), "Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
           "Light": ("light",), "Output": ("output", "quality")}
 # The artist's few of the water; what else its table has is in a panel below them.
 WATER = ("water.type", "water.chlorophyll_mg_m3", "sea.depth_m", "water.floor_colour", "water.crest_light", "water.bubbles")
@@ -108,7 +108,7 @@ def _draw_tables(layout, settings, tables, title):
 
 
 def _draw_water(layout, obj):
-    settings, scene = obj.pelagic, play.simulation_of(obj).scene
+    settings, scene, layout = obj.pelagic, play.simulation_of(obj).scene, layout.column()
     for path in WATER:
         if path in BY_PATH and counts(BY_PATH[path], settings) and _matters(BY_PATH[path], settings):
             _draw_field(layout, getattr(settings, BY_PATH[path].table), BY_PATH[path])

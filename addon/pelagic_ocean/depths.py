@@ -180,25 +180,27 @@ def _extinction(scene, water):
     near_m = 0.02
     if not scene.water.body or not 2.0 * near_m < scene.sea.depth_m < (clear_to_m(scene) or 0.0):
         return extinction
-    tried = copy.copy(scene)
+    tried, sky = copy.copy(scene), light.sky_of(scene)
 
     def of_floor(depth_m):
         tried.sea.depth_m, tried.water.floor_colour = depth_m, (0.0,) * 3
-        black = upwelling.albedo(tried)[0]
+        black = upwelling.albedo(tried, sky=sky)[0]
         tried.water.floor_colour = (0.02,) * 3  # so little that what is sent down again doesn't count
-        return upwelling.albedo(tried)[0] - black
+        return upwelling.albedo(tried, sky=sky)[0] - black
 
     near = of_floor(near_m)
     if not near.all():  # in the dark
         return extinction
-    way_m = _slants(scene) * (scene.sea.depth_m - near_m)
+    way_m = _slants(sky) * (scene.sea.depth_m - near_m)
     left = of_floor(scene.sea.depth_m) / near
     return [-math.log(min(max(each, 1e-3), 1.0)) / way_m for each in left]
 
 
-def _slants(scene):
+def _slants(sky):
     """1/cosine of the light's way down, sun's and sky's, and up to the eye that upwelling.albedo() is for."""
-    sky, below = light.sky_of(scene), lambda cosine: 1.0 / math.sqrt(1.0 - (1.0 - cosine**2) / WATER_INDEX**2)
+    def below(cosine):
+        return 1.0 / math.sqrt(1.0 - (1.0 - cosine**2) / WATER_INDEX**2)
+
     sun, dome = sky.sun_irradiance[1], sky.sky_irradiance[1]
     return (sun * below(sky.sun_direction[2]) + dome * SKY_SLANT) / max(sun + dome, 1e-12) + below(upwelling.FROM[2])
 

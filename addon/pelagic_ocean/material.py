@@ -156,6 +156,7 @@ def new_material():
     lit = water * (tree.vector(1.5, 1.2, 1.0) * thin + (1.0, 1.0, 1.0))
     lit = tree.add("ShaderNodeVectorMath", {0: lit, 1: (0.0, 0.0, 0.0)}, operation="ADD")
     lit.socket.node.name = lit.socket.node.label = upwelling.SUM
+    lit = lit.at_least(0.0)  # of a darker colour than the core's
     body = tree.add("ShaderNodeBsdfDiffuse", {"Color": lit * (1.0 - part["Fresnel"]), "Normal": upwards})
     white = tree.add("ShaderNodeBsdfDiffuse", {"Color": foam["Color"], "Normal": part["Foam Normal"]})
 

@@ -53,13 +53,13 @@ def connect(material, scene):
             tree.links.new(tree.nodes[CLEAR_LIGHT].outputs[0], tree.nodes[CLEAR_SUM].inputs[1])
 
 
-def albedo(scene, water=None, to_eye=None, **points):
+def albedo(scene, water=None, to_eye=None, sky=None, **points):
     """float32 (n, 3): the diffuse reflectance of the water under sun and sky, before the factor (1 − Fresnel) on the way out.
-    to_eye: float32 (n, 3), default FROM. points: arguments of pelagic.water_albedo(), n of each; without them n is 1."""
+    water, sky: the scene's, where they are known. to_eye: float32 (n, 3), default FROM. points: arguments of pelagic.water_albedo(), n of each; without them n is 1."""
     if to_eye is None:
         count = len(next(iter(points.values()))) if points else 1
         to_eye = np.broadcast_to(np.array(FROM, np.float32), (count, 3))
-    return pelagic.water_albedo(light.sky_of(scene), water or pelagic.WaterBody(scene), to_eye, **points)
+    return pelagic.water_albedo(sky or light.sky_of(scene), water or pelagic.WaterBody(scene), to_eye, **points)
 
 
 class Upwelling:
@@ -68,7 +68,8 @@ class Upwelling:
     def __init__(self, scene):
         self.scene = scene
         self._water = pelagic.WaterBody(scene)
-        self._level = albedo(scene, self._water)
+        self._sky = light.sky_of(scene)
+        self._level = albedo(scene, self._water, sky=self._sky)
         self._frame, self._widest_m = None, None  # of the waves that shape the light, and the largest footprint that it can be asked for
         self._asked, self._waves = (None, None), None  # of which surface and time
 
@@ -87,13 +88,13 @@ class Upwelling:
                 turn = np.reshape(np.asarray(eye[1], np.float32), (3, 3)).T
                 towards, normal = towards @ turn, normal @ turn
                 crest = np.column_stack([crest[:, :2] @ turn[:2, :2], crest[:, 2]])
-            return albedo(self.scene, self._water, towards, normal=normal, crest=crest, **foam) - self._level
+            return albedo(self.scene, self._water, towards, self._sky, normal=normal, crest=crest, **foam) - self._level
         if not foam:
             return None
         made = np.zeros((len(surface), 3), np.float32)
         there = np.flatnonzero(foam["coverage"] > LEAST_COVERAGE)
         if len(there):
-            made[there] = albedo(self.scene, self._water, **{name: each[there] for name, each in foam.items()}) - self._level
+            made[there] = albedo(self.scene, self._water, sky=self._sky, **{name: each[there] for name, each in foam.items()}) - self._level
         return made
 
     def _crests(self, surface, time_s):

@@ -91,7 +91,9 @@ def _matters(field, settings):
             "water.bubbles": has_body and settings.effects.whitecaps,
             "surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
             "surface.earth_curvature": kind in ("projected-grid", "near-far"),
-            "surface.beyond": False}.get(field.path, True)  # of Pelagic's own pictures; here it is horizon
+            # Of Pelagic's own pictures: here beyond is horizon, and the floor is level, of one colour and evenly lit.
+            "surface.beyond": False, "water.caustics": False, "water.floor_pattern": False, "water.floor_pattern_m": False,
+            "sea.depth_file": False, "sea.depth_size_m": False, "sea.depth_east_m": False, "sea.depth_north_m": False}.get(field.path, True)
 
 
 def _draw_tables(layout, settings, tables, title):
@@ -135,7 +137,7 @@ def _why_seen_through(obj, scene, clear_m):
 
 def _draw_rest_of_water(layout, settings):
     for field in FIELDS:
-        if field.table == "water" and field.path not in WATER:
+        if field.table == "water" and field.path not in WATER and counts(field, settings) and _matters(field, settings):
             _draw_field(layout, settings.water, field)
 
 

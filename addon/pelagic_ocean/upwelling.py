@@ -106,7 +106,7 @@ class Upwelling:
         if self._widest_m is None or widest > self._widest_m:
             levels = [CREST_M * 2**level for level in range(math.ceil(math.log2(widest / CREST_M) - 1e-6) + 1)]
             self._frame = pelagic.Frame(pelagic.Sea(self.scene, ("position", "normal"), cell_m=levels, pixel_m=levels))
-            self._widest_m = widest
+            self._widest_m = levels[-1]
         self._frame.set(time_s)
         axis = {} if surface.cell_axis_m is None else {"cell_axis_m": surface.cell_axis_m, "pixel_axis_m": surface.cell_axis_m}
         waves = self._frame.evaluate(surface.rest, surface.origin_m, cell_m=cell_m, pixel_m=cell_m, **axis)

@@ -6,8 +6,6 @@ vec3 upside_down(vec3 direction) { return vec3(direction.x, direction.y, -direct
 
 // ---- The water between
 
-// Of scattered light the part that an eye still takes for light that wasn't: particles send 0.47 of theirs within 6° on.
-const float kScatteredAside = 0.53f;
 // Phase functions of Henyey and Greenstein, without what they have at 90°, which the light that comes back out of deep water
 // (out_of_deep()) has already: of the rest of particles' light, 0.04 /sr at 50°, and of the same for a sky, whose light in the water fills a
 // cone of 2.1 sr: what of it goes on in that cone is 0.38 /sr.
@@ -90,7 +88,7 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
                     exp(-both * reflected * max(sight.floor_m - sight.depth_m, 0.0f));
         vec3 direct = sight.to_floor ? exp(-both * reflected * sight.length_m) : vec3(0.0f);
         vec3 bare = floor_colour / kPi;
-        vec3 spread_out = exp((-kScatteredAside * sight.floor_m * sight.slant) * max(scattering - 2.0f * own, vec3(0.0f)));
+        vec3 spread_out = left_gathered(scattering, own, sight.floor_m * sight.slant);
         sun += bare * (seen + direct * (1.0f + sight.gathered * spread_out)) * exp(-by_sun * sight.floor_m);
         sky += bare * (seen + direct) * exp(-by_sky * sight.floor_m);
     }
@@ -129,17 +127,16 @@ struct WaterBetween {
     vec3 left;  // part of what is behind
 };
 
-// Of a sight as water_sight() has it, from a place relative to the eye; scattering: b [1/m]; blur: the width of what is seen as one a unit of
+// Of a sight as water_sight() has it, from a place relative to the eye; blur: the width of what is seen as one a unit of
 // distance, beside a pixel.
-WaterBetween water_between(vec3 from, vec3 direction, float height_m, float surface_m, float blur, SeaLight light,
-                           WaterBands scattering) {
+WaterBetween water_between(vec3 from, vec3 direction, float height_m, float surface_m, float blur, SeaLight light) {
     WaterLook look = light.water;
     WaterBands bare = look.floor_colour;
     float gathered = 0.0f;
     if (surface_m < 0.0f && direction.z < 0.0f && look.floor_m < kNoFloor_m && is_floor_near(from, light.floor)) {
         float down = max(-direction.z, 0.02f);
         float wide = sqrt(square(light.floor.pixel) + square(blur)) * inversesqrt(down) / down;
-        SeenFloor there = seen_floor(from, vec2(direction.x, direction.y) / down, wide, 0.0f, light.floor);
+        SeenFloor there = seen_floor(from, vec2(direction.x, direction.y) / down, wide, light.floor.pixel * length(from), light.floor);
         look.floor_m = max(there.depth_m - height_m, kLeastFloor_m);
         gathered = there.light - 1.0f;
         if (light.floor.colours.w > 0.0f) {
@@ -149,9 +146,9 @@ WaterBetween water_between(vec3 from, vec3 direction, float height_m, float surf
     }
     WaterSight sight = water_sight(direction, height_m, surface_m, light.sun_direction, look);
     sight.gathered = gathered;
-    WaterSeen shorter = seen_in_water(look.absorption.shorter, scattering.shorter, look.backscatter.shorter, kOwnShorter,
+    WaterSeen shorter = seen_in_water(look.absorption.shorter, look.scattering.shorter, look.backscatter.shorter, kOwnShorter,
                                       bare.shorter, sight);
-    WaterSeen longer = seen_in_water(look.absorption.longer, scattering.longer, look.backscatter.longer, kOwnLonger,
+    WaterSeen longer = seen_in_water(look.absorption.longer, look.scattering.longer, look.backscatter.longer, kOwnLonger,
                                      bare.longer, sight);
     float in_sun = entering(vec3(light.sun_direction.x, light.sun_direction.y, max(light.sun_direction.z, 0.0f)), look.waves);
     vec3 of_sun = light.sun_irradiance * in_sun * colour_of(WaterBands(shorter.sun, longer.sun));
@@ -262,7 +259,7 @@ const float kFoamLetsThrough = 0.5f;
 // All that a pixel of the surface sends to an eye below it. As sea_radiance(), with the world's axes; distance_m: of the eye, which is
 // at height_m above the sea at rest. Foam hides sky, sun and mirrored water, and is lit from both sides.
 SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, float height_m, float distance_m,
-                        SeaLight light, WaterBands scattering) {
+                        SeaLight light) {
     vec3 eye = upside_down(to_eye);
     SlopeFrame frame = slope_frame(facing_normal(vec3(-normal.x, -normal.y, normal.z), eye), slope_variance);
     vec3 v = into_frame(frame, eye);
@@ -271,7 +268,7 @@ SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam 
     SkyFromBelow sky = sky_from_below(v, frame);
     terms.sky = clear * sky.sky;
     if (kSun) terms.sun = clear * sun_from_below(v, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);
-    WaterBetween between = water_between(vec3(0.0f), -to_eye, height_m, distance_m, 0.0f, light, scattering);
+    WaterBetween between = water_between(vec3(0.0f), -to_eye, height_m, distance_m, 0.0f, light);
     if (kWater) {
         vec2 mean = mean_visible_slope(visible_slopes(v, frame.variance));
         vec3 f = normalize(vec3(-mean.x, -mean.y, 1.0f));
@@ -279,11 +276,11 @@ SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam 
         mirrored = normalize(vec3(mirrored.x, mirrored.y, min(mirrored.z, -1.0e-3f)));
         // A facet's tilt turns the ray by twice as much.
         float mixed = 2.0f * sqrt(6.0f * max(slope_variance.x + slope_variance.y, 0.0f));
-        terms.sea = clear * (1.0f - sky.through) * water_between(-distance_m * to_eye, mirrored, 0.0f, -1.0f, mixed, light, scattering).light;
+        terms.sea = clear * (1.0f - sky.through) * water_between(-distance_m * to_eye, mirrored, 0.0f, -1.0f, mixed, light).light;
     }
     if (kWhitecaps) {
         vec3 above = (light.sun_irradiance + light.sky_irradiance) / kPi;
-        vec3 below = water_between(-distance_m * to_eye, vec3(0.0f, 0.0f, -1.0f), 0.0f, -1.0f, 1.0f, light, scattering).light;
+        vec3 below = water_between(-distance_m * to_eye, vec3(0.0f, 0.0f, -1.0f), 0.0f, -1.0f, 1.0f, light).light;
         terms.foam = seen.opacity * (kFoamLetsThrough * (1.0f - seen.white) * above + seen.white * below);
     }
     terms.sun *= between.left;

@@ -20,6 +20,12 @@ struct Shading {
 
 }  // namespace floor_shading
 
+floor_shading::Shading::FloorView glsl(const FloorSeen& seen) {
+    return {true,        seen.z_m,          seen.curvature_per_m, seen.pixel,         seen.lowest_m,
+            seen.depths, seen.depths_per_m, seen.colours,         seen.colours_first, seen.light,
+            seen.coarse};
+}
+
 void require(bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("a floor's map: ") + what);
 }
@@ -37,6 +43,8 @@ void Floor::set_depths(glm::ivec2 columns_rows, std::vector<float> depths_m, glm
             "has depths that aren't positive");
     require(values_.empty(), "has depths, colours or light already");
     values_ = std::move(depths_m);
+    lowest_m_ =
+        std::min(z_m_, rest_m_ - static_cast<double>(*std::max_element(values_.begin(), values_.end())));
     depth_size_ = columns_rows;
     depth_from_m_ = from_m;
     depth_per_m_ = glm::dvec2(columns_rows) / size_m;
@@ -77,13 +85,19 @@ std::span<float> Floor::set_light(const Light& light) {
 }
 
 double Floor::depth_m(glm::dvec2 place_m) const {
-    if (!has_depths()) return -z_m_;
-    const FloorSeen seen = seen_from({.position_m = glm::dvec3(place_m, 0.0)});
+    if (!has_depths()) return rest_m_ - z_m_;
+    const FloorSeen seen = seen_from({.position_m = glm::dvec3(place_m, rest_m_)});
     floor_shading::Shading shading{seen.values};
-    const floor_shading::Shading::FloorView view{
-        true,         seen.z_m,           0.0f,       0.0f,       seen.depths, seen.depths_per_m,
-        seen.colours, seen.colours_first, seen.light, seen.coarse};
-    return -static_cast<double>(shading.floor_height(glm::vec2(0.0f), view));
+    return -static_cast<double>(shading.floor_height(glm::vec2(0.0f), glsl(seen)));
+}
+
+double Floor::distance_m(const glm::dvec3& eye_m, const glm::dvec3& direction) const {
+    const FloorSeen seen = seen_from({.position_m = eye_m});
+    floor_shading::Shading shading{seen.values};
+    const double down = std::max(-direction.z, 1e-6);
+    const auto there =
+        shading.seen_floor(glm::vec3(0.0f), glm::vec2(glm::dvec2(direction) / down), 0.0f, 0.0f, glsl(seen));
+    return static_cast<double>(there.depth_m) / down;
 }
 
 FloorSeen Floor::seen_from(const FloorEye& from) const {
@@ -93,10 +107,11 @@ FloorSeen Floor::seen_from(const FloorEye& from) const {
                    .z_m = static_cast<float>(z_m_ - eye_m.z),
                    .curvature_per_m = static_cast<float>(from.curvature_per_m),
                    .pixel = static_cast<float>(from.pixel_tangent),
+                   .lowest_m = static_cast<float>(lowest_m_ - eye_m.z),
                    .values = values_};
     if (has_depths()) {
         seen.depths = glm::vec4(depth_from_m_ - eye, depth_size_);
-        seen.depths_per_m = glm::vec4(glm::vec2(depth_per_m_), -static_cast<float>(eye_m.z), 0.0f);
+        seen.depths_per_m = glm::vec4(glm::vec2(depth_per_m_), static_cast<float>(rest_m_ - eye_m.z), 0.0f);
     }
     if (colour_side_ > 0) {
         // Within the picture, so that a single's precision is that of its texels far out at sea, too.

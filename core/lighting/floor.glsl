@@ -8,6 +8,7 @@ struct FloorView {
     float z_m;        // of a floor without a map
     float curvature_per_m;  // of the earth
     float pixel;      // tangent that a pixel of the eye's covers
+    float lowest_m;   // nowhere is it lower
     vec4 depths;      // its map: corner, columns and rows (0: none)
     vec4 depths_per_m;  // columns and rows per metre; the height of the sea at rest; first value
     vec4 colours;     // picture, repeated: where in it the eye is, times its texels; texels per metre; texels a side (0: none)
@@ -25,6 +26,7 @@ struct SeenFloor {
 const float kFloorLightStep = 4.0f;  // texels of the coarser map over those of the finer
 const float kFloorLightEdge = 16.0f;  // texels over which a map gives way to what is around it
 const float kLeastFloor_m = 0.01f;    // a trough touches the floor
+const int kFloorSteps = 10;
 const float kFarFloor_m = 3.0e4f;     // how far a parabola stands for the earth, to a centimetre
 
 // Between four texels of a map of that many columns; place in texels, whose middles are at halves.
@@ -126,8 +128,28 @@ SeenFloor seen_floor(vec3 surface, vec2 along, float blur, float pixel_m, FloorV
     vec2 from = vec2(surface.x, surface.y);
     float height = surface.z + 0.5f * of.curvature_per_m * dot(from, from);
     float depth = max(height - floor_height(from, of), kLeastFloor_m);
-    if (of.depths.z > 0.0f)
-        for (int i = 0; i < 4; ++i) depth = max(height - floor_height(from + depth * along, of), kLeastFloor_m);
+    if (of.depths.z > 0.0f) {
+        // How far the ray is above the floor, where it is so deep: once more than nothing, once less, and between them straight, but for the
+        // end that stays, which counts half (Illinois).
+        float least = 0.0f;
+        float most = max(height - of.lowest_m, 2.0f * kLeastFloor_m);
+        float above = depth;
+        float below = min(height - most - floor_height(from + most * along, of), -1.0e-6f);
+        for (int i = 0; i < kFloorSteps; ++i) {
+            depth = (least * below - most * above) / (below - above);
+            float there = height - depth - floor_height(from + depth * along, of);
+            if (there > 0.0f) {
+                least = depth;
+                above = there;
+                below *= 0.5f;
+            } else {
+                most = depth;
+                below = min(there, -1.0e-6f);
+                above *= 0.5f;
+            }
+        }
+        depth = max(depth, kLeastFloor_m);
+    }
     vec2 place = from + depth * along;
     float width = sqrt(pixel_m * pixel_m + blur * blur * depth * depth);
     return SeenFloor(depth, floor_colour(place, width, of), floor_light(place, width, of));

@@ -14,7 +14,7 @@ namespace pelagic {
 // As floor.glsl has it, from an eye.
 struct FloorSeen {
     bool is_seen = false;
-    float z_m = 0.0f, curvature_per_m = 0.0f, pixel = 0.0f;
+    float z_m = 0.0f, curvature_per_m = 0.0f, pixel = 0.0f, lowest_m = 0.0f;
     glm::vec4 depths{0.0f}, depths_per_m{0.0f}, colours{0.0f};
     float colours_first = 0.0f;
     glm::vec4 light{0.0f}, coarse{0.0f};
@@ -32,8 +32,9 @@ inline constexpr std::size_t kMostFloorValues = std::size_t{1} << 24;
 
 class Floor {
   public:
-    // Level, at this height of the world [m]. Not finite: there is none.
-    explicit Floor(double z_m = -1e9) : z_m_(z_m) {}
+    // Level, so deep below a sea that rests at this height of the world [m].
+    explicit Floor(double depth_m = 1e9, double rest_m = 0.0)
+        : rest_m_(rest_m), z_m_(rest_m - depth_m), lowest_m_(z_m_) {}
 
     // Depths below the sea at rest [m], > 0, rows from the south, over a rectangle of the world that begins at from_m. Beyond it they go over to the
     // level floor.
@@ -44,10 +45,11 @@ class Floor {
     // colour. Throws as set_depths().
     void set_colours(int side, std::span<const glm::vec3> colours, double size_m);
 
-    double z_m() const { return z_m_; }
     bool has_depths() const { return depth_size_.x > 0; }
     // Depth below the sea at rest at a place of the world [m].
     double depth_m(glm::dvec2 place_m) const;
+    // How far from an eye in the water a sight (unit, downwards) meets it [m].
+    double distance_m(const glm::dvec3& eye_m, const glm::dvec3& direction) const;
 
     // What waves make of the sun's light on the floor, times what a level sea lets fall there.
     struct Light {
@@ -65,7 +67,7 @@ class Floor {
     const std::vector<float>& values() const { return values_; }
 
   private:
-    double z_m_;
+    double rest_m_, z_m_, lowest_m_;
     glm::ivec2 depth_size_{0};
     glm::dvec2 depth_from_m_{0.0}, depth_per_m_{0.0};
     int colour_side_ = 0;
@@ -75,7 +77,7 @@ class Floor {
     std::vector<float> values_;  // depths, colours, light
 };
 
-// Texels of the coarser map of light over those of the finer.
+// Texels of the coarser map of light over those of the finer: as in floor.glsl.
 inline constexpr double kFloorLightStep = 4.0;
 
 }  // namespace pelagic

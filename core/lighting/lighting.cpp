@@ -88,6 +88,7 @@ typename Variant::WaterLook look_of(const WaterBody& water) {
             water.has_body,
             bands<Variant>(water.absorption),
             bands<Variant>(water.backscatter),
+            bands<Variant>(water.scattering),
             bands<Variant>(water.floor_colour),
             water.floor_m,
             water.waves,
@@ -143,8 +144,8 @@ typename Variant::SeaLight light_of(const Sky& sky, const WaterBody& water, cons
             sky.sun_irradiance,
             sky.sky_irradiance,
             look_of<Variant>(water),
-            {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.pixel, floor.depths, floor.depths_per_m,
-             floor.colours, floor.colours_first, floor.light, floor.coarse}};
+            {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.pixel, floor.lowest_m, floor.depths,
+             floor.depths_per_m, floor.colours, floor.colours_first, floor.light, floor.coarse}};
 }
 
 template <class Variant>
@@ -250,20 +251,20 @@ void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const Wa
     if (points.size() != radiance.size() || points.size() != distance_m.size())
         throw std::invalid_argument(
             "shade_sea_from_below: give a distance and one SeaRadiance for each SeaPoint");
+    if (choice.sky && sky.map.size() == 0)
+        throw std::invalid_argument("shade_sea_from_below: the sky has no map");
     Variant shading(sky.map, nullptr, choice, foam.picture, floor.values);
     const auto light = sea_shading::light_of<Variant>(sky, water, floor);
     const auto pattern = sea_shading::pattern_of<Variant>(foam);
-    const auto scattering = sea_shading::bands<Variant>(water.scattering);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const glm::vec3 down(-p.normal.x, -p.normal.y, p.normal.z);
         const glm::vec3 seen = shading.visible_normal(down, shading.upside_down(to_eye),
                                                       p.slope_variance_at_rest, p.mesh_variance);
-        const typename Variant::SeaTerms terms =
-            shading.sea_from_below(to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
-                                   sea_shading::foam_at(shading, choice, pattern, p, sky), height_m,
-                                   distance_m[i], light, scattering);
+        const typename Variant::SeaTerms terms = shading.sea_from_below(
+            to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
+            sea_shading::foam_at(shading, choice, pattern, p, sky), height_m, distance_m[i], light);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }
@@ -276,13 +277,11 @@ void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         throw std::invalid_argument("shade_water: give one SeaRadiance for each direction");
     Variant shading(sky.map, nullptr, choice, nullptr, floor.values);
     const auto light = sea_shading::light_of<Variant>(sky, water, floor);
-    const auto scattering = sea_shading::bands<Variant>(water.scattering);
     for (std::size_t i = 0; i < direction.size(); ++i) {
         radiance[i] = {};
         if (choice.water)
             radiance[i].sea =
-                shading.water_between(glm::vec3(0.0f), direction[i], height_m, -1.0f, 0.0f, light, scattering)
-                    .light;
+                shading.water_between(glm::vec3(0.0f), direction[i], height_m, -1.0f, 0.0f, light).light;
     }
 }
 

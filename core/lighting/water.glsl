@@ -26,6 +26,7 @@ struct WaterLook {
     bool has_body;
     WaterBands absorption;      // a [1/m]
     WaterBands backscatter;     // b_b [1/m]
+    WaterBands scattering;      // b [1/m]
     WaterBands floor_colour;    // reflectance of the floor, diffuse
     float floor_m;              // how deep it lies; kNoFloor_m and more: there is none
     vec3 waves;                 // slope variances (xx, yy, xy) of all waves
@@ -96,7 +97,7 @@ struct WaterWay {
     float bubbles;    // ¾ of their cross-section over the volume: b_g L [-], times the coverage of the foam over them
     float bubbles_m;
     float floor_m;
-    float gathered;  // the sun's light on the floor over its mean, less 1
+    vec3 gathered;  // the sun's light on the floor over its mean, less 1
 };
 
 // Upward radiance just below the surface over the irradiance that enters there: of the sun, of the sky, of the sun through a crest, and
@@ -132,6 +133,14 @@ vec3 out_of_deep(vec3 u, vec3 own, float sun, float eye) {
     return u * mix(particles, water, own);
 }
 
+// Of scattered light the part that an eye still takes for light that wasn't: particles send 0.47 of theirs within 6° on.
+const float kScatteredAside = 0.53f;
+
+// What is left of a pattern of light after so long a way: all but what is scattered aside. own: backscatter of sea water itself.
+vec3 left_gathered(vec3 scattering, vec3 own, float way_m) {
+    return exp((-kScatteredAside * way_m) * max(scattering - 2.0f * own, vec3(0.0f)));
+}
+
 // At three wavelengths. own: of the backscatter that of sea water itself. A column: Lee et al. 1998 and 1999, with constants of the same
 // Monte Carlo; the floor reflects diffusely.
 WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_colour, WaterWay way) {
@@ -146,12 +155,8 @@ WaterBack water_back(vec3 absorption, vec3 backscatter, vec3 own, vec3 floor_col
         float scattered = 0.954f;
         vec3 reflected = 1.02f * sqrt(1.0f + 4.7f * u);
         vec3 bare = floor_colour / kPi;
-        // What particles scatter on by a few degrees is gathered no more. They scatter 1/0.018 of what they scatter back (Petzold 1972), half
-        // of it by more than that.
-        vec3 spread = exp((-0.53f / 0.018f * way.floor_m * way.sun) * max(backscatter - own, vec3(0.0f)));
-        vec3 lit = 1.0f + way.gathered * spread;
         sun = sun * (1.0f - exp(-depth * (way.sun + way.eye * scattered))) +
-              bare * lit * exp(-depth * (way.sun + way.eye * reflected));
+              bare * (1.0f + way.gathered) * exp(-depth * (way.sun + way.eye * reflected));
         sky = sky * (1.0f - exp(-depth * (kSkySlant + way.eye * scattered))) +
               bare * exp(-depth * (kSkySlant + way.eye * reflected));
         // Up and down again it goes at all angles.
@@ -227,14 +232,16 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     float down = clamp(up_ray.z, 0.3f, 1.0f);
     way.eye = 1.0f / down;
     way.floor_m = look.floor_m;
-    way.gathered = 0.0f;
+    way.gathered = vec3(0.0f);
+    vec3 gathered = vec3(0.0f);
     WaterBands bare = look.floor_colour;
     if (look.floor_m < kNoFloor_m && is_floor_near(seen.from_eye, of_floor)) {
         // A facet's tilt moves the ray by (1 − 1/n) of it; a normal distribution of variance v is as wide as a box of √(12 v).
         float blur = (1.0f - 1.0f / kWaterIndex) * sqrt(6.0f * max(hidden.x + hidden.y, 0.0f));
         SeenFloor there = seen_floor(seen.from_eye, vec2(up_ray.x, up_ray.y) / -down, blur, seen.pixel_m, of_floor);
         way.floor_m = there.depth_m;
-        way.gathered = there.light - 1.0f;
+        way.gathered = (there.light - 1.0f) * left_gathered(look.scattering.shorter, kOwnShorter, way.floor_m * way.sun);
+        gathered = (there.light - 1.0f) * left_gathered(look.scattering.longer, kOwnLonger, way.floor_m * way.sun);
         if (of_floor.colours.w > 0.0f) {
             WaterBands picture = bands_of(there.colour);
             bare = WaterBands(bare.shorter * picture.shorter, bare.longer * picture.longer);
@@ -250,6 +257,7 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
     way.crest_per_m = look.crest_per_m;
 
     WaterBack shorter = water_back(look.absorption.shorter, look.backscatter.shorter, kOwnShorter, bare.shorter, way);
+    way.gathered = gathered;
     WaterBack longer = water_back(look.absorption.longer, look.backscatter.longer, kOwnLonger, bare.longer, way);
     vec3 into = sun_irradiance * entering(vec3(to_sun.x, to_sun.y, max(to_sun.z, 0.0f)), look.waves);
     vec3 back = colour_of(WaterBands(shorter.sun, longer.sun));

@@ -54,6 +54,13 @@ std::vector<std::string> trough_warning(const PreparedScene& prepared) {
             number_text(std::round(10.0 * prepared.extent.significant_height_m) / 10.0) + " m high"};
 }
 
+std::vector<std::string> map_warning(const PreparedScene& prepared) {
+    if (prepared.scene.sea.depth_file == SeaState{}.depth_file) return {};
+    return {
+        "waves don't feel the depths of sea.depth_file: the floor is seen there, and waves are those of " +
+        number_text(prepared.scene.sea.depth_m) + " m (sea.depth_m)"};
+}
+
 std::vector<std::string> folding_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const Choppiness asked = Choppiness::asked(prepared.scene);
@@ -166,7 +173,8 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more : {&trough_warning, &unpressed_warning, &repeats_warning, &blending_warning})
+    for (auto* more :
+         {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
         warnings.push_back(std::move(thin));

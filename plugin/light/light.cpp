@@ -281,9 +281,10 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
 }
 
 Floor make_floor(const Scene& scene, double rest_m) {
-    // Nobody sees deeper; beyond a map of depths the floor falls so far.
+    // Beyond a map of depths the floor falls no deeper than anybody sees.
     constexpr double kDeepest_m = 500.0;
-    Floor floor(rest_m - std::min(scene.sea.depth_m, kDeepest_m));
+    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
+    Floor floor(std::min(scene.sea.depth_m, has_map ? kDeepest_m : 1e9), rest_m);
     for (const Key* key : floor_keys(scene)) {
         const std::string path = std::get<std::string>(value_of(scene, *key));
         const auto refuse = [&](const std::string& problem, const std::string& accepted) {

@@ -15,6 +15,7 @@
 #include "core/evaluate/evaluate.h"
 #include "core/lighting/lighting.h"
 #include "core/plan/plan.h"
+#include "core/surface/footprint_levels.h"
 
 namespace pelagic {
 namespace {
@@ -75,7 +76,7 @@ struct Falls {
 
 template <class T>
 Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const Beam& beam, double depth_m,
-               double margin_m, double waves_m, const std::atomic<bool>* cancel) {
+               double finest_cell_m, double margin_m, double waves_m, const std::atomic<bool>* cancel) {
     const double s = map.texel_m;
     const int margin = static_cast<int>(std::ceil(margin_m / s));
     Falls falls{.columns = map.side + 2 * margin, .rows = map.side + 2 * margin, .place = {}, .light = {}};
@@ -83,7 +84,6 @@ Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const 
     falls.place.resize(width * (static_cast<std::size_t>(falls.rows) + 1));
     falls.light.resize(static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(falls.rows));
     const glm::dvec2 from_m = map.from_m - depth_m * beam.tangent * beam.away - margin * s;
-    const T footprint = static_cast<T>(s);
     // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than in the middle.
     const double range_m = std::max(margin_m - waves_m, 0.0) / std::max(beam.tangent, 0.02);
     std::vector<glm::vec<2, T>> rest;
@@ -102,13 +102,14 @@ Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const 
         Results<T> results;
         results.set(Product::Position, {position.data()});
         results.set(Product::Normal, {normal.data()});
-        const std::vector<T> footprints(count, footprint);
+        const std::vector<T> pixels(count, static_cast<T>(s)),
+            cells(count, static_cast<T>(std::max(s, finest_cell_m)));
         evaluate(frame, 0,
                  Points<T>{.origin_m = origin,
                            .count = count,
                            .rest_m = {rest.data()},
-                           .cell_m = {footprints.data()},
-                           .pixel_m = {footprints.data()}},
+                           .cell_m = {cells.data()},
+                           .pixel_m = {pixels.data()}},
                  results);
         const std::size_t first = width * static_cast<std::size_t>(row);
         using Range = tbb::blocked_range<std::size_t>;
@@ -261,6 +262,14 @@ void blur(const Map& map, int axis, double deviation) {
 
 }  // namespace
 
+void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaView& seen) {
+    const DrawnSea::Needs needs = drawn.needs(seen);
+    const bool has_levels = drawn.grid_options().has_levels;
+    const auto first = [&](double finest_m) { return has_levels ? first_level_m(finest_m) : finest_m; };
+    wanted.finest_m = first(needs.finest_pixel_m);
+    wanted.finest_cell_m = first(std::max(needs.finest_cell_m, needs.finest_pixel_m));
+}
+
 std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side) {
     if (!water.has_body || scene.water.caustics == 0.0) return 0;
     const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
@@ -280,6 +289,24 @@ bool shows_floor(const WaterBody& water, double depth_m) {
     return 2.2 * static_cast<double>(clearest) * depth_m < std::log(100.0);
 }
 
+// Of a floor of uneven depth the least that is in the picture, by steps of √2, so that the maps stay as they are while the camera moves a little.
+double depth_before(const View& view, const Floor& floor) {
+    constexpr int kRays = 5;  // a side
+    double least_m = floor.depth_m(glm::dvec2(view.position_m));
+    bool is_first = view.position_m.z > 0.0;
+    for (int y = 0; y < kRays; ++y)
+        for (int x = 0; x < kRays; ++x) {
+            const glm::dvec3 to = view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kRays) *
+                                                 glm::dvec2(view.resolution));
+            if (!(view.position_m.z > 0.0 && to.z < -0.02)) continue;
+            const double here_m =
+                floor.depth_m(glm::dvec2(view.position_m) + view.position_m.z / -to.z * glm::dvec2(to));
+            least_m = is_first ? here_m : std::min(least_m, here_m);
+            is_first = false;
+        }
+    return std::exp2(0.5 * std::round(2.0 * std::log2(std::max(least_m, 0.01))));
+}
+
 template <class T>
 void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
                  const std::atomic<bool>* cancel) {
@@ -294,14 +321,18 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
                                                  (0.45 * width_m * std::min(2.0 * level, 1.0));
     };
     const double depth_m =
-        floor.has_depths() ? floor.depth_m(middle_of(10.0)) : static_cast<double>(water.floor_m);
+        floor.has_depths() ? depth_before(view, floor) : static_cast<double>(water.floor_m);
     if (!(wanted.gain > 0.0 && depth_m > 0.0) || wanted.sun_direction.z <= 0.02f ||
-        !shows_floor(water, depth_m)) {
+        !shows_floor(water, depth_m) || 8.0 * wanted.finest_m > depth_m) {
         floor.set_light({});
         return;
     }
     const double texel_m = std::max(depth_m / kTexelsADepth, wanted.finest_m);
-    Floor::Light light{.side = side, .texel_m = texel_m, .from_m = {}, .gain = wanted.gain};
+    Floor::Light light{
+        .side = side,
+        .texel_m = texel_m,
+        .from_m = {},
+        .gain = wanted.gain * static_cast<double>(glm::smoothstep(0.02f, 0.06f, wanted.sun_direction.z))};
     const double coarse_m = kFloorLightStep * texel_m;
     for (std::size_t i = 0; i < 2; ++i) {
         const double width_m = side * texel_m * (i == 0 ? 1.0 : kFloorLightStep);
@@ -324,8 +355,8 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
         const glm::dmat2 hidden = hidden_slopes(frame, map);
         const glm::dmat2 waves(water.waves.x, water.waves.z, water.waves.z, water.waves.y);
         const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
-        gather(falls_on(map, floor, frame, beam, depth_m, floor.has_depths() ? most_m : waves_m, waves_m,
-                        cancel),
+        gather(falls_on(map, floor, frame, beam, depth_m, wanted.finest_cell_m,
+                        floor.has_depths() ? most_m : waves_m, waves_m, cancel),
                map, mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
         const glm::dmat2 spread =
             depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);

@@ -9,6 +9,7 @@
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
 #include "pelagic/scene.h"
+#include "plugin/render/drawn_sea.h"
 
 namespace pelagic {
 
@@ -19,13 +20,16 @@ struct FloorLightWanted {
     glm::vec3 sun_direction{0.0f, 0.0f, 1.0f};
     float sun_angular_radius = 0.0f;
     double gain = 1.0;
-    double finest_m = 0.0;  // the finest footprint of the frame's query 0
-    int side = 1024;        // texels of a map
+    double finest_m = 0.0, finest_cell_m = 0.0;  // footprints of this view alone, of pixels and cells
+    int side = 1024;                             // texels of a map
     bool operator==(const FloorLightWanted&) const = default;
 };
 
 // What making them holds, at most, and they themselves [bytes].
 std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side = FloorLightWanted{}.side);
+
+// For a view, whichever others its frame's plan is for: with both footprints.
+void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaView& seen);
 
 // Whether the water lets so much of the floor's light out that its pattern shows: to a hundredth of what falls on it, at the clearest of the
 // wavelengths.

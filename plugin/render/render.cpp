@@ -91,7 +91,7 @@ class RendererOf final : public Impl {
             frame_ = frame;
             const bool is_answered = is_lit || has_data();
             begun = 0.0;
-            begin(all[pass], watch);
+            begin(all[pass], is_lit, watch);
             const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
             if (is_answered && sea_.foam_lives()) {
                 const BuildWatch past{.progress =
@@ -125,7 +125,8 @@ class RendererOf final : public Impl {
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
         for (std::size_t i = 0; i < frames.size(); ++i)
             for (const PicturePass& pass : passes_of(scene_.camera, frames[i], options_).all) {
-                if (drawn_.has_below()) refuse_in_floor(scene_, pass.frame);
+                if (drawn_.has_below())
+                    refuse_in_floor(scene_, pass.frame, sea_.floor_below(drawn_.rest_m()));
                 if (drawn_.has_below() || !may_be_wet(pass.frame)) continue;
                 set_time(pass.frame, watch);
                 drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
@@ -181,10 +182,10 @@ class RendererOf final : public Impl {
     }
 
     // Of large pictures each step takes tenths of a second.
-    void begin(const PicturePass& pass, const BuildWatch& watch) {
+    void begin(const PicturePass& pass, bool is_lit, const BuildWatch& watch) {
         set_time(pass.frame, watch);
         if (drawn_.has_below())
-            refuse_in_floor(scene_, pass.frame);
+            refuse_in_floor(scene_, pass.frame, sea_.floor_below(drawn_.rest_m()));
         else
             drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
         view_ = view_of(scene_.camera, pass);
@@ -196,9 +197,14 @@ class RendererOf final : public Impl {
         air_height_m_ = height_m;
         stop_if(watch.cancel);
         lay_out_mesh(watch);
-        if (sea_.water().has_body)
-            sea_.light_floor_before(view_, drawn_.needs({view_, frame_}).finest_pixel_m, drawn_.rest_m(),
-                                    watch.cancel);
+        if (is_lit && sea_.water().has_body) {
+            // Of the middle of the lens, whose other places see the same maps.
+            const SeaView middle{view_at(scene_.camera, pass.frame), frame_};
+            FloorLightWanted wanted;
+            wanted.view = middle.view;
+            set_footprints(wanted, drawn_, middle);
+            sea_.light_floor_before(wanted, drawn_.rest_m(), watch.cancel);
+        }
         find_drops(pass, watch);
         stop_if(watch.cancel);
     }
@@ -603,8 +609,10 @@ class RendererOf final : public Impl {
                 set(layer, glm::vec1(0.0f));
             const glm::dvec3 direction = view_.direction(seen_at(first_row, sample));
             // The floor under water; what has none, and the sky, is endlessly far.
-            const double floor_m = (view_.position_m.z + scene_.sea.depth_m) / -direction.z;
-            if (is_under(sample) && direction.z < 0.0 && floor_m < kSkyDepth_m) {
+            const bool has_floor = is_under(sample) && direction.z < 0.0 && sea_.water().floor_m < 1e6f;
+            const double floor_m =
+                has_floor ? sea_.floor().distance_m(view_.position_m, direction) : kSkyDepth_m;
+            if (floor_m < kSkyDepth_m) {
                 const glm::dvec3 at = view_.position_m + floor_m * direction;
                 set(PictureLayer::Depth, glm::dvec1(floor_m * glm::dot(view_.forward, direction)));
                 set(PictureLayer::Position, at);

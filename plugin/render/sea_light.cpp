@@ -4,7 +4,6 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <glm/geometric.hpp>
 #include <utility>
 
 #include "core/lighting/background.h"
@@ -80,27 +79,27 @@ void SeaLight<T>::find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2,
 }
 
 template <class T>
-void SeaLight<T>::light_floor_before(const View& view, double finest_m, double rest_m,
+const Floor& SeaLight<T>::floor_below(double rest_m) {
+    if (floor_rest_m_ == rest_m) return floor_;
+    floor_lit_.reset();
+    floor_ = make_floor(plan().from->scene, rest_m);
+    floor_rest_m_ = rest_m;
+    return floor_;
+}
+
+template <class T>
+void SeaLight<T>::light_floor_before(FloorLightWanted wanted, double rest_m,
                                      const std::atomic<bool>* cancel) {
-    if (floor_m_ != rest_m) {
-        floor_ = make_floor(plan().from->scene, rest_m);
-        floor_m_ = rest_m;
-    }
-    // Its maps lie still: through a lens' other places they are as good.
-    constexpr double kLens_m = 0.1;
-    const bool is_lit = floor_lit_before_ &&
-                        glm::distance(floor_lit_before_->position_m, view.position_m) < kLens_m &&
-                        glm::distance(floor_lit_before_->forward, view.forward) < kLens_m;
-    if (is_lit || !choice_.water || !choice_.sun || sky_.sun_irradiance == glm::vec3(0.0f)) return;
-    light_floor(floor_, frame(),
-                {.view = view,
-                 .water = water_,
-                 .sun_direction = sky_.sun_direction,
-                 .sun_angular_radius = sky_.sun_angular_radius,
-                 .gain = plan().from->scene.water.caustics,
-                 .finest_m = finest_m},
-                cancel);
-    floor_lit_before_ = view;
+    floor_below(rest_m);
+    if (!choice_.water || !choice_.sun || sky_.sun_irradiance == glm::vec3(0.0f)) return;
+    wanted.water = water_;
+    wanted.sun_direction = sky_.sun_direction;
+    wanted.sun_angular_radius = sky_.sun_angular_radius;
+    wanted.gain = plan().from->scene.water.caustics;
+    if (floor_lit_ == wanted) return;
+    floor_lit_.reset();
+    light_floor(floor_, frame(), wanted, cancel);
+    floor_lit_ = wanted;
 }
 
 template <class T>

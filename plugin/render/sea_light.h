@@ -23,6 +23,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/waves/frame.h"
 #include "pelagic/scene.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
@@ -85,7 +86,7 @@ class SeaLight {
 
     // As Frame's.
     void set(double time_s, const std::atomic<bool>* cancel = nullptr) {
-        floor_lit_before_.reset();
+        floor_lit_.reset();
         state_.set(time_s, cancel);
     }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
@@ -109,10 +110,14 @@ class SeaLight {
     void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,
                      const std::vector<glm::vec<2, T>>& axis_m, std::vector<glm::vec3>& crest) const;
 
-    // The sun's light on the floor before a camera at the frame's time (light_floor()), where it is seen. finest_m: the finest footprint of the
-    // plan's query; rest_m: the height at which the sea rests there. Throws BuildCancelled.
-    void light_floor_before(const View& view, double finest_m, double rest_m,
+    // The sun's light on the floor before a camera at the frame's time (light_floor()), where it is seen: its view and footprints are asked
+    // for. rest_m: the height at which the sea rests there. Throws BuildCancelled.
+    void light_floor_before(FloorLightWanted wanted, double rest_m,
                             const std::atomic<bool>* cancel = nullptr);
+    // The floor below a sea that rests at that height; made where it is of another one.
+    const Floor& floor_below(double rest_m);
+    // The last one.
+    const Floor& floor() const { return floor_; }
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
@@ -131,8 +136,8 @@ class SeaLight {
     WaterBody water_;
     FoamLook foam_;
     Floor floor_;
-    std::optional<double> floor_m_;         // the height at rest that it is for
-    std::optional<View> floor_lit_before_;  // at the frame's time
+    std::optional<double> floor_rest_m_;         // that it is for
+    std::optional<FloorLightWanted> floor_lit_;  // as its light is, at the frame's time
     std::shared_ptr<const Sea<T>> sea_;
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;

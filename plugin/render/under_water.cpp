@@ -49,12 +49,14 @@ void throw_under_water(const Scene& scene, double frame, double surface_m) {
         ": raise the camera, or leave such frames out");
 }
 
-void refuse_in_floor(const Scene& scene, double frame) {
-    const double z_m = view_at(scene.camera, frame).position_m.z;
-    if (z_m > -scene.sea.depth_m) return;
-    throw std::invalid_argument(camera_at(scene, frame) + "in the sea's floor: it is at z = " + metres(z_m) +
-                                ", and the floor at z = " + metres(-scene.sea.depth_m) +
-                                " (sea.depth_m): raise the camera, or make the sea deeper");
+void refuse_in_floor(const Scene& scene, double frame, const Floor& floor) {
+    const glm::dvec3 eye_m = view_at(scene.camera, frame).position_m;
+    const double floor_z_m = -(floor.has_depths() ? floor.depth_m(glm::dvec2(eye_m)) : scene.sea.depth_m);
+    if (eye_m.z > floor_z_m) return;
+    throw std::invalid_argument(camera_at(scene, frame) + "in the sea's floor: it is at z = " +
+                                metres(eye_m.z) + ", and the floor at z = " + metres(floor_z_m) + " (" +
+                                (floor.has_depths() ? "sea.depth_file" : "sea.depth_m") +
+                                "): raise the camera, or make the sea deeper");
 }
 
 template <class T>

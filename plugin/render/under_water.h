@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/lighting/floor.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
@@ -30,6 +31,6 @@ void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
                         const ProjectedGridOptions& options);
 
 // Throws std::invalid_argument for a camera that isn't above the sea's floor.
-void refuse_in_floor(const Scene& scene, double frame);
+void refuse_in_floor(const Scene& scene, double frame, const Floor& floor);
 
 }  // namespace pelagic

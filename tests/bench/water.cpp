@@ -1013,7 +1013,7 @@ void caustics() {
             wanted.sun_direction = glm::vec3(glm::dvec3(std::cos(e), 0.0, std::sin(e)));
             wanted.sun_angular_radius = 0.00465f;
             wanted.finest_m = finest_m;
-            Floor floor(-depth_m);
+            Floor floor(depth_m);
             const auto begun = std::chrono::steady_clock::now();
             light_floor(floor, frame, wanted);
             const auto lit = std::chrono::steady_clock::now();

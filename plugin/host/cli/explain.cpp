@@ -138,7 +138,7 @@ void print_memory(const Scene& scene, const RenderOptions& options, const Plan& 
     if (scene.output.mesh != MeshFormat::None)
         std::cout << "The camera of the bake's stage takes " << bytes_text(camera_layer_bytes(scene))
                   << ", for all frames of the shot together.\n";
-    const WaterBody water = make_water(scene);
+    const WaterBody water = make_water(scene, plan.from->spectrum);
     if (const WaterText text = water_text(water); !text.wavelengths_nm.empty())
         std::cout << "The water at " << text.wavelengths_nm << " nm absorbs " << text.absorption_per_m
                   << " and scatters back " << text.backscatter_per_m

@@ -1,6 +1,7 @@
 // The floor's maps (core/lighting/floor.glsl), seen from the eye.
 uniform sampler2D floor_maps;
 uniform vec4 floor_level;  // is_seen, z_m, curvature_per_m and pixel of FloorView
+uniform float floor_lowest_m;
 uniform vec4 floor_depths;
 uniform vec4 floor_depths_per_m;
 uniform vec4 floor_colours;

@@ -30,7 +30,7 @@ void main() {
         vec3 normal = visible_normal(vec3(-answer.normal.x, -answer.normal.y, answer.normal.z), upside_down(to_eye),
                                      answer.slope_variance_at_rest, mesh_variance_along());
         SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, view_height_m,
-                                        point_distance_m(), sea_light(), water_scattering());
+                                        point_distance_m(), sea_light());
         write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
         return;
     }

@@ -8,7 +8,7 @@ void main() {
     }
     vec3 direction = pixel_ray();
     if (kFromBelow) {  // water without a surface
-        vec3 sea = kWater ? water_between(vec3(0.0), direction, view_height_m, -1.0, 0.0, sea_light(), water_scattering()).light
+        vec3 sea = kWater ? water_between(vec3(0.0), direction, view_height_m, -1.0, 0.0, sea_light()).light
                           : vec3(0.0);
         write_terms(vec3(0.0), vec3(0.0), sea, vec3(0.0), vec3(0.0), 1.0);
         return;

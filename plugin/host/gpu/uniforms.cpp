@@ -69,6 +69,7 @@ std::vector<Uniform> water_uniforms(const WaterBody& water) {
 std::vector<Uniform> floor_uniforms(const FloorSeen& floor) {
     return {{"floor_level", 4,
              glm::vec4(floor.is_seen ? 1.0f : 0.0f, floor.z_m, floor.curvature_per_m, floor.pixel)},
+            number("floor_lowest_m", static_cast<double>(floor.lowest_m)),
             {"floor_depths", 4, floor.depths},
             {"floor_depths_per_m", 4, floor.depths_per_m},
             {"floor_colours", 4, floor.colours},

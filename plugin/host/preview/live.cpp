@@ -170,7 +170,7 @@ void LiveSea::compute_frames() {
     const auto lit_floor = [&](const FloorWanted& wanted) {
         auto floor = std::make_shared<Floor>(*wanted.floor);
         FloorLightWanted light = wanted.light;
-        light.finest_m = tried->drawn->needs({light.view, tried->scene.shot.first_frame}).finest_pixel_m;
+        set_footprints(light, *tried->drawn, {light.view, tried->scene.shot.first_frame});
         light_floor(*floor, *frame, light);
         return floor;
     };
@@ -191,12 +191,19 @@ void LiveSea::compute_frames() {
         if (!wants_frame()) {  // the eye has moved over a sea that stands still
             lock.unlock();
             std::optional<double> water_m;
-            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
             std::shared_ptr<const Spray> spray;
-            if (tried_spray) spray = spray_before(*tried_spray);
             std::shared_ptr<const Floor> floor;
-            if (tried_floor) floor = lit_floor(*tried_floor);
+            std::string error;
+            try {
+                if (tried_eye)
+                    water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
+                if (tried_spray) spray = spray_before(*tried_spray);
+                if (tried_floor) floor = lit_floor(*tried_floor);
+            } catch (...) {
+                error = message_of(std::current_exception());
+            }
             lock.lock();
+            frame_error_ = error;
             if (eye_) water_over_eye_m_ = water_m;
             if (spray_from_) spray_ = spray;
             if (floor_wanted_) floor_ = floor;

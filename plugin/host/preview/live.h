@@ -95,7 +95,7 @@ class LiveSea {
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
     // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the waves
     // (is_among_waves()), for water_over_eye(). `spray_from`: a camera for newest_spray() and newest_drops(). `floor`: for newest_floor(),
-    // without its finest_m.
+    // without its footprints.
     struct FloorWanted {
         std::shared_ptr<const Floor> floor;
         FloorLightWanted light;

@@ -237,7 +237,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     state.set(planned.scene.shot.time_s(planned.frame));
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
     const bool from_below = planned.drawn->is_below(view);
-    if (planned.drawn->has_below()) refuse_in_floor(planned.scene, planned.frame);
+    const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
+    if (planned.drawn->has_below()) refuse_in_floor(planned.scene, planned.frame, *floor);
     std::optional<Waterline> waterline;
     if (is_half_below(*planned.drawn, view))
         waterline.emplace(view, grid.bounds.height_m, planned.mesh.points.origin_m,
@@ -247,15 +248,15 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
         planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
     const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
     if (water.has_body) {
-        const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
-        if (lighting.water && lighting.sun)
-            light_floor(*floor, state,
-                        {.view = view,
-                         .water = water,
-                         .sun_direction = sky.sun_direction,
-                         .sun_angular_radius = sky.sun_angular_radius,
-                         .gain = planned.scene.water.caustics,
-                         .finest_m = planned.drawn->needs({view, planned.frame}).finest_pixel_m});
+        if (lighting.water && lighting.sun && sky.sun_irradiance != glm::vec3(0.0f)) {
+            FloorLightWanted wanted{.view = view,
+                                    .water = water,
+                                    .sun_direction = sky.sun_direction,
+                                    .sun_angular_radius = sky.sun_angular_radius,
+                                    .gain = planned.scene.water.caustics};
+            set_footprints(wanted, *planned.drawn, {view, planned.frame});
+            light_floor(*floor, state, wanted);
+        }
         renderer.set_floor(floor);
     }
     renderer.set_sky(sky, water);

@@ -571,7 +571,9 @@ class Preview {
     // The floor as it is lit before a camera, where it is seen at all.
     std::optional<LiveSea::FloorWanted> floor_before(const View& view) const {
         constexpr int kSide = 512;  // half of a single picture's: each frame has one
-        if (!floor_ || !sky_ || !(floor_->has_depths() || shows_floor(water_, -floor_->z_m()))) return {};
+        if (!floor_ || !sky_ ||
+            !(floor_->has_depths() || shows_floor(water_, static_cast<double>(water_.floor_m))))
+            return {};
         return LiveSea::FloorWanted{.floor = floor_,
                                     .light = {.view = view,
                                               .water = water_,

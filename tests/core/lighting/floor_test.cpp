@@ -13,7 +13,7 @@ namespace pelagic::optics {
 namespace {
 
 Optics::FloorView glsl(const FloorSeen& seen) {
-    return {seen.is_seen,      seen.z_m,     seen.curvature_per_m, seen.pixel, seen.depths,
+    return {seen.is_seen,      seen.z_m,     seen.curvature_per_m, seen.pixel, seen.lowest_m, seen.depths,
             seen.depths_per_m, seen.colours, seen.colours_first,   seen.light, seen.coarse};
 }
 
@@ -28,7 +28,7 @@ Floor beach() {
     std::vector<float> depths;
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 20; ++x) depths.push_back(10.0f - 0.5f * (static_cast<float>(x) + 0.5f));
-    Floor floor(-7.0);
+    Floor floor(7.0);
     floor.set_depths({20, 4}, depths, {100.0, -2.0}, {20.0, 4.0});
     return floor;
 }
@@ -42,7 +42,7 @@ TEST(Floor, IsAsDeepAsItsMapSaysAndGoesToTheLevelFloorBeyond) {
     EXPECT_NEAR(floor.depth_m({110.0, 3.01}), 7.0, 1e-5);
     for (const glm::dvec2 far : {glm::dvec2(-5e5, 8.0), glm::dvec2(5e5, -8.0), glm::dvec2(1e12, -1e12)})
         EXPECT_EQ(floor.depth_m(far), 7.0);
-    EXPECT_EQ(Floor(-7.0).depth_m({3.0, 4.0}), 7.0);
+    EXPECT_EQ(Floor(7.0).depth_m({3.0, 4.0}), 7.0);
 }
 
 TEST(Floor, ARayMeetsTheSlope) {
@@ -52,9 +52,22 @@ TEST(Floor, ARayMeetsTheSlope) {
     // From the sea at rest at x = 104, a metre east per metre down: 8 − 0.5 d = d.
     const auto seen = optics.seen_floor(vec3(0.0f, 0.0f, -2.0f), vec2(1.0f, 0.0f), 0.0f, 0.01f,
                                         glsl(floor.seen_from({.position_m = eye})));
-    EXPECT_NEAR(seen.depth_m, 8.0 / 1.5, 0.2);  // after four steps, each halving what is left
+    EXPECT_NEAR(seen.depth_m, 8.0 / 1.5, 1e-3);
     EXPECT_EQ(seen.light, 1.0f);
     EXPECT_EQ(seen.colour, vec3(1.0f));
+    // At so flat a sight the floor's slope is as steep as it: 8 − 0.5 · 10 d = d, and seawards it meets the level floor first.
+    EXPECT_NEAR(optics
+                    .seen_floor(vec3(0.0f, 0.0f, -2.0f), vec2(10.0f, 0.0f), 0.0f, 0.01f,
+                                glsl(floor.seen_from({.position_m = eye})))
+                    .depth_m,
+                8.0 / 6.0, 1e-3);
+    EXPECT_NEAR(optics
+                    .seen_floor(vec3(0.0f, 0.0f, -2.0f), vec2(-10.0f, 0.0f), 0.0f, 0.01f,
+                                glsl(floor.seen_from({.position_m = eye})))
+                    .depth_m,
+                7.0, 0.5);
+    EXPECT_NEAR(floor.distance_m({104.0, 0.0, -1.0}, glm::normalize(glm::dvec3(1.0, 0.0, -1.0))),
+                7.0 / 1.5 * std::sqrt(2.0), 1e-3);
     // A wave's trough below the floor still has some water.
     EXPECT_GT(optics
                   .seen_floor(vec3(15.0f, 0.0f, -9.0f), vec2(0.0f), 0.0f, 0.01f,
@@ -65,7 +78,7 @@ TEST(Floor, ARayMeetsTheSlope) {
 
 // Round the earth the sea drops away below the eye's level, and the floor with it.
 TEST(Floor, LiesAsDeepFarAway) {
-    const Floor floor(-2.5);
+    const Floor floor(2.5);
     const double curvature = 1.0 / 6.371e6;
     Optics optics = shading_of(floor);
     const auto view = glsl(floor.seen_from({.position_m = {5.0, 5.0, 30.0}, .curvature_per_m = curvature}));
@@ -82,7 +95,7 @@ TEST(Floor, APictureRepeatsAndBlursToItsMean) {
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x)
             chequers.push_back(vec3((x / 4 + y / 4) % 2 == 0 ? 1.0f : 0.2f, 0.5f, 0.0f));
-    Floor floor(-2.0);
+    Floor floor(2.0);
     floor.set_colours(8, chequers, 4.0);
     Optics optics = shading_of(floor);
     for (const glm::dvec3 eye : {glm::dvec3(0.0), glm::dvec3(4e6 + 1.0, -8e6, 3.0)}) {
@@ -100,7 +113,7 @@ TEST(Floor, APictureRepeatsAndBlursToItsMean) {
 }
 
 TEST(Floor, LightIsLookedUpWhereItsMapsAreAndFadesToEven) {
-    Floor floor(-2.0);
+    Floor floor(2.0);
     constexpr int kSide = 64;
     const auto texels =
         floor.set_light({.side = kSide, .texel_m = 0.1, .from_m = {glm::dvec2(-3.2), glm::dvec2(-12.8)}});

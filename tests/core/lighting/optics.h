@@ -59,7 +59,7 @@ inline Optics::FoamPattern glsl(const FoamPattern& p) {
 
 // Water without a body.
 inline Optics::WaterLook plain_water(vec3 reflectance) {
-    return {reflectance, false, {}, {}, {}, 1e9f, vec3(0.0f), 0.0f, 0.0f, 0.0f, 0.0f};
+    return {reflectance, false, {}, {}, {}, {}, 1e9f, vec3(0.0f), 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
 // A sea that reflects everything: the white furnace.

@@ -6,13 +6,17 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
+#include <limits>
+#include <memory>
 #include <random>
+#include <vector>
 
 #include "core/evaluate/evaluate.h"
 #include "core/lighting/lighting.h"
 #include "core/plan/plan.h"
 #include "core/waves/sea.h"
 #include "plugin/light/light.h"
+#include "plugin/render/render.h"
 
 namespace pelagic {
 namespace {
@@ -50,7 +54,7 @@ View above(glm::dvec2 place, double height_m = 3.0) {
 
 Lit lit(const Scene& scene, double elevation_deg, const View& view) {
     Lit made{
-        .floor = Floor(-scene.sea.depth_m), .water = make_water(scene), .sky = {}, .sea = {}, .frame = {}};
+        .floor = Floor(scene.sea.depth_m), .water = make_water(scene), .sky = {}, .sea = {}, .frame = {}};
     made.sky.sun_direction = glm::vec3(glm::dvec3(std::cos(elevation_deg * kDegree) * std::cos(0.7),
                                                   std::cos(elevation_deg * kDegree) * std::sin(0.7),
                                                   std::sin(elevation_deg * kDegree)));
@@ -181,6 +185,26 @@ TEST(FloorLight, IsTheSameWhereverTheCameraIsAndOnOneThread) {
         }
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(lit(scene, 50.0, above({0.0, 0.0})).floor.values(), here.floor.values());
+}
+
+// A frame is the same whichever others are planned with it, nearer ones too, and whichever was rendered before.
+TEST(FloorLight, OfAFrameDependsOnNoOtherFrame) {
+    Scene scene = lagoon(2.5);
+    scene.camera.resolution = {64, 36};
+    scene.quality.level = QualityLevel::Preview;
+    scene.camera.keys = {{.frame = 1, .position_m = {0.0, 0.0, 12.0}, .look_at_m = {12.0, 0.0, 0.0}},
+                         {.frame = 2, .position_m = {0.0, 0.0, 0.6}, .look_at_m = {3.0, 0.0, 0.0}}};
+    const RenderOptions options = render_options(scene);
+    const auto rendered = [&](std::vector<int> planned, std::vector<int> frames) {
+        Renderer renderer(scene, options, make_sky(scene), planned);
+        Picture picture;
+        for (const int frame : frames) renderer.render(frame, picture);
+        return picture;
+    };
+    const Picture alone = rendered({1}, {1}), together = rendered({1, 2}, {2, 1});
+    ASSERT_EQ(alone.layers.size(), together.layers.size());
+    for (std::size_t i = 0; i < alone.layers.size(); ++i)
+        ASSERT_EQ(alone.layers[i].sea, together.layers[i].sea) << i;
 }
 
 TEST(FloorLight, IsEvenOnACalmDay) {

@@ -26,7 +26,7 @@ struct SeenFloor {
 const float kFloorLightStep = 4.0f;  // texels of the coarser map over those of the finer
 const float kFloorLightEdge = 16.0f;  // texels over which a map gives way to what is around it
 const float kLeastFloor_m = 0.01f;    // a trough touches the floor
-const int kFloorSteps = 10;
+const int kFloorSteps = 8;
 const float kFarFloor_m = 3.0e4f;     // how far a parabola stands for the earth, to a centimetre
 
 // Between four texels of a map of that many columns; place in texels, whose middles are at halves.
@@ -129,12 +129,24 @@ SeenFloor seen_floor(vec3 surface, vec2 along, float blur, float pixel_m, FloorV
     float height = surface.z + 0.5f * of.curvature_per_m * dot(from, from);
     float depth = max(height - floor_height(from, of), kLeastFloor_m);
     if (of.depths.z > 0.0f) {
-        // How far the ray is above the floor, where it is so deep: once more than nothing, once less, and between them straight, but for the
-        // end that stays, which counts half (Illinois).
-        float least = 0.0f;
+        // How far the ray is above the floor where it is so deep: the first of some depths at which it is below, and from there back by straight
+        // lines, where the end that stays counts half (Illinois).
         float most = max(height - of.lowest_m, 2.0f * kLeastFloor_m);
+        float least = 0.0f;
         float above = depth;
-        float below = min(height - most - floor_height(from + most * along, of), -1.0e-6f);
+        float below = -1.0e-6f;
+        float deepest = most;
+        for (int i = 1; i <= kFloorSteps; ++i) {
+            depth = deepest * (float(i * i) / float(kFloorSteps * kFloorSteps));
+            float there = height - depth - floor_height(from + depth * along, of);
+            if (there <= 0.0f || i == kFloorSteps) {
+                most = depth;
+                below = min(there, -1.0e-6f);
+                break;
+            }
+            least = depth;
+            above = there;
+        }
         for (int i = 0; i < kFloorSteps; ++i) {
             depth = (least * below - most * above) / (below - above);
             float there = height - depth - floor_height(from + depth * along, of);

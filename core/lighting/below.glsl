@@ -230,17 +230,8 @@ vec3 sun_from_below(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, fl
     vec3 of_side = spread.x * into_frame(frame, upside_down(side));
     vec3 of_rise = spread.y * into_frame(frame, upside_down(normalize(cross(to_sun, side))));
 
-    vec2 pull = pull_of(h, half_vector(h, frame.variance, of_side, of_rise, vec2(0.0f)));
-    vec2 slope = -h.z * vec2(frame.variance.x * pull.x + frame.variance.z * pull.y,
-                             frame.variance.z * pull.x + frame.variance.y * pull.y);
-    slope *= min(1.0f, 5.0f * inversesqrt(max(-h.z * dot(slope, pull), 1.0e-12f)));
-    HalfVector half_way = half_vector(h, frame.variance, of_side, of_rise, slope);
-    float distance = slope_distance(vec2(h.x, h.y), half_way.covariance, square(half_way.root));
-    float density = disc_density(distance, half_way.disc_root / half_way.root, half_way.root);
-
-    pull = pull_of(h, half_way);
-    vec3 point = normalize(l - clamp(dot(half_way.by_side, pull), -2.0f, 2.0f) * of_side -
-                           clamp(dot(half_way.by_rise, pull), -2.0f, 2.0f) * of_rise);
+    SunFacets seen = sun_facets(h, l, frame, of_side, of_rise);
+    vec3 point = normalize(seen.point);
     vec3 normal = kWaterIndex * v + point;
     float upright = max(normal.z, 0.1f * h.z);
     float facing = max(dot(v, normal), 0.0f) / upright;
@@ -248,7 +239,7 @@ vec3 sun_from_below(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, fl
     float cosine = dot(v, normal) / max(length(normal), 1.0e-6f);
     vec3 blurred = frame.variance + vec3(square(spread.y), square(spread.y), 0.0f);
     float lit = lit_part(masked_view(v, frame.variance), facing, facing_sun, upside_down(l), blurred);
-    float part = kPi * square(angular_radius) * facing * facing_sun * density * lit;
+    float part = kPi * square(angular_radius) * facing * facing_sun * seen.density * lit;
     float most = square(0.5f * angular_radius) / (spread.x * spread.y);
     return sun_radiance * (min(part, most) * square(kWaterIndex) * (1.0f - fresnel_exact(cosine, 1.0f / kWaterIndex)));
 }

@@ -62,6 +62,29 @@ vec2 pull_of(vec3 h, HalfVector of) {
     return vec2(c.y * h.x - c.z * h.y, c.x * h.y - c.z * h.x) / square(of.root);
 }
 
+// The facets that send some of the sun's disc to the eye: the density of such slopes, and the point of the disc that they send in the mean. h: along
+// the normal of those that send its middle; l: to the sun, or with its light; of_side, of_rise: a deviation of the disc across and upwards.
+struct SunFacets {
+    float density;
+    vec3 point;
+};
+
+SunFacets sun_facets(vec3 h, vec3 l, SlopeFrame frame, vec3 of_side, vec3 of_rise) {
+    // Their mean slope, first as if that were about 0.
+    vec2 pull = pull_of(h, half_vector(h, frame.variance, of_side, of_rise, vec2(0.0f)));
+    vec2 slope = -h.z * vec2(frame.variance.x * pull.x + frame.variance.z * pull.y,
+                             frame.variance.z * pull.x + frame.variance.y * pull.y);
+    // No farther than 5 deviations of the waves: there is nothing to be seen, and the disc in such slopes is wide.
+    slope *= min(1.0f, 5.0f * inversesqrt(max(-h.z * dot(slope, pull), 1.0e-12f)));
+    HalfVector half_way = half_vector(h, frame.variance, of_side, of_rise, slope);
+    float distance = slope_distance(vec2(h.x, h.y), half_way.covariance, square(half_way.root));
+    float density = disc_density(distance, half_way.disc_root / half_way.root, half_way.root);
+    // The disc's rim is two deviations away.
+    pull = pull_of(h, half_way);
+    return SunFacets(density, l - clamp(dot(half_way.by_side, pull), -2.0f, 2.0f) * of_side -
+                                  clamp(dot(half_way.by_rise, pull), -2.0f, 2.0f) * of_rise);
+}
+
 // Eq. 15, with the disc in place of a point: π ρ² L F w² N(h_xy), w = v·f/f_z and N the density of the half vector's
 // horizontal part; without the disc's part in N that is Eq. 15, whose h_z⁴ is right (Eq. 12 with h_z³).
 //
@@ -80,28 +103,15 @@ vec3 sun_seen_from(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, flo
     vec3 of_side = spread.x * into_frame(frame, side);
     vec3 of_rise = spread.y * into_frame(frame, normalize(cross(to_sun, side)));
 
-    // The mean slope of the facets that mirror some of the disc, first as if that were about 0.
-    vec2 pull = pull_of(h, half_vector(h, frame.variance, of_side, of_rise, vec2(0.0f)));
-    vec2 slope = -h.z * vec2(frame.variance.x * pull.x + frame.variance.z * pull.y,
-                             frame.variance.z * pull.x + frame.variance.y * pull.y);
-    // No farther than 5 deviations of the waves: there is nothing to be mirrored, and the disc in such slopes is wide.
-    slope *= min(1.0f, 5.0f * inversesqrt(max(-h.z * dot(slope, pull), 1.0e-12f)));
-    HalfVector half_way = half_vector(h, frame.variance, of_side, of_rise, slope);
-    float distance = slope_distance(vec2(h.x, h.y), half_way.covariance, square(half_way.root));
-    float density = disc_density(distance, half_way.disc_root / half_way.root, half_way.root);
-
-    // The point of the disc that they mirror in the mean; its rim is two deviations away.
-    pull = pull_of(h, half_way);
-    vec3 point = l - clamp(dot(half_way.by_side, pull), -2.0f, 2.0f) * of_side -
-                 clamp(dot(half_way.by_rise, pull), -2.0f, 2.0f) * of_rise;
-    vec3 mirroring = v + normalize(point);
+    SunFacets seen = sun_facets(h, l, frame, of_side, of_rise);
+    vec3 mirroring = v + normalize(seen.point);
     float size = length(mirroring);
     float facing = 0.5f * square(size) / max(mirroring.z, 0.1f * h.z);  // w
     float cosine = dot(v, mirroring) / max(size, 1.0e-6f);
     // The disc's height blurs the horizon of the frame, too.
     vec3 blurred = frame.variance + vec3(square(spread.y), square(spread.y), 0.0f);
     float lit = lit_part(masked_view(v, frame.variance), facing, facing, l, blurred);
-    float part = kPi * square(angular_radius) * square(facing) * density * lit;
+    float part = kPi * square(angular_radius) * square(facing) * seen.density * lit;
     float most = square(0.5f * angular_radius) / (spread.x * spread.y);  // the whole disc's share of what is visible
     return sun_radiance * (min(part, most) * fresnel_exact(cosine, kWaterIndex));
 }

@@ -608,7 +608,7 @@ void furnace(int lookups) {
                     const auto terms = shading.sea_radiance(
                         glm::vec3(glm::dvec3(std::sin(view * kDegree), 0.0, std::cos(view * kDegree))),
                         glm::vec3(0.0f, 0.0f, 1.0f), look.waves, shading.no_foam(),
-                        {glm::vec3(0.0f), 0.3f * share, 0.5f * share, 10.0f}, light);
+                        {glm::vec3(0.0f), 0.0f, glm::vec3(0.0f), 0.3f * share, 0.5f * share, 10.0f}, light);
                     const double seen = static_cast<double>(terms.sky.y + terms.sea.y);
                     least = std::min(least, seen);
                     most = std::max(most, seen);

@@ -1,8 +1,8 @@
-"""Makes the floors of two shots: the depths of an atoll's rim, and a pool's tiles.
+"""Makes the floors of some shots: the depths of an atoll's rim, a pool's tiles, and sand.
 
     blender -b --factory-startup -P examples/floor-maps.py -- DIR
 
-Makes examples/data/atoll.exr, metres below the sea, 2 m a pixel, and examples/data/tiles.exr, linear Rec. 709.
+Makes examples/data/atoll.exr, metres below the sea, 2 m a pixel, and examples/data/tiles.exr and sand.exr, linear Rec. 709.
 """
 
 import sys
@@ -54,6 +54,15 @@ def tiles():
     return picture
 
 
+def sand(side=128, ripples=14):
+    """Rippled across, with grains and darker patches; its mean is about 0.9."""
+    across = np.arange(side) / side
+    bent = ripples * across[None, :] + 0.45 * noise(side, 2.0, 11)
+    bright = 0.9 + 0.10 * np.sin(2.0 * np.pi * bent) * (0.7 + 0.3 * noise(side, 1.8, 12)) + 0.05 * noise(side, 0.3, 13)
+    bright -= 0.25 * step(1.2, 2.2, noise(side, 1.5, 14))
+    return np.repeat(np.clip(bright, 0.2, 1.2)[..., None], 3, axis=-1)
+
+
 def save(pixels, path):
     height, width, _ = pixels.shape
     image = bpy.data.images.new(path.stem, width, height, alpha=False, float_buffer=True)
@@ -70,3 +79,4 @@ if __name__ == "__main__":
     folder = Path(sys.argv[sys.argv.index("--") + 1])
     save(atoll(), folder / "atoll.exr")
     save(tiles(), folder / "tiles.exr")
+    save(sand(), folder / "sand.exr")

@@ -366,7 +366,11 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
         const double along = disc * beam.to_sun.z / (c * c);
         for (int axis = 0; axis < 2; ++axis) {
             const double part = beam.away[axis] * beam.away[axis];
-            const double variance = spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
+            // Half a texel more than nothing: cells send their light as so many points, which show where a sheet of them is folded.
+            constexpr double kLeast_texels = 0.6;
+            const double least_m = kLeast_texels * map.texel_m;
+            const double variance =
+                least_m * least_m + spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
             blur(map, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m);
         }
     }

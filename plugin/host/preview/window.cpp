@@ -24,6 +24,7 @@
 #include "core/lighting/tone.h"
 #include "core/scene/canonical.h"
 #include "core/scene/shot_text.h"
+#include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/files/files.h"
@@ -438,15 +439,23 @@ class Preview {
     std::string water_content() const { return canonical(controls_.scene, key_parts(KeyPart::Water)); }
     void take_water() {
         water_ = make_water(controls_.scene);
+        water_from_ = water_content();
+        take_floor(frame_ ? frame_->build->drawn->rest_m() : 0.0);
+    }
+
+    // Pictures of the floor are read only when what it is made of changes: another wind has the same.
+    void take_floor(double rest_m) {
+        std::string from = water_from_ + number_text(controls_.scene.sea.depth_m) + " " + number_text(rest_m);
+        if (from == floor_from_) return;
+        floor_from_ = std::move(from);
         floor_.reset();
         floor_error_.clear();
-        if (water_.has_body) try {
-                floor_ = std::make_shared<const Floor>(
-                    make_floor(controls_.scene, frame_ ? frame_->build->drawn->rest_m() : 0.0));
-            } catch (const std::invalid_argument& error) {  // a picture that is gone
-                floor_error_ = error.what();
-            }
-        water_from_ = water_content();
+        if (!water_.has_body) return;
+        try {
+            floor_ = std::make_shared<const Floor>(make_floor(controls_.scene, rest_m));
+        } catch (const std::invalid_argument& error) {  // a picture that is gone
+            floor_error_ = error.what();
+        }
     }
 
     void meter() {
@@ -671,7 +680,7 @@ class Preview {
     float exposure_ = 1.0f;
     WaterBody water_;
     std::shared_ptr<const Floor> floor_;  // null: the water has no body
-    std::string water_from_;
+    std::string water_from_, floor_from_;
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
     long uploaded_ = 0;  // the frame's number

@@ -280,6 +280,18 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
     return water;
 }
 
+std::size_t floor_bytes(const Scene& scene) {
+    // A pixel as it is read and as a colour; then its depth, or its colour in all levels.
+    constexpr std::size_t kPixel = 2 * sizeof(glm::vec3) + 2 * sizeof(glm::vec3);
+    std::size_t bytes = 0;
+    for (const Key* key : floor_keys(scene)) {
+        if (!check_floor_picture(scene, *key).empty()) continue;
+        const exr::RgbFile file(std::get<std::string>(value_of(scene, *key)));
+        bytes += kPixel * static_cast<std::size_t>(file.width()) * static_cast<std::size_t>(file.height());
+    }
+    return bytes;
+}
+
 Floor make_floor(const Scene& scene, double rest_m) {
     // Beyond a map of depths the floor falls no deeper than anybody sees.
     constexpr double kDeepest_m = 500.0;

@@ -1,6 +1,7 @@
 // The light of a shot, and its water, as every room that lights the sea takes them.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ Sky make_sky(const Scene& scene);
 // are the paths of. Depths below a centimetre are one: land isn't seen. Throws std::invalid_argument, naming the key and the file, for a picture that
 // can't be read or isn't one of a floor.
 Floor make_floor(const Scene& scene, double rest_m = 0.0);
+// What reading those pictures holds, at most, and the floor of them [bytes]; 0 without, and for those that can't be read.
+std::size_t floor_bytes(const Scene& scene);
 // What make_sky(), make_floor() and make_foam_picture() read besides the scene, as text for fingerprints: a hash of each picture's bytes; empty
 // without any. Throws std::invalid_argument for a file that can't be read.
 std::string picture_content(const Scene& scene);

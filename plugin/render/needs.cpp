@@ -138,6 +138,8 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     });
     if (const std::size_t floor = floor_light_bytes(scene, make_water(scene, plan.from->spectrum)); floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
+    if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
+        need.add("the floor's pictures", pictures, "give smaller ones");
     if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");

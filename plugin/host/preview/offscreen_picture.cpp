@@ -146,6 +146,8 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
             floor_light_bytes(planned.scene, make_water(planned.scene, planned.plan.from->spectrum));
         floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
+    if (const std::size_t pictures = floor_bytes(planned.scene); pictures > 0)
+        need.add("the floor's pictures", pictures, "give smaller ones");
     if (render_options(planned.scene).lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
                  "set effects.spray to false");

@@ -56,6 +56,8 @@ TEST_F(FloorPictures, LieWhereTheShotSaysWithNorthAtTheTop) {
     EXPECT_NEAR(floor.depth_m({0.0, 0.0}), 30.0, 1e-4);
     scene.sea.depth_m = std::numeric_limits<double>::infinity();
     EXPECT_GT(make_floor(scene).depth_m({0.0, 0.0}), 100.0);
+    EXPECT_GT(floor_bytes(scene), 8u * 4u * sizeof(float));
+    EXPECT_EQ(floor_bytes(Scene{}), 0u);
     EXPECT_LT(make_water(scene).floor_m, 1e6f);  // so that the floor is looked for
     // Land is water of a centimetre.
     scene.sea.depth_file = picture("land.exr", 2, 2, [](int, int) { return -3.0f; });

@@ -260,6 +260,24 @@ void blur(const Map& map, int axis, double deviation) {
     });
 }
 
+// Of a floor of uneven depth the least that is in the picture, by steps of √2, so that the maps stay as they are while the camera moves a little.
+double depth_before(const View& view, const Floor& floor) {
+    constexpr int kRays = 5;  // a side
+    double least_m = floor.depth_m(glm::dvec2(view.position_m));
+    bool is_first = view.position_m.z > 0.0;
+    for (int y = 0; y < kRays; ++y)
+        for (int x = 0; x < kRays; ++x) {
+            const glm::dvec3 to = view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kRays) *
+                                                 glm::dvec2(view.resolution));
+            if (!(view.position_m.z > 0.0 && to.z < -0.02)) continue;
+            const double here_m =
+                floor.depth_m(glm::dvec2(view.position_m) + view.position_m.z / -to.z * glm::dvec2(to));
+            least_m = is_first ? here_m : std::min(least_m, here_m);
+            is_first = false;
+        }
+    return std::exp2(0.5 * std::round(2.0 * std::log2(std::max(least_m, 0.01))));
+}
+
 }  // namespace
 
 void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaView& seen) {
@@ -287,24 +305,6 @@ bool shows_floor(const WaterBody& water, double depth_m) {
                                std::pair(water.absorption.longer, water.backscatter.longer)})
         for (int i = 0; i < 3; ++i) clearest = std::min(clearest, a[i] + b[i]);
     return 2.2 * static_cast<double>(clearest) * depth_m < std::log(100.0);
-}
-
-// Of a floor of uneven depth the least that is in the picture, by steps of √2, so that the maps stay as they are while the camera moves a little.
-double depth_before(const View& view, const Floor& floor) {
-    constexpr int kRays = 5;  // a side
-    double least_m = floor.depth_m(glm::dvec2(view.position_m));
-    bool is_first = view.position_m.z > 0.0;
-    for (int y = 0; y < kRays; ++y)
-        for (int x = 0; x < kRays; ++x) {
-            const glm::dvec3 to = view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kRays) *
-                                                 glm::dvec2(view.resolution));
-            if (!(view.position_m.z > 0.0 && to.z < -0.02)) continue;
-            const double here_m =
-                floor.depth_m(glm::dvec2(view.position_m) + view.position_m.z / -to.z * glm::dvec2(to));
-            least_m = is_first ? here_m : std::min(least_m, here_m);
-            is_first = false;
-        }
-    return std::exp2(0.5 * std::round(2.0 * std::log2(std::max(least_m, 0.01))));
 }
 
 template <class T>
@@ -366,7 +366,7 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
         const double along = disc * beam.to_sun.z / (c * c);
         for (int axis = 0; axis < 2; ++axis) {
             const double part = beam.away[axis] * beam.away[axis];
-            // Half a texel more than nothing: cells send their light as so many points, which show where a sheet of them is folded.
+            // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
             constexpr double kLeast_texels = 0.6;
             const double least_m = kLeast_texels * map.texel_m;
             const double variance =

@@ -26,7 +26,7 @@ struct SeenFloor {
 const float kFloorLightStep = 4.0f;  // texels of the coarser map over those of the finer
 const float kFloorLightEdge = 16.0f;  // texels over which a map gives way to what is around it
 const float kLeastFloor_m = 0.01f;    // a trough touches the floor
-const int kFloorSteps = 8;
+const int kFloorSteps = 8;            // towards a mapped floor, and as many back: to a millimetre over a slope of 5 (floor_test.cpp)
 const float kFarFloor_m = 3.0e4f;     // how far a parabola stands for the earth, to a centimetre
 
 // Between four texels of a map of that many columns; place in texels, whose middles are at halves.

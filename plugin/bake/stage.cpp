@@ -157,8 +157,8 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     return light;
 }
 
-usd::Material material_of(const Plan& plan) {
-    const SeaAlbedo albedo = sea_albedo(make_water(plan.from->scene, plan.from->spectrum));
+usd::Material material_of(const Plan& plan, const WaterBody& water) {
+    const SeaAlbedo albedo = sea_albedo(water);
     // As decimals: the float 1.34 isn't.
     return {.ior = std::round(static_cast<double>(albedo.water_index) * 1e6) / 1e6,
             .roughness = roughness(plan),
@@ -198,7 +198,8 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
     stage.points_follow_camera = !plan.surface->is_constant();
     stage.origin_follows_camera = plan.surface->origin_follows_camera();
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
-    stage.material = material_of(plan);
+    const WaterBody body = make_water(scene, plan.from->spectrum);
+    stage.material = material_of(plan, body);
     stage.has_camera = true;
     stage.has_volumes = !volumes_of(plan).empty();
     stage.has_drops = scene.output.drops;
@@ -211,8 +212,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
         {"sky_unit", radiance_unit(scene)},
         {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
-    if (const WaterText water = water_text(make_water(scene, plan.from->spectrum));
-        !water.wavelengths_nm.empty())
+    if (const WaterText water = water_text(body); !water.wavelengths_nm.empty())
         stage.custom_data.insert(stage.custom_data.end(),
                                  {{"water_wavelengths_nm", water.wavelengths_nm},
                                   {"water_absorption_per_m", water.absorption_per_m},

@@ -304,7 +304,8 @@ bool shows_floor(const WaterBody& water, double depth_m) {
     for (const auto& [a, b] : {std::pair(water.absorption.shorter, water.backscatter.shorter),
                                std::pair(water.absorption.longer, water.backscatter.longer)})
         for (int i = 0; i < 3; ++i) clearest = std::min(clearest, a[i] + b[i]);
-    return 2.2 * static_cast<double>(clearest) * depth_m < std::log(100.0);
+    constexpr double kWays = 2.2;  // down and up again, both a little slanted
+    return kWays * static_cast<double>(clearest) * depth_m < std::log(100.0);
 }
 
 template <class T>
@@ -320,19 +321,23 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
         return glm::dvec2(view.position_m) + (level > 1e-6 ? forward / level : glm::dvec2(0.0)) *
                                                  (0.45 * width_m * std::min(2.0 * level, 1.0));
     };
+    // Nearer the horizon hardly any of the sun's light gets in: the pattern goes by then, rather than in one frame.
+    constexpr float kLowSun = 0.02f, kNoLowSun = 0.06f;  // sines of its elevation
+    // Where pixels are as wide as a net's mesh, it is even.
+    constexpr double kMeshesADepth = 8.0;
     const double depth_m =
         floor.has_depths() ? depth_before(view, floor) : static_cast<double>(water.floor_m);
-    if (!(wanted.gain > 0.0 && depth_m > 0.0) || wanted.sun_direction.z <= 0.02f ||
-        !shows_floor(water, depth_m) || 8.0 * wanted.finest_m > depth_m) {
+    if (!(wanted.gain > 0.0 && depth_m > 0.0) || wanted.sun_direction.z <= kLowSun ||
+        !shows_floor(water, depth_m) || kMeshesADepth * wanted.finest_m > depth_m) {
         floor.set_light({});
         return;
     }
     const double texel_m = std::max(depth_m / kTexelsADepth, wanted.finest_m);
-    Floor::Light light{
-        .side = side,
-        .texel_m = texel_m,
-        .from_m = {},
-        .gain = wanted.gain * static_cast<double>(glm::smoothstep(0.02f, 0.06f, wanted.sun_direction.z))};
+    Floor::Light light{.side = side,
+                       .texel_m = texel_m,
+                       .from_m = {},
+                       .gain = wanted.gain * static_cast<double>(glm::smoothstep(kLowSun, kNoLowSun,
+                                                                                 wanted.sun_direction.z))};
     const double coarse_m = kFloorLightStep * texel_m;
     for (std::size_t i = 0; i < 2; ++i) {
         const double width_m = side * texel_m * (i == 0 ? 1.0 : kFloorLightStep);

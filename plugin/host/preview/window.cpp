@@ -580,7 +580,7 @@ class Preview {
     // The floor as it is lit before a camera, where it is seen at all.
     std::optional<LiveSea::FloorWanted> floor_before(const View& view) const {
         constexpr int kSide = 512;  // half of a single picture's: each frame has one
-        if (!floor_ || !sky_ ||
+        if (!floor_ || !sky_ || controls_.scene.water.caustics == 0.0 ||
             !(floor_->has_depths() || shows_floor(water_, static_cast<double>(water_.floor_m))))
             return {};
         return LiveSea::FloorWanted{.floor = floor_,

@@ -83,7 +83,7 @@ float texel(const Floor& floor, int column, int row) {
 }
 
 TEST(FloorLight, KeepsItsMeanAndGathersWhereWavesFocus) {
-    for (const double elevation : {25.0, 60.0, 88.0})
+    for (const double elevation : {25.0, 60.0, 90.0})
         for (const double depth : {0.4, 2.5, 8.0}) {
             const Lit made = lit(lagoon(depth), elevation, above({10.0, -4.0}));
             ASSERT_TRUE(made.floor.has_light());
@@ -164,8 +164,8 @@ TEST(FloorLight, IsThatOfRaysThroughTheSurface) {
             squares += (mean - rays) * (mean - rays);
             spread += (rays - 1.0) * (rays - 1.0);
         }
-    // Rays are so few that their sums err by 0.06.
-    EXPECT_LT(std::sqrt(squares / (kBins * kBins)), 0.09);
+    // 0.043: rays' own sums err by 0.02, and hidden slopes spread light along the axes alone, as one width for the whole map.
+    EXPECT_LT(std::sqrt(squares / (kBins * kBins)), 0.06);
     EXPECT_GT(std::sqrt(spread / (kBins * kBins)), 0.12);
 }
 

@@ -51,7 +51,7 @@ void frame_times() {
     Scene cascades, trains;
     cascades.waves.cascades = {{160.0, 256}, {37.7, 256}, {8.9, 256}, {2.1, 256}};
     trains.waves.model = WaveModel::Trochoid;
-    for (const auto& [name, of] : {std::pair{"four 256^2 cascades", cascades}, {"60 trains", trains}})
+    for (const auto& [name, of] : {std::pair{"four 256^2 cascades", cascades}, {"wave trains", trains}})
         for (const glm::ivec2 size : {glm::ivec2(1280, 720), glm::ivec2(1920, 1080)}) {
             Scene scene = of;
             scene.quality.level = QualityLevel::Preview;

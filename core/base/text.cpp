@@ -87,6 +87,12 @@ std::string utf8_text(std::string_view text) {
     return escaped(text, {.commands = false});
 }
 
+bool has_ending(std::string_view name, std::string_view ending) {
+    return name.size() > ending.size() &&
+           std::equal(ending.begin(), ending.end(), name.end() - static_cast<std::ptrdiff_t>(ending.size()),
+                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
 std::string_view first_character(std::string_view text) {
     return text.empty() ? text : text.substr(0, std::max<std::size_t>(character_bytes(text), 1));
 }

@@ -19,6 +19,9 @@ std::string utf8_text(std::string_view text);
 // turns no writing direction; what would is shown as its escape.
 std::string line_text(std::string_view text);
 
+// Whether a file's name ends so, whatever the case of its letters: ".exr", in lower case.
+bool has_ending(std::string_view name, std::string_view ending);
+
 // The text's first UTF-8 character, or its first byte where that isn't UTF-8.
 std::string_view first_character(std::string_view text);
 

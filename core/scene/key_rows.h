@@ -202,6 +202,8 @@ struct About {
     KeyPartSet key_parts = {};
     bool may_be_infinite = false;
     bool is_picture = false;
+    bool may_be_mesh = false;
+    const char* of_picture = "";
     const char* other_word = "";
     std::size_t most_entries = ~std::size_t{0};
     bool are_entries_independent = true;

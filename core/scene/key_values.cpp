@@ -148,6 +148,8 @@ Key key_about(const About& about, KeyType type) {
         key.soft = SoftRange{key.range->low, key.range->high};
     key.may_be_infinite = about.may_be_infinite;
     key.is_picture = about.is_picture;
+    key.may_be_mesh = about.may_be_mesh;
+    key.of_picture = about.of_picture;
     key.most_entries = about.most_entries;
     key.are_entries_independent = about.are_entries_independent;
     key.other_word = about.other_word;

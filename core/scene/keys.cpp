@@ -132,29 +132,33 @@ void add_sea(Built& out) {
         row<&SeaState::depth_file>(
             {.name = "depth_file",
              .help =
-                 "how deep the floor lies that is seen, in metres: a picture of depths from above, north at its top, grey or its red; "
-                 "beyond it the floor goes to depth_m. Waves are those of depth_m",
-             .accepted = "\"none\", or the path of an .exr, from the shot file's folder",
+                 "how deep the floor lies that is seen, in metres: a picture of depths from above, north at its top, grey or its red, "
+                 "or a mesh of the floor, z up, 0 the sea at rest; beyond it the floor goes to depth_m. Waves are those of depth_m",
+             .accepted = "\"none\", or the path of an .exr or .obj, from the shot file's folder",
              .key_parts = key_parts(KeyPart::Water),
-             .is_picture = true}),
+             .is_picture = true,
+             .may_be_mesh = true}),
         row<&SeaState::depth_size_m>({.name = "depth_size_m",
                                       .help = "from west to east of that picture",
                                       .unit = "m",
                                       .range = limits::kSurfaceSize_m,
                                       .soft = SoftRange{10.0, 1e4, true},
-                                      .key_parts = key_parts(KeyPart::Water)}),
+                                      .key_parts = key_parts(KeyPart::Water),
+                                      .of_picture = "sea.depth_file"}),
         row<&SeaState::depth_east_m>({.name = "depth_east_m",
                                       .help = "where its middle is, towards +x",
                                       .unit = "m",
                                       .range = limits::kCameraCoordinate_m,
                                       .soft = SoftRange{-1e3, 1e3},
-                                      .key_parts = key_parts(KeyPart::Water)}),
+                                      .key_parts = key_parts(KeyPart::Water),
+                                      .of_picture = "sea.depth_file"}),
         row<&SeaState::depth_north_m>({.name = "depth_north_m",
                                        .help = "the same towards +y",
                                        .unit = "m",
                                        .range = limits::kCameraCoordinate_m,
                                        .soft = SoftRange{-1e3, 1e3},
-                                       .key_parts = key_parts(KeyPart::Water)}),
+                                       .key_parts = key_parts(KeyPart::Water),
+                                       .of_picture = "sea.depth_file"}),
         row<&SeaState::spectrum>({.name = "spectrum",
                                   .help = "how the energy is shared among the wavelengths",
                                   .key_parts = kWaves}),
@@ -588,12 +592,14 @@ void add_light_and_water(Built& out) {
              .unit = "degrees",
              .range = limits::kAngle_deg,
              .soft = kTurn,
-             .key_parts = kLight}),
+             .key_parts = kLight,
+             .of_picture = "light.sky"}),
         row<&Light::sky_gain>({.name = "sky_gain",
                                .help = "multiplies the radiance of a picture of a sky and its sun",
                                .range = limits::kSkyGain,
                                .soft = SoftRange{0.01, 100.0, true},
-                               .key_parts = kLight}));
+                               .key_parts = kLight,
+                               .of_picture = "light.sky"}));
     add_table<&Scene::water>(
         out.tables, out.keys, {"water", "the water body", {}, {}},
         row<&Water::type>(
@@ -630,7 +636,8 @@ void add_light_and_water(Built& out) {
                                       .unit = "m",
                                       .range = limits::kFoamPattern_m,
                                       .soft = SoftRange{0.5, 50.0, true},
-                                      .key_parts = kWater}),
+                                      .key_parts = kWater,
+                                      .of_picture = "water.floor_pattern"}),
         row<&Water::crest_light>(
             {.name = "crest_light",
              .help =
@@ -726,7 +733,8 @@ void add_effects_and_quality(Built& out) {
                                        .unit = "m",
                                        .range = limits::kFoamPattern_m,
                                        .soft = SoftRange{2.0, 50.0, true},
-                                       .key_parts = key_parts(KeyPart::Water)}),
+                                       .key_parts = key_parts(KeyPart::Water),
+                                       .of_picture = "effects.foam_pattern"}),
         row<&Effects::foam_new_albedo>(
             {.name = "foam_new_albedo",
              .help =

@@ -480,40 +480,23 @@ void check_cage(SceneChecker& check, const Surface& surface) {
     }
 }
 
-bool is_exr(std::string_view path) {
-    constexpr std::string_view kExr = ".exr";
-    return path.size() > kExr.size() &&
-           std::equal(kExr.begin(), kExr.end(), path.end() - static_cast<std::ptrdiff_t>(kExr.size()),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-}
-
-void check_foam_pattern(SceneChecker& check, const Effects& effects) {
-    const Effects usual;
-    if (effects.foam_pattern != usual.foam_pattern) return;
-    if (effects.foam_pattern_m != usual.foam_pattern_m && check.is_good("effects.foam_pattern_m"))
-        check.refuse({"effects.foam_pattern_m", number_text(effects.foam_pattern_m),
-                      "is the size of a picture of foam, and effects.foam_pattern is \"lace\"",
-                      number_text(usual.foam_pattern_m) + ", or effects.foam_pattern = \"PATH.exr\""});
-}
-
 void check_pictures(SceneChecker& check, const Scene& scene) {
     for (const Key* key : picture_keys(scene)) {
         const std::string path = std::get<std::string>(value_of(scene, *key));
-        if (!is_exr(path))
+        if (!has_ending(path, ".exr") && !(key->may_be_mesh && has_ending(path, ".obj")))
             check.refuse({key->path, quoted_text(path),
                           "is neither " + value_text(*key, key->fallback) + " nor a picture", key->accepted});
     }
-}
-
-void check_light(SceneChecker& check, const Light& light) {
-    if (light.sky != Light{}.sky) return;
-    const auto refuse = [&](const char* key, double value, double unused, const char* problem) {
-        if (value == unused || !check.is_good(key)) return;
-        check.refuse({key, number_text(value), std::string(problem) + ", and light.sky is \"daylight\"",
-                      number_text(unused) + ", or light.sky = \"PATH.exr\""});
-    };
-    refuse("light.sky_rotation_deg", light.sky_rotation_deg, 0.0, "turns a picture of a sky");
-    refuse("light.sky_gain", light.sky_gain, 1.0, "multiplies a picture of a sky");
+    for (const Key& key : keys()) {
+        if (key.of_picture.empty() || value_of(scene, key) == key.fallback || !check.is_good(key.path))
+            continue;
+        const Key& picture = key_of(key.of_picture);
+        const KeyValue& given = value_of(scene, picture);
+        if (given != picture.fallback && !has_ending(std::get<std::string>(given), ".obj")) continue;
+        check.refuse({key.path, value_text(key, value_of(scene, key)),
+                      "is of a picture, and " + picture.path + " is " + value_text(picture, given),
+                      value_text(key, key.fallback) + ", or " + picture.path + " = \"PATH.exr\""});
+    }
 }
 
 void check_water(SceneChecker& check, const Water& water) {
@@ -626,8 +609,6 @@ std::vector<Problem> validate(const Scene& scene) {
     check_planet(check, scene);
     check_cage(check, scene.surface);
     check_pictures(check, scene);
-    check_foam_pattern(check, scene.effects);
-    check_light(check, scene.light);
     check_water(check, scene.water);
     check_output(check, scene.effects, scene.output);
     check_scheme(check, scene.output, scene.surface);

@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "core/base/constants.h"
 #include "core/lighting/air.h"
 #include "core/lighting/background.h"
 #include "core/lighting/colour.h"
+#include "core/lighting/floor.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/tone.h"
 #include "core/plan/effects.h"
@@ -49,12 +51,14 @@ class Meter {
         if (is_open && water_.has_body)
             under_m_ = -std::max(2.0 * std::sqrt(DirectionalSpectrum(scene.sea, scene.waves.band_gains).m0()),
                                  kLeastHeight_m);
+        if (water_.has_body && scene.sea.depth_file != SeaState{}.depth_file) floor_ = make_floor(scene);
         variance_ = static_cast<float>(0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total);
     }
 
     void add(const View& view) {
         is_under_ = view.position_m.z < under_m_;
         eye_m_ = static_cast<float>(view.position_m.z);
+        position_m_ = glm::dvec2(view.position_m);
         is_foam_seen_ = is_foam_seen_ || !is_under_;
         height_m_ = std::max(view.position_m.z, kLeastHeight_m);
         if (sky_.air && !(std::abs(std::log(height_m_ / air_height_m_)) < kSameHeight)) {
@@ -113,7 +117,7 @@ class Meter {
         return {calm + luminance(glm::dvec3(lit.sun)), calm};
     }
 
-    Seen along(glm::dvec3 direction) const {
+    Seen along(glm::dvec3 direction) {
         const glm::vec3 to(direction);
         if (is_under_) return below(to);
         const double distance = distance_m(direction);
@@ -128,6 +132,9 @@ class Meter {
                              .slope_variance = {variance_, variance_, 0.0f},
                              .up = glm::vec3(glm::normalize(at))};
         SeaRadiance lit;
+        if (floor_)
+            water_.floor_m =
+                static_cast<float>(floor_->depth_m(position_m_ + distance * glm::dvec2(direction)));
         shade_sea({.whitecaps = false}, sky_, water_, {&point, 1}, {&lit, 1}, &air_);
         const auto metres = static_cast<float>(distance);
         see_through(air_, {&point.to_eye, 1}, {&metres, 1}, {&lit, 1});
@@ -137,6 +144,8 @@ class Meter {
 
     const Sky& sky_;
     WaterBody water_;
+    std::optional<Floor> floor_;  // where a map says how deep it is
+    glm::dvec2 position_m_{0.0};
     double curvature_per_m_;
     float variance_;
     double under_m_ = -std::numeric_limits<double>::infinity();  // eyes below it are under water

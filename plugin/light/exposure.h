@@ -17,9 +17,9 @@ std::vector<View> metered_views(const Scene& scene);
 // The exposure for display_colour() (core/lighting/tone.h), brighter by `stops` and camera.exposure_ev: a factor of 2 for each. > 0
 // and finite. camera.ev100, or else metered: the logarithmic mean of the luminance in those views: the sky without the sun's disc,
 // and through the air before it a sea that is at rest in the mean, on the earth's sphere where the shot's is, with the slopes that
-// Cox and Munk 1954 saw at the shot's wind, from below where the water has a body and the eye is deep in it; less where white foam
+// Cox and Munk 1954 saw at the shot's wind, from below where the water has a body and the eye is deep in it, over the depths of sea.depth_file; less where white foam
 // would be burnt out. So nothing has to be rendered; a table of air
-// for each height of the eye takes some 40 ms. `sky` is the shot's own (make_sky()).
+// for each height of the eye takes some 40 ms. `sky` is the shot's own (make_sky()). Throws as make_floor().
 float shot_exposure(const Scene& scene, const Sky& sky, double stops = 0.0);
 
 }  // namespace pelagic

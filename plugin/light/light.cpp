@@ -32,6 +32,7 @@
 #include "core/spectrum/viscous_cutoff.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/format/exr/read.h"
+#include "plugin/light/floor_mesh.h"
 
 namespace pelagic {
 namespace {
@@ -99,6 +100,10 @@ std::vector<Problem> check_floor_picture(const Scene& scene, const Key& key) {
         return std::vector{Problem{key.path, quoted_text(path), line_text(text), accepted}};
     };
     try {
+        if (is_floor_mesh(path)) {
+            depths_of(read_floor_mesh(path).mesh(), 0.0, 0.0);
+            return {};
+        }
         const exr::RgbFile file(path);
         const int width = file.width(), height = file.height();
         const bool is_good = is_depths
@@ -110,6 +115,8 @@ std::vector<Problem> check_floor_picture(const Scene& scene, const Key& key) {
                                  : "a square picture with a side of 1, 2 ... 1024 pixels");
     } catch (const exr::ReadError& error) {
         return problem(error.problem(), error.accepted());
+    } catch (const FloorMeshError& error) {
+        return problem(error.what(), error.accepted());
     }
 }
 
@@ -286,7 +293,15 @@ std::size_t floor_bytes(const Scene& scene) {
     std::size_t bytes = 0;
     for (const Key* key : floor_keys(scene)) {
         if (!check_floor_picture(scene, *key).empty()) continue;
-        const exr::RgbFile file(std::get<std::string>(value_of(scene, *key)));
+        const std::string path = std::get<std::string>(value_of(scene, *key));
+        if (is_floor_mesh(path)) {
+            // Its text, and points and corners as they are read, which take some three times as much; then a grid of depths, twice.
+            constexpr std::size_t kOfText = 4, kTexels = std::size_t{kFloorMeshTexels} * kFloorMeshTexels;
+            bytes += kOfText * static_cast<std::size_t>(std::filesystem::file_size(path)) +
+                     2 * kTexels * sizeof(float);
+            continue;
+        }
+        const exr::RgbFile file(path);
         bytes += kPixel * static_cast<std::size_t>(file.width()) * static_cast<std::size_t>(file.height());
     }
     return bytes;
@@ -296,7 +311,8 @@ Floor make_floor(const Scene& scene, double rest_m) {
     // Beyond a map of depths the floor falls no deeper than anybody sees.
     constexpr double kDeepest_m = 500.0;
     const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
-    Floor floor(std::min(scene.sea.depth_m, has_map ? kDeepest_m : 1e9), rest_m);
+    const double beyond_m = std::min(scene.sea.depth_m, has_map ? kDeepest_m : 1e9);
+    Floor floor(beyond_m, rest_m);
     for (const Key* key : floor_keys(scene)) {
         const std::string path = std::get<std::string>(value_of(scene, *key));
         const auto refuse = [&](const std::string& problem, const std::string& accepted) {
@@ -306,6 +322,11 @@ Floor make_floor(const Scene& scene, double rest_m) {
         for (const Problem& problem : check_floor_picture(scene, *key))
             throw std::invalid_argument(text_of(problem));
         try {
+            if (is_floor_mesh(path)) {
+                FloorDepths of = depths_of(read_floor_mesh(path).mesh(), rest_m, beyond_m);
+                floor.set_depths(of.columns_rows, std::move(of.depths_m), of.from_m, of.size_m);
+                continue;
+            }
             exr::RgbPixels picture = exr::read_rgb(path);
             const auto width = static_cast<std::size_t>(picture.width),
                        height = static_cast<std::size_t>(picture.height);

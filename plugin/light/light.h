@@ -26,7 +26,7 @@ std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
 // Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);
-// The floor below a sea that rests at a height [m]: level at sea.depth_m, or as the pictures say that sea.depth_file and water.floor_pattern
+// The floor below a sea that rests at a height [m]: level at sea.depth_m, or as the pictures or the mesh say that sea.depth_file and water.floor_pattern
 // are the paths of. Depths below a centimetre are one: land isn't seen. Throws std::invalid_argument, naming the key and the file, for a picture that
 // can't be read or isn't one of a floor.
 Floor make_floor(const Scene& scene, double rest_m = 0.0);

@@ -401,9 +401,11 @@ class Drawing {
         // Where all of a sea breaks that gains have raised tenfold, its drops take a minute a frame.
         if (made_.value("waves.band_gains"))
             for (const char* key : {"effects.spray_drops", "output.drops"}) leave_out(key);
-        if (!is("light.sky", std::string(kSkyName)))
-            for (const char* key : {"light.sky_rotation_deg", "light.sky_gain"}) leave_out(key);
-        if (!is("effects.foam_pattern", std::string(kFoamName))) leave_out("effects.foam_pattern_m");
+        for (const Key& key : keys())
+            if (!key.of_picture.empty()) {
+                const KeyValue* picture = made_.value(key.of_picture);
+                if (!picture || *picture == key_of(key.of_picture).fallback) leave_out(key.path);
+            }
         if (const KeyValue* type = made_.value("water.type");
             type && std::get<std::string>(*type).starts_with("jerlov"))
             leave_out("water.chlorophyll_mg_m3");

@@ -123,10 +123,11 @@ void find_pictures(Reader& reader, const std::filesystem::path& folder, Scene& s
         if (reader.has_failed(key.path)) return path;
         const std::filesystem::path file = folder / path;
         if (!is_file(file))
-            reader.refuse(
-                {key.path, quoted_text(path),
-                 "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
-                 value_text(key, key.fallback) + ", or the path of an .exr, from the shot file's folder"});
+            reader.refuse({key.path, quoted_text(path),
+                           "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
+                           value_text(key, key.fallback) + ", or the path of an " +
+                               (key.may_be_mesh ? ".exr or .obj" : ".exr") +
+                               ", from the shot file's folder"});
         return file.string();
     });
 }

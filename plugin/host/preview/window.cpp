@@ -460,7 +460,11 @@ class Preview {
 
     void meter() {
         metered_wind_mps_ = controls_.scene.sea.wind_speed_mps;
-        exposure_ = shot_exposure(controls_.scene, sky_->sky);
+        try {
+            exposure_ = shot_exposure(controls_.scene, sky_->sky);
+        } catch (
+            const std::invalid_argument&) {  // a map of depths that is gone: the panel says it of the floor
+        }
     }
 
     // Requests what the panel asks for and takes finished results, without waiting.

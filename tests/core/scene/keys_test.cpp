@@ -142,8 +142,9 @@ Scene scene_with(const Key& key, const KeyValue& value) {
     Scene scene;
     if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m")
         scene.waves.model = WaveModel::Trochoid;
-    if (key.path.starts_with("light.sky_")) scene.light.sky = "noon.exr";
-    if (key.path == "effects.foam_pattern_m") scene.effects.foam_pattern = "foam.exr";
+    if (!key.of_picture.empty()) {
+        EXPECT_FALSE(set_value(scene, key_of(key.of_picture), std::string("noon.exr")));
+    }
     EXPECT_FALSE(set_value(scene, key, value).has_value()) << key.path;
     return scene;
 }

@@ -106,11 +106,25 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
         {"water.bubbles", limits::kWaterGain, [](Scene& s, double v) { s.water.bubbles = v; }},
         {"water.caustics", limits::kWaterGain, [](Scene& s, double v) { s.water.caustics = v; }},
         {"water.floor_pattern_m", limits::kFoamPattern_m,
-         [](Scene& s, double v) { s.water.floor_pattern_m = v; }},
-        {"sea.depth_size_m", limits::kSurfaceSize_m, [](Scene& s, double v) { s.sea.depth_size_m = v; }},
-        {"sea.depth_east_m", limits::kCameraCoordinate_m, [](Scene& s, double v) { s.sea.depth_east_m = v; }},
+         [](Scene& s, double v) {
+             s.water.floor_pattern = "tiles.exr";
+             s.water.floor_pattern_m = v;
+         }},
+        {"sea.depth_size_m", limits::kSurfaceSize_m,
+         [](Scene& s, double v) {
+             s.sea.depth_file = "bay.exr";
+             s.sea.depth_size_m = v;
+         }},
+        {"sea.depth_east_m", limits::kCameraCoordinate_m,
+         [](Scene& s, double v) {
+             s.sea.depth_file = "bay.exr";
+             s.sea.depth_east_m = v;
+         }},
         {"sea.depth_north_m", limits::kCameraCoordinate_m,
-         [](Scene& s, double v) { s.sea.depth_north_m = v; }},
+         [](Scene& s, double v) {
+             s.sea.depth_file = "bay.exr";
+             s.sea.depth_north_m = v;
+         }},
         {"surface.cell_px", limits::kCell_px, [](Scene& s, double v) { s.surface.cell_px = v; }},
     };
     for (const Case& c : cases) {
@@ -226,6 +240,22 @@ TEST(Validate, FramesSeedAndLoop) {
                    {"water.floor_pattern", "\"\"", "\"plain\", or the path"});
     expect_refused([](Scene& s) { s.effects.foam_pattern_m = 4.0; },
                    {"effects.foam_pattern_m", "4", "10, or effects.foam_pattern = \"PATH.exr\""});
+    expect_good([](Scene& s) { s.sea.depth_file = "reef.obj"; });
+    expect_refused([](Scene& s) { s.effects.foam_pattern = "foam.obj"; },
+                   {"effects.foam_pattern", "\"foam.obj\"", "\"lace\", or the path"});
+    // A mesh says itself where it lies.
+    expect_refused(
+        [](Scene& s) {
+            s.sea.depth_file = "reef.obj";
+            s.sea.depth_east_m = 4.0;
+        },
+        {"sea.depth_east_m", "4", "0, or sea.depth_file = \"PATH.exr\""});
+    expect_refused([](Scene& s) { s.sea.depth_size_m = 4.0; },
+                   {"sea.depth_size_m", "4", "or sea.depth_file = \"PATH.exr\""});
+    expect_refused([](Scene& s) { s.sea.depth_north_m = -4.0; },
+                   {"sea.depth_north_m", "-4", "or sea.depth_file = \"PATH.exr\""});
+    expect_refused([](Scene& s) { s.water.floor_pattern_m = 5.0; },
+                   {"water.floor_pattern_m", "5", "4, or water.floor_pattern = \"PATH.exr\""});
     expect_good([](Scene& s) {
         s.effects.foam_pattern = "lace.EXR";
         s.effects.foam_pattern_m = 4.0;

@@ -11,6 +11,7 @@
 
 #include "plugin/files/files.h"
 #include "plugin/format/exr/exr.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 
 namespace pelagic {
@@ -64,6 +65,32 @@ TEST_F(FloorPictures, LieWhereTheShotSaysWithNorthAtTheTop) {
     EXPECT_NEAR(make_floor(scene).depth_m({100.0, -50.0}), 0.01, 1e-6);
 }
 
+// A slope with a rock on it, and a rectangle that isn't square; what hangs over the rock's foot hides it.
+TEST_F(FloorPictures, MayBeMeshesAsTheyLieInTheWorld) {
+    const fs::path path = folder_ / "shelf.OBJ";
+    files::write_atomically(path,
+                            "v -20 -5 -8\nv 20 -5 -2\nv 20 5 -2\nv -20 5 -8\n"
+                            "v 4 -1 -1\nv 6 -1 -1\nv 6 1 -1\nv 4 1 -1\n"
+                            "f 5 6 7 8\nf 1 2 3 4\n");
+    Scene scene;
+    scene.sea.depth_m = 30.0;
+    scene.sea.depth_file = path.string();
+    EXPECT_TRUE(check_scene(scene).empty());
+    const Floor floor = make_floor(scene);
+    for (const double x : {-19.0, -7.3, 0.0, 3.5, 7.0, 19.0})
+        for (const double y : {-4.5, 0.0, 4.5})
+            EXPECT_NEAR(floor.depth_m({x, y}), 5.0 - 0.15 * x, 1e-3) << x << ' ' << y;
+    for (const double y : {-0.9, 0.0, 0.9}) EXPECT_NEAR(floor.depth_m({5.0, y}), 1.0, 1e-4);
+    EXPECT_NEAR(floor.depth_m({0.0, 40.0}), 30.0, 1e-4);
+    EXPECT_GE(floor_bytes(scene), floor.values().size() * sizeof(float));
+    EXPECT_NEAR(make_floor(scene, 10.0).depth_m({0.0, 0.0}), 15.0, 1e-3);  // of a sea that rests higher
+    // Of a mesh that has none everywhere, what is left is the level floor.
+    files::write_atomically(path, "v 0 0 -3\nv 8 0 -3\nv 0 8 -3\nf 1 2 3\n");
+    const Floor part = make_floor(scene);
+    EXPECT_NEAR(part.depth_m({1.0, 1.0}), 3.0, 1e-4);
+    EXPECT_NEAR(part.depth_m({7.0, 7.0}), 30.0, 1e-4);
+}
+
 TEST_F(FloorPictures, ThatAreNoneAreRefusedByName) {
     const auto refusal = [](const Scene& scene) -> std::string {
         try {
@@ -86,6 +113,32 @@ TEST_F(FloorPictures, ThatAreNoneAreRefusedByName) {
     scene.water.floor_pattern =
         picture("good.exr", 2, 2, [](int x, int) { return 0.5f * static_cast<float>(x); });
     EXPECT_EQ(refusal(scene), "");
+    const fs::path wall = folder_ / "wall.obj";
+    scene = {};
+    scene.sea.depth_file = wall.string();
+    EXPECT_NE(refusal(scene).find("is missing"), std::string::npos) << refusal(scene);
+    files::write_atomically(wall, "v 0 0 0\nv 1 0 0\nv 1 0 -9\nv 0 0 -9\nf 1 2 3 4\n");
+    EXPECT_NE(refusal(scene).find("no area from above"), std::string::npos) << refusal(scene);
+    files::write_atomically(wall, "v 0 0 0\nf 1 2 3\n");
+    EXPECT_NE(refusal(scene).find("wall.obj:2"), std::string::npos) << refusal(scene);
+}
+
+// Over bright sand that only a map says the picture isn't burnt out.
+TEST_F(FloorPictures, AreMetered) {
+    Scene scene;
+    scene.water.floor_colour = {0.6f, 0.55f, 0.45f};
+    scene.effects.whitecaps = false;
+    scene.camera.position_m = {0.0, 0.0, 60.0};
+    scene.camera.look_at_m = {0.0, 40.0, 0.0};
+    const Sky sky = make_sky(scene);
+    const float deep = shot_exposure(scene, sky);
+    scene.sea.depth_m = 2.0;
+    const float shallow = shot_exposure(scene, sky);
+    EXPECT_LT(shallow, 0.8f * deep);
+    scene.sea.depth_m = 1000.0;
+    scene.sea.depth_file = picture("sand.exr", 2, 2, [](int, int) { return 2.0f; });
+    scene.sea.depth_size_m = 1e5;
+    EXPECT_NEAR(shot_exposure(scene, sky) / shallow, 1.0f, 0.02f);
 }
 
 TEST_F(FloorPictures, CountByTheirContentNotTheirFolder) {

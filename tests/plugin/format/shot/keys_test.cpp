@@ -20,16 +20,13 @@ namespace {
 const std::filesystem::path kKeysData =
     std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/format/shot/data";
 
-// Keys of wave trains mean nothing without them, nor do those of a sky's picture.
+// Keys of wave trains mean nothing without them, nor do those of a picture.
 std::string shot_with(const Key& key, const std::string& value) {
     const bool of_trains =
         key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
     // Waves of any height need a wind that makes them long.
     const bool is_height = key.path == "sea.significant_height_m";
-    const bool of_picture = key.path == "light.sky_rotation_deg" || key.path == "light.sky_gain";
-    const bool of_foam = key.path == "effects.foam_pattern_m";
-    return std::string(of_foam ? "effects.foam_pattern = \"sky.exr\"\n" : "") +
-           std::string(of_picture ? "light.sky = \"sky.exr\"\n" : "") +
+    return (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
            std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
            (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
            '\n';
@@ -171,9 +168,8 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
         EXPECT_EQ(shot_text(read), text);
     }
     for (const Key& key : keys()) {
-        // A picture is no file here, and what turns and scales one is refused without it.
-        const bool can_change = key.set && !key.is_picture && !key.path.starts_with("light.sky") &&
-                                key.path != "effects.foam_pattern_m";
+        // A picture is no file here, and what is of one is refused without it.
+        const bool can_change = key.set && !key.is_picture && key.of_picture.empty();
         EXPECT_EQ(changed.contains(key.path), can_change) << key.path;
     }
 }

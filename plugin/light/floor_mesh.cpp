@@ -1,0 +1,107 @@
+#include "plugin/light/floor_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+
+#include "core/scene/text.h"
+#include "plugin/files/read.h"
+#include "plugin/format/obj/obj.h"
+
+namespace pelagic {
+namespace {
+
+constexpr const char* kAccepted =
+    "a Wavefront OBJ of at most 256 MiB: z up, in metres, with an area from above";
+
+double cross(glm::dvec2 a, glm::dvec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+// Raises a grid's heights to a triangle's; x and y are in texels.
+void raise(std::vector<float>& heights, glm::ivec2 columns_rows, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    const double area = cross(glm::dvec2(b - a), glm::dvec2(c - a));
+    if (area == 0.0) return;
+    const auto first = [](double at, int most) {
+        return static_cast<int>(std::clamp(std::ceil(at - 0.5), 0.0, static_cast<double>(most)));
+    };
+    const glm::dvec3 least = glm::min(a, glm::min(b, c)), most = glm::max(a, glm::max(b, c));
+    // Neighbours leave no gap: what lies on their edge is of both.
+    constexpr double kEdge = -1e-9;
+    for (int y = first(least.y, columns_rows.y); y < columns_rows.y && y + 0.5 <= most.y; ++y)
+        for (int x = first(least.x, columns_rows.x); x < columns_rows.x && x + 0.5 <= most.x; ++x) {
+            const glm::dvec2 at(x + 0.5, y + 0.5);
+            const double of_a = cross(glm::dvec2(b) - at, glm::dvec2(c) - at) / area,
+                         of_b = cross(glm::dvec2(c) - at, glm::dvec2(a) - at) / area,
+                         of_c = 1.0 - of_a - of_b;
+            if (std::min({of_a, of_b, of_c}) < kEdge) continue;
+            float& height = heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_rows.x) +
+                                    static_cast<std::size_t>(x)];
+            height = std::max(height, static_cast<float>(of_a * a.z + of_b * b.z + of_c * c.z));
+        }
+}
+
+}  // namespace
+
+bool is_floor_mesh(const std::string& path) {
+    return has_ending(path, ".obj");
+}
+
+Cage read_floor_mesh(const std::filesystem::path& path) {
+    files::FileReader file(path);
+    std::string text, part(std::size_t{1} << 16, '\0');
+    while (const std::size_t count = file.read(std::span(part.data(), part.size()))) {
+        text.append(part, 0, count);
+        if (text.size() > kMostObjBytes) throw FloorMeshError("is too large", kAccepted);
+    }
+    if (!file.problem().empty()) throw FloorMeshError(file.problem(), kAccepted);
+    try {
+        return parse_obj(text, line_text(path.filename().string()));
+    } catch (const ObjError& error) {
+        throw FloorMeshError("is no floor: " + error.problem(), error.accepted());
+    }
+}
+
+FloorDepths depths_of(const CageMesh& mesh, double rest_m, double beyond_m) {
+    glm::dvec3 least(1e300), most(-1e300);
+    for (const std::int32_t index : mesh.indices) {
+        const glm::dvec3& point = mesh.points_m[static_cast<std::size_t>(index)];
+        least = glm::min(least, point);
+        most = glm::max(most, point);
+    }
+    const glm::dvec2 extent(most - least);
+    const double texel_m = std::max(extent.x, extent.y) / kFloorMeshTexels;
+    if (!(std::min(extent.x, extent.y) > 1e-6 * std::max(extent.x, extent.y)))
+        throw FloorMeshError("has no area from above", kAccepted);
+    FloorDepths depths;
+    depths.columns_rows = glm::clamp(glm::ivec2(glm::ceil(extent / texel_m)), 1, kFloorMeshTexels);
+    depths.from_m = glm::dvec2(least);
+    depths.size_m = texel_m * glm::dvec2(depths.columns_rows);
+    constexpr float kNone = -1e30f;
+    depths.depths_m.assign(
+        static_cast<std::size_t>(depths.columns_rows.x) * static_cast<std::size_t>(depths.columns_rows.y),
+        kNone);
+    const auto corner = [&](std::size_t i) {
+        const glm::dvec3& point = mesh.points_m[static_cast<std::size_t>(mesh.indices[i])];
+        return glm::dvec3((glm::dvec2(point) - depths.from_m) / texel_m, point.z);
+    };
+    std::vector<bool> is_hole(mesh.face_counts.size());
+    for (const std::int32_t face : mesh.holes) is_hole[static_cast<std::size_t>(face)] = true;
+    std::size_t first = 0;
+    for (std::size_t face = 0; face < mesh.face_counts.size(); ++face) {
+        const auto count = static_cast<std::size_t>(mesh.face_counts[face]);
+        for (std::size_t k = 2; k < count && !is_hole[face]; ++k)
+            raise(depths.depths_m, depths.columns_rows, corner(first), corner(first + k - 1),
+                  corner(first + k));
+        first += count;
+    }
+    constexpr double kLeast_m = 0.01, kMost_m = 1e5;
+    for (float& depth : depths.depths_m)
+        depth = static_cast<float>(
+            std::clamp(depth == kNone ? beyond_m : rest_m - static_cast<double>(depth), kLeast_m, kMost_m));
+    return depths;
+}
+
+}  // namespace pelagic

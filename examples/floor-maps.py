@@ -35,11 +35,15 @@ def atoll():
     """Rows from the north. A lagoon round a middle in the north, its rim with a bar of sand, and the reef's face."""
     across = (np.arange(ATOLL) + 0.5 - ATOLL / 2) * PIXEL_M
     east, north = np.meshgrid(across, -across)
-    out = np.hypot(east, north - 120.0) + 14.0 * noise(ATOLL, 2.4, 2)
+    out = np.hypot(east, north - 120.0) + 14.0 * noise(ATOLL, 2.4, 2) + 4.0 * noise(ATOLL, 1.3, 3)
     depth = 6.5 - 4.2 * step(60.0, 150.0, out) - 1.9 * np.exp(-((out - 172.0) / 15.0) ** 2)
     depth += 4.0 * step(188.0, 208.0, out) + 30.0 * step(202.0, 234.0, out)
     depth -= 3.0 * np.clip(noise(ATOLL, 1.35, 9, longest=7) - 1.6, 0.0, 1.1) * (1.0 - step(140.0, 165.0, out))  # shoals
     depth += 0.15 * noise(ATOLL, 1.6, 5)
+    # Spurs and grooves of the reef's face, which run outwards.
+    along = np.arctan2(east, 120.0 - north) * 180.0
+    grooves = np.sin(2.0 * np.pi * along / 16.0 + 0.6 * noise(ATOLL, 1.8, 7)) * (0.6 + 0.4 * noise(ATOLL, 1.2, 8))
+    depth += 1.3 * grooves * step(170.0, 190.0, out) * (1.0 - step(215.0, 232.0, out))
     return np.repeat(np.clip(depth, 0.25, 40.0)[..., None], 3, axis=-1)
 
 

@@ -22,6 +22,7 @@ struct FloorLightWanted {
     double gain = 1.0;
     double finest_m = 0.0, finest_cell_m = 0.0;  // footprints of this view alone, of pixels and cells
     int side = 1024;                             // texels of a map
+    bool is_below = false;                       // some of the view looks through water: shafts are made
     bool operator==(const FloorLightWanted&) const = default;
 };
 

@@ -128,7 +128,7 @@ WaterSight water_sight(vec3 direction, float height_m, float surface_m, vec3 to_
     return sight;
 }
 
-const int kShaftPlaces = 32;       // along a sight
+const int kShaftPlaces = 64;       // along a sight
 const float kShaftWidth = 0.6f;    // over which one sees the light, over its part of the sight: levels of the map mix a little more
 
 // The decay per metre along a sight of what the sun's light sends to the eye, at the clearest of three wavelengths: of its absorption and of that.

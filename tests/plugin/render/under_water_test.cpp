@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -282,6 +283,39 @@ TEST(FromBelow, HostileViewsAreFinite) {
                         }
                         picture_under(scene, sky);
                     }
+}
+
+// Shafts move the sun's light in the water about and keep it; without caustics there are none, nor in a picture from above.
+TEST(FromBelow, ShaftsKeepTheLightsMean) {
+    Scene scene = with_body(sea_of(WaveModel::Fft));
+    scene.sea.wind_speed_mps = 4.0;
+    scene.sea.fetch_m = 20e3;
+    scene.waves.cascades = {{60.0, 128}, {11.0, 128}, {2.3, 128}};
+    scene.camera.fov_deg = 80.0;
+    scene.camera.resolution = {64, 36};
+    const Sky sky = make_sky(scene);
+    const glm::dvec2 to_sun = glm::normalize(glm::dvec2(sky.sun_direction));
+    double even = 0.0, gathered = 0.0, squares = 0.0;
+    int pixels = 0;
+    for (const double place_m : {0.0, 517.0, -260.0, 1033.0, 3300.0, -1700.0}) {
+        scene.camera.position_m = {place_m, 0.3 * place_m, -4.0};
+        scene.camera.look_at_m = scene.camera.position_m + glm::dvec3(to_sun, 0.1);
+        scene.water.caustics = 0.0;
+        const Picture without = picture_under(scene, sky);
+        scene.water.caustics = 1.0;
+        const Picture with = picture_under(scene, sky);
+        for (std::size_t i = 0; i < with.layers.size(); ++i) {
+            const auto a = static_cast<double>(without.layers[i].sea.y),
+                       b = static_cast<double>(with.layers[i].sea.y);
+            even += a;
+            gathered += b;
+            squares += (b / a - 1.0) * (b / a - 1.0);
+            ++pixels;
+        }
+    }
+    std::printf("    shafts: mean %.4f, rms %.4f\n", gathered / even, std::sqrt(squares / pixels));
+    EXPECT_NEAR(gathered / even, 1.0, 0.01);
+    EXPECT_GT(std::sqrt(squares / pixels), 0.02);
 }
 
 // The floor is seen where it is, and a camera in it is refused.

@@ -89,7 +89,8 @@ std::span<float> Floor::set_light(const Light& light) {
 std::span<float> Floor::set_shafts(const Shafts& shafts) {
     require((shafts.side & (shafts.side - 1)) == 0, "has a side that is no power of two");
     shafts_ = shafts;
-    shafts_first_ = light_first_ + 2 * static_cast<std::size_t>(light_.side) * static_cast<std::size_t>(light_.side);
+    shafts_first_ =
+        light_first_ + 2 * static_cast<std::size_t>(light_.side) * static_cast<std::size_t>(light_.side);
     const auto side = static_cast<std::size_t>(shafts.side);
     values_.resize(shafts_first_ + side * side);
     return std::span(values_).subspan(shafts_first_);

@@ -24,8 +24,9 @@ constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
 // The finer map's: the net of light at that depth has lines some three texels wide.
 constexpr double kTexelsADepth = 128.0;
 constexpr int kRowsAtOnce = 64;
-constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
-constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
+constexpr int kParts = 4;  // of the sea, always as many, so that sums are the same on any number of threads
+constexpr int kShaftSide = 512;  // texels of the shafts' map
+constexpr int kSplits = 4;       // of a cell's side: its light falls as so many points
 
 // The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
 struct Beam {
@@ -298,12 +299,20 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
 
 std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side) {
     if (!water.has_body || scene.water.caustics == 0.0) return 0;
-    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
-    if (!has_map && !shows_floor(water, static_cast<double>(water.floor_m))) return 0;
-    const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     constexpr std::size_t kWithMargins = 9;  // quarters of them, a quarter of its side beyond each edge
-    return texels * (2 + kParts) * sizeof(float) +
-           texels * kWithMargins / 4 * (sizeof(glm::vec2) + sizeof(float));
+    const auto bytes = [](int of_side, std::size_t maps) {
+        const auto texels = static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side);
+        return texels * (maps + kParts) * sizeof(float) +
+               texels * kWithMargins / 4 * (sizeof(glm::vec2) + sizeof(float));
+    };
+    double lowest_m = scene.camera.position_m.z;
+    for (const auto& key : scene.camera.keys) lowest_m = std::min(lowest_m, key.position_m.z);
+    constexpr double kAboveWaves_m = 30.0;
+    // A level of half the side after the other: a third more, and once more while they grow.
+    const std::size_t shafts = lowest_m < kAboveWaves_m ? bytes(kShaftSide, 3) : 0;
+    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
+    if (!has_map && !shows_floor(water, static_cast<double>(water.floor_m))) return shafts;
+    return shafts + bytes(side, 2);
 }
 
 bool shows_floor(const WaterBody& water, double depth_m) {
@@ -324,12 +333,11 @@ void fill(const Map& map, const Floor& floor, const Frame<T>& frame, const Floor
           const Beam& beam, double depth_m, const std::atomic<bool>* cancel) {
     const glm::dvec3 all(wanted.water.waves);
     const double m0 = frame.sea().plan().from->spectrum.m0();
-    const double per_slope =
-        depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
+    const double per_slope = depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
     const double most_m = 0.25 * map.side * map.texel_m,
-                 waves_m = std::min(
-                     3.0 * std::sqrt(0.5 * (all.x + all.y)) * per_slope + 3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
-                     most_m);
+                 waves_m = std::min(3.0 * std::sqrt(0.5 * (all.x + all.y)) * per_slope +
+                                        3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
+                                    most_m);
     const glm::dmat2 hidden = hidden_slopes(frame, map);
     const glm::dmat2 waves(all.x, all.z, all.z, all.y);
     const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
@@ -354,19 +362,20 @@ void fill(const Map& map, const Floor& floor, const Frame<T>& frame, const Floor
 
 // In the water about as deep as a camera in it looks through: its map, as wide as eight of that depth.
 template <class T>
-void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted, double rest_m, double gain,
-                  const std::atomic<bool>* cancel) {
+void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted, double rest_m,
+                  double gain, const std::atomic<bool>* cancel) {
     constexpr double kShallowest_m = 1.0, kDeepest_m = 12.0, kDepths = 8.0;
-    constexpr int kSide = 512;
     const double depth_m = std::clamp(rest_m - wanted.view.position_m.z, kShallowest_m, kDeepest_m);
-    const double texel_m = std::max(kDepths * depth_m / kSide, wanted.finest_m);
+    const double texel_m = std::max(kDepths * depth_m / kShaftSide, wanted.finest_m);
     const Floor::Shafts shafts{
-        .side = kSide,
+        .side = kShaftSide,
         .texel_m = texel_m,
         .depth_m = depth_m,
-        .from_m = texel_m * glm::floor((middle_of(wanted.view, kSide * texel_m) - 0.5 * kSide * texel_m) / texel_m),
+        .from_m =
+            texel_m *
+            glm::floor((middle_of(wanted.view, kShaftSide * texel_m) - 0.5 * kShaftSide * texel_m) / texel_m),
         .gain = gain};
-    fill(Map{shafts.from_m, texel_m, kSide, floor.set_shafts(shafts)}, Floor(depth_m), frame, wanted,
+    fill(Map{shafts.from_m, texel_m, kShaftSide, floor.set_shafts(shafts)}, Floor(depth_m), frame, wanted,
          beam_of(wanted), depth_m, cancel);
     floor.halve_shafts();
 }

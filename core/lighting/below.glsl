@@ -33,6 +33,8 @@ struct WaterSight {
     float returned;  // of what comes up, the part that the surface sends down again
     float floor_m;
     float gathered;  // the sun's light where it ends on the floor over its mean there, less 1
+    float shafts;    // the same of the water along it
+    float shafts_m;  // how far below the surface these are, along the sun's rays
 };
 
 // Over the irradiance that enters at the surface, of sun and sky: radiance that the eye sees of water and floor. And what is left of
@@ -76,6 +78,8 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
     of_sun *= exp(-0.46f * sight.aside);
     vec3 sun = of_sun * along_sight(by_sun + lost, by_sun, way, sight);
     vec3 sky = of_sky * along_sight(by_sky + lost, by_sky, way, sight);
+    vec3 shafts = 1.0f + sight.shafts * left_gathered(scattering, own, sight.shafts_m);
+    sun *= shafts;
     vec3 diffuse = (0.33f * kSkySlant) * u;
     if (sight.floor_m < kNoFloor_m) {
         vec3 reflected = 1.02f * sqrt(1.0f + 4.7f * u);
@@ -94,7 +98,7 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
     }
     vec3 again = 1.0f / (1.0f - sight.returned * diffuse);
     sun = again * sun +
-          aside * (sight.slant * scattered_ahead(sight.to_sun, kSunAhead)) * along_sight(by_sun + lost, by_sun, fog, sight);
+          shafts * aside * (sight.slant * scattered_ahead(sight.to_sun, kSunAhead)) * along_sight(by_sun + lost, by_sun, fog, sight);
     sky = again * sky + aside * (kSkySlant * scattered_ahead(-sight.down, kSkyAhead)) * along_sight(by_sky + lost, by_sky, fog, sight);
     return WaterSeen(sun, sky, sight.to_surface ? exp(-fog * sight.length_m) : vec3(0.0f));
 }
@@ -119,6 +123,55 @@ WaterSight water_sight(vec3 direction, float height_m, float surface_m, vec3 to_
     sight.returned = 1.0f - entering_from_sky(look.waves) / square(kWaterIndex);
     sight.floor_m = look.floor_m;
     sight.gathered = 0.0f;
+    sight.shafts = 0.0f;
+    sight.shafts_m = 0.0f;
+    return sight;
+}
+
+const int kShaftPlaces = 64;       // along a sight
+const float kShaftWidth = 0.6f;    // over which one sees the light, over its part of the sight: levels of the map mix a little more
+
+// The decay per metre along a sight of what the sun's light sends to the eye, at the clearest of three wavelengths: of its absorption and of that.
+vec2 clearest(vec3 absorption, vec3 scattering, vec3 backscatter, vec3 own, WaterSight sight, vec2 than) {
+    vec3 along = absorption + 2.0f * own + kScatteredAside * max(scattering - 2.0f * own, vec3(0.0f)) +
+                 (sight.down * sight.slant) * (absorption + backscatter);
+    for (int i = 0; i < 3; ++i)
+        if (absorption[i] < than.x) than = vec2(absorption[i], along[i]);
+    return than;
+}
+
+// Shafts of light: what the waves gather of the sun's light, over its mean, along a sight from a place relative to the eye. The map on its
+// plane is followed along the sun's rays. A pattern grows with depth as long as the waves focus, and below that the sun's disc and
+// slopes that aren't resolved blur it as much. Its places send as much to the eye each, at the clearest of wavelengths, and each is as wide as
+// its part of the sight crosses the rays. So what is too fine for them is even, and nothing flickers.
+WaterSight shafts_along(vec3 from, vec3 direction, vec3 to_sun, WaterLook look, FloorView of, WaterSight sight) {
+    vec2 clear = clearest(look.absorption.shorter, look.scattering.shorter, look.backscatter.shorter, kOwnShorter, sight, vec2(1.0e9f, 0.0f));
+    clear = clearest(look.absorption.longer, look.scattering.longer, look.backscatter.longer, kOwnLonger, sight, clear);
+    float decay = clear.y;
+    float length_m = sight.down < 0.0f ? min(sight.length_m, sight.depth_m / max(-sight.down, 1.0e-6f)) : sight.length_m;
+    float all = decay * length_m;
+    bool is_even = abs(all) < 1.0e-3f;
+    float lost = is_even ? 0.0f : 1.0f - exp(-clamp(all, -60.0f, 60.0f));
+    vec2 back = vec2(to_sun.x, to_sun.y) * (sight.slant / kWaterIndex);
+    vec2 level = vec2(direction.x, direction.y);
+    vec2 crossing = level + sight.down * back;
+    float across = sqrt(crossing.x * crossing.x + crossing.y * crossing.y);
+    float sum = 0.0f;
+    float deep = 0.0f;
+    for (int i = 0; i < kShaftPlaces; ++i) {
+        float part = (float(i) + 0.5f) / float(kShaftPlaces);
+        float left = 1.0f - part * lost;
+        float s = is_even ? part * length_m : -log(max(left, 1.0e-20f)) / decay;
+        float step_m = is_even ? length_m / float(kShaftPlaces) : lost / (decay * left * float(kShaftPlaces));
+        float depth = max(sight.depth_m + s * sight.down, 0.0f);
+        vec2 place = vec2(from.x, from.y) + s * level - (of.shafts.w - depth) * back;
+        float wide = sqrt(square(kShaftWidth * step_m * across) + square(of.pixel * s));
+        float grown = 2.0f * depth * of.shafts.w / (depth * depth + of.shafts.w * of.shafts.w);
+        sum += grown * (shaft_light(place, wide, of) - 1.0f);
+        deep += depth;
+    }
+    sight.shafts = max(of.shafts_look.z * sum / float(kShaftPlaces), -1.0f);
+    sight.shafts_m = deep / float(kShaftPlaces) * sight.slant;
     return sight;
 }
 
@@ -146,6 +199,9 @@ WaterBetween water_between(vec3 from, vec3 direction, float height_m, float surf
     }
     WaterSight sight = water_sight(direction, height_m, surface_m, light.sun_direction, look);
     sight.gathered = gathered;
+    // Mirrored and mixed sights see none.
+    if (light.floor.is_seen && light.floor.shafts_look.y > 0.0f && blur == 0.0f)
+        sight = shafts_along(from, direction, light.sun_direction, look, light.floor, sight);
     WaterSeen shorter = seen_in_water(look.absorption.shorter, look.scattering.shorter, look.backscatter.shorter, kOwnShorter,
                                       bare.shorter, sight);
     WaterSeen longer = seen_in_water(look.absorption.longer, look.scattering.longer, look.backscatter.longer, kOwnLonger,

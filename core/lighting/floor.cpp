@@ -23,7 +23,7 @@ struct Shading {
 floor_shading::Shading::FloorView glsl(const FloorSeen& seen) {
     return {true,        seen.z_m,          seen.curvature_per_m, seen.pixel,         seen.lowest_m,
             seen.depths, seen.depths_per_m, seen.colours,         seen.colours_first, seen.light,
-            seen.coarse};
+            seen.coarse, seen.shafts,       seen.shafts_look};
 }
 
 void require(bool holds, const char* what) {
@@ -80,8 +80,32 @@ void Floor::set_colours(int side, std::span<const glm::vec3> colours, double siz
 std::span<float> Floor::set_light(const Light& light) {
     light_ = light;
     const auto side = static_cast<std::size_t>(light.side);
-    values_.resize(light_first_ + 2 * side * side);
+    shafts_ = {};
+    shafts_first_ = light_first_ + 2 * side * side;
+    values_.resize(shafts_first_);
     return std::span(values_).subspan(light_first_);
+}
+
+std::span<float> Floor::set_shafts(const Shafts& shafts) {
+    require((shafts.side & (shafts.side - 1)) == 0, "has a side that is no power of two");
+    shafts_ = shafts;
+    shafts_first_ =
+        light_first_ + 2 * static_cast<std::size_t>(light_.side) * static_cast<std::size_t>(light_.side);
+    const auto side = static_cast<std::size_t>(shafts.side);
+    values_.resize(shafts_first_ + side * side);
+    return std::span(values_).subspan(shafts_first_);
+}
+
+void Floor::halve_shafts() {
+    std::size_t first = shafts_first_;
+    for (auto side = static_cast<std::size_t>(shafts_.side); side > 1; side /= 2) {
+        for (std::size_t y = 0; y < side; y += 2)
+            for (std::size_t x = 0; x < side; x += 2) {
+                const float* const at = values_.data() + first + y * side + x;
+                values_.push_back(0.25f * (at[0] + at[1] + at[side] + at[side + 1]));
+            }
+        first += side * side;
+    }
 }
 
 double Floor::depth_m(glm::dvec2 place_m) const {
@@ -126,6 +150,12 @@ FloorSeen Floor::seen_from(const FloorEye& from) const {
                                static_cast<float>(light_.side));
         seen.coarse =
             glm::vec4(glm::vec2(light_.from_m[1] - eye), static_cast<float>(light_first_), light_.gain);
+    }
+    if (has_shafts()) {
+        seen.shafts = glm::vec4(glm::vec2(shafts_.from_m - eye), static_cast<float>(1.0 / shafts_.texel_m),
+                                static_cast<float>(shafts_.depth_m));
+        seen.shafts_look = {static_cast<float>(shafts_first_), static_cast<float>(shafts_.side),
+                            static_cast<float>(shafts_.gain)};
     }
     return seen;
 }

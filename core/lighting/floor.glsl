@@ -15,6 +15,8 @@ struct FloorView {
     float colours_first;
     vec4 light;       // map of the sun's light on it: corner; texels per metre; texels a side (0: none)
     vec4 coarse;      // the same at kFloorLightStep of these texels: corner; first value of both; how much of it counts
+    vec4 shafts;      // map of the sun's light on a level plane in the water: corner; texels per metre; how deep the plane lies
+    vec3 shafts_look;  // its first value; texels a side (0: none); how much of it counts
 };
 
 struct SeenFloor {
@@ -74,6 +76,26 @@ float floor_light(vec2 place, float width_m, FloorView of) {
     share = floor_light_share(at, n) * clamp(1.0f - octaves, 0.0f, 1.0f);
     if (share > 0.0f) light = mix(light, floor_between(at, side, side, first), share);
     return max(1.0f + of.coarse.w * (light - 1.0f), 0.0f);
+}
+
+// The light of the shafts' map at a place of its plane, as floor_light(), seen over that width. Levels follow one another, each half as fine:
+// the two beside the width are mixed, and beyond the map light is even.
+float shaft_light(vec2 place, float width_m, FloorView of) {
+    int side = int(of.shafts_look.y);
+    int first = int(of.shafts_look.x);
+    vec2 at = (place - vec2(of.shafts.x, of.shafts.y)) * of.shafts.z;
+    float share = floor_light_share(at, of.shafts_look.y);
+    if (!(share > 0.0f)) return 1.0f;
+    float level = log2(max(width_m * of.shafts.z, 1.0f));
+    while (level >= 1.0f && side > 1) {
+        first += side * side;
+        side /= 2;
+        at *= 0.5f;
+        level -= 1.0f;
+    }
+    float light = floor_between(at, side, side, first);
+    if (side > 1) light = mix(light, floor_between(0.5f * at, side / 2, side / 2, first + side * side), clamp(level, 0.0f, 1.0f));
+    return mix(1.0f, light, share);
 }
 
 // The picture's colour at a place, where a pixel is that wide: of its levels, each half as fine, the two beside it. Levels follow one

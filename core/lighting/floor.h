@@ -17,7 +17,8 @@ struct FloorSeen {
     float z_m = 0.0f, curvature_per_m = 0.0f, pixel = 0.0f, lowest_m = 0.0f;
     glm::vec4 depths{0.0f}, depths_per_m{0.0f}, colours{0.0f};
     float colours_first = 0.0f;
-    glm::vec4 light{0.0f}, coarse{0.0f};
+    glm::vec4 light{0.0f}, coarse{0.0f}, shafts{0.0f};
+    glm::vec3 shafts_look{0.0f};
     std::span<const float> values{};
 };
 
@@ -48,6 +49,7 @@ class Floor {
     bool has_depths() const { return depth_size_.x > 0; }
     // Depth below the sea at rest at a place of the world [m].
     double depth_m(glm::dvec2 place_m) const;
+    double rest_m() const { return rest_m_; }
     // How far from an eye in the water a sight (unit, downwards) meets it [m].
     double distance_m(const glm::dvec3& eye_m, const glm::dvec3& direction) const;
 
@@ -62,6 +64,19 @@ class Floor {
     std::span<float> set_light(const Light& light);
     bool has_light() const { return light_.side > 0; }
 
+    // The same in the water on a level plane so deep below the sea at rest, for the shafts of light that an eye under water sees.
+    struct Shafts {
+        int side = 0;  // texels of the map, a power of two; 0: none
+        double texel_m = 0.0, depth_m = 0.0;
+        glm::dvec2 from_m{0.0};
+        double gain = 1.0;
+    };
+    // The map's values, for who writes them, and then calls halve_shafts(). Kept until the next call, set_light() included, which takes the shafts away.
+    std::span<float> set_shafts(const Shafts& shafts);
+    // Makes the coarser levels.
+    void halve_shafts();
+    bool has_shafts() const { return shafts_.side > 0; }
+
     // Kept while the floor isn't changed.
     FloorSeen seen_from(const FloorEye& eye) const;
     const std::vector<float>& values() const { return values_; }
@@ -72,9 +87,10 @@ class Floor {
     glm::dvec2 depth_from_m_{0.0}, depth_per_m_{0.0};
     int colour_side_ = 0;
     double colour_m_ = 1.0;
-    std::size_t colours_first_ = 0, light_first_ = 0;
+    std::size_t colours_first_ = 0, light_first_ = 0, shafts_first_ = 0;
     Light light_;
-    std::vector<float> values_;  // depths, colours, light
+    Shafts shafts_;
+    std::vector<float> values_;  // depths, colours, light, shafts
 };
 
 // Texels of the coarser map of light over those of the finer: as in floor.glsl.

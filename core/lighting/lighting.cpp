@@ -145,7 +145,8 @@ typename Variant::SeaLight light_of(const Sky& sky, const WaterBody& water, cons
             sky.sky_irradiance,
             look_of<Variant>(water),
             {floor.is_seen, floor.z_m, floor.curvature_per_m, floor.pixel, floor.lowest_m, floor.depths,
-             floor.depths_per_m, floor.colours, floor.colours_first, floor.light, floor.coarse}};
+             floor.depths_per_m, floor.colours, floor.colours_first, floor.light, floor.coarse, floor.shafts,
+             floor.shafts_look}};
 }
 
 template <class Variant>

@@ -24,8 +24,9 @@ constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
 // The finer map's: the net of light at that depth has lines some three texels wide.
 constexpr double kTexelsADepth = 128.0;
 constexpr int kRowsAtOnce = 64;
-constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
-constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
+constexpr int kParts = 4;  // of the sea, always as many, so that sums are the same on any number of threads
+constexpr int kShaftSide = 512;  // texels of the shafts' map
+constexpr int kSplits = 4;       // of a cell's side: its light falls as so many points
 
 // The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
 struct Beam {
@@ -260,6 +261,14 @@ void blur(const Map& map, int axis, double deviation) {
     });
 }
 
+// Where most of the floor is looked at from near: some depths ahead.
+glm::dvec2 middle_of(const View& view, double width_m) {
+    const glm::dvec2 forward(view.forward);
+    const double level = glm::length(forward);
+    return glm::dvec2(view.position_m) +
+           (level > 1e-6 ? forward / level : glm::dvec2(0.0)) * (0.45 * width_m * std::min(2.0 * level, 1.0));
+}
+
 // Of a floor of uneven depth the least that is in the picture, by steps of √2, so that the maps stay as they are while the camera moves a little.
 double depth_before(const View& view, const Floor& floor) {
     constexpr int kRays = 5;  // a side
@@ -290,12 +299,20 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
 
 std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side) {
     if (!water.has_body || scene.water.caustics == 0.0) return 0;
-    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
-    if (!has_map && !shows_floor(water, static_cast<double>(water.floor_m))) return 0;
-    const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     constexpr std::size_t kWithMargins = 9;  // quarters of them, a quarter of its side beyond each edge
-    return texels * (2 + kParts) * sizeof(float) +
-           texels * kWithMargins / 4 * (sizeof(glm::vec2) + sizeof(float));
+    const auto bytes = [](int of_side, std::size_t maps) {
+        const auto texels = static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side);
+        return texels * (maps + kParts) * sizeof(float) +
+               texels * kWithMargins / 4 * (sizeof(glm::vec2) + sizeof(float));
+    };
+    double lowest_m = scene.camera.position_m.z;
+    for (const auto& key : scene.camera.keys) lowest_m = std::min(lowest_m, key.position_m.z);
+    constexpr double kAboveWaves_m = 30.0;
+    // A level of half the side after the other: a third more, and once more while they grow.
+    const std::size_t shafts = lowest_m < kAboveWaves_m ? bytes(kShaftSide, 3) : 0;
+    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
+    if (!has_map && !shows_floor(water, static_cast<double>(water.floor_m))) return shafts;
+    return shafts + bytes(side, 2);
 }
 
 bool shows_floor(const WaterBody& water, double depth_m) {
@@ -308,77 +325,94 @@ bool shows_floor(const WaterBody& water, double depth_m) {
     return kWays * static_cast<double>(clearest) * depth_m < std::log(100.0);
 }
 
+namespace {
+
+// The light on a plane or a floor that is so deep.
+template <class T>
+void fill(const Map& map, const Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
+          const Beam& beam, double depth_m, const std::atomic<bool>* cancel) {
+    const glm::dvec3 all(wanted.water.waves);
+    const double m0 = frame.sea().plan().from->spectrum.m0();
+    const double per_slope = depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
+    const double most_m = 0.25 * map.side * map.texel_m,
+                 waves_m = std::min(3.0 * std::sqrt(0.5 * (all.x + all.y)) * per_slope +
+                                        3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
+                                    most_m);
+    const glm::dmat2 hidden = hidden_slopes(frame, map);
+    const glm::dmat2 waves(all.x, all.z, all.z, all.y);
+    const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
+    gather(falls_on(map, floor, frame, beam, depth_m, wanted.finest_cell_m,
+                    floor.has_depths() ? most_m : waves_m, waves_m, cancel),
+           map, mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
+    const glm::dmat2 spread = depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
+    // The sun's disc: a uniform one's variance is a quarter of its radius' square.
+    const double c = beam.cosine_there;
+    const double disc = depth_m * beam.radius / (2.0 * kIndex * c);
+    const double along = disc * beam.to_sun.z / (c * c);
+    for (int axis = 0; axis < 2; ++axis) {
+        const double part = beam.away[axis] * beam.away[axis];
+        // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
+        constexpr double kLeast_texels = 0.6;
+        const double least_m = kLeast_texels * map.texel_m;
+        const double variance =
+            least_m * least_m + spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
+        blur(map, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m);
+    }
+}
+
+// In the water about as deep as a camera in it looks through: its map, as wide as eight of that depth.
+template <class T>
+void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted, double rest_m,
+                  double gain, const std::atomic<bool>* cancel) {
+    constexpr double kShallowest_m = 1.0, kDeepest_m = 12.0, kDepths = 8.0;
+    const double depth_m = std::clamp(rest_m - wanted.view.position_m.z, kShallowest_m, kDeepest_m);
+    const double texel_m = std::max(kDepths * depth_m / kShaftSide, wanted.finest_m);
+    const Floor::Shafts shafts{
+        .side = kShaftSide,
+        .texel_m = texel_m,
+        .depth_m = depth_m,
+        .from_m =
+            texel_m *
+            glm::floor((middle_of(wanted.view, kShaftSide * texel_m) - 0.5 * kShaftSide * texel_m) / texel_m),
+        .gain = gain};
+    fill(Map{shafts.from_m, texel_m, kShaftSide, floor.set_shafts(shafts)}, Floor(depth_m), frame, wanted,
+         beam_of(wanted), depth_m, cancel);
+    floor.halve_shafts();
+}
+
+}  // namespace
+
 template <class T>
 void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
                  const std::atomic<bool>* cancel) {
     const View& view = wanted.view;
-    const WaterBody& water = wanted.water;
     const int side = wanted.side;
-    const glm::dvec2 forward(view.forward);
-    const double level = glm::length(forward);
-    // Where most of the floor is looked at from near: some depths ahead.
-    const auto middle_of = [&](double width_m) {
-        return glm::dvec2(view.position_m) + (level > 1e-6 ? forward / level : glm::dvec2(0.0)) *
-                                                 (0.45 * width_m * std::min(2.0 * level, 1.0));
-    };
     // Nearer the horizon hardly any of the sun's light gets in: the pattern goes by then, rather than in one frame.
     constexpr float kLowSun = 0.02f, kNoLowSun = 0.06f;  // sines of its elevation
+    const double gain =
+        wanted.gain * static_cast<double>(glm::smoothstep(kLowSun, kNoLowSun, wanted.sun_direction.z));
     // Where pixels are as wide as a net's mesh, it is even.
     constexpr double kMeshesADepth = 8.0;
     const double depth_m =
-        floor.has_depths() ? depth_before(view, floor) : static_cast<double>(water.floor_m);
-    if (!(wanted.gain > 0.0 && depth_m > 0.0) || wanted.sun_direction.z <= kLowSun ||
-        !shows_floor(water, depth_m) || kMeshesADepth * wanted.finest_m > depth_m) {
-        floor.set_light({});
-        return;
-    }
-    const double texel_m = std::max(depth_m / kTexelsADepth, wanted.finest_m);
-    Floor::Light light{.side = side,
-                       .texel_m = texel_m,
-                       .from_m = {},
-                       .gain = wanted.gain * static_cast<double>(glm::smoothstep(kLowSun, kNoLowSun,
-                                                                                 wanted.sun_direction.z))};
-    const double coarse_m = kFloorLightStep * texel_m;
-    for (std::size_t i = 0; i < 2; ++i) {
-        const double width_m = side * texel_m * (i == 0 ? 1.0 : kFloorLightStep);
-        light.from_m[i] = coarse_m * glm::floor((middle_of(width_m) - 0.5 * width_m) / coarse_m);
-    }
-    const std::span<float> texels = floor.set_light(light);
-    const Beam beam = beam_of(wanted);
-    const double all = static_cast<double>(water.waves.x + water.waves.y);
-    const double m0 = frame.sea().plan().from->spectrum.m0();
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-        const Map map{light.from_m[i], texel_m * (i == 0 ? 1.0 : kFloorLightStep), side,
-                      texels.subspan(i * count, count)};
-        const double per_slope =
-            depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
-        const double most_m = 0.25 * side * map.texel_m,
-                     waves_m = std::min(
-                         3.0 * std::sqrt(0.5 * all) * per_slope + 3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
-                         most_m);
-        const glm::dmat2 hidden = hidden_slopes(frame, map);
-        const glm::dmat2 waves(water.waves.x, water.waves.z, water.waves.z, water.waves.y);
-        const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
-        gather(falls_on(map, floor, frame, beam, depth_m, wanted.finest_cell_m,
-                        floor.has_depths() ? most_m : waves_m, waves_m, cancel),
-               map, mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
-        const glm::dmat2 spread =
-            depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
-        // The sun's disc: a uniform one's variance is a quarter of its radius' square.
-        const double c = beam.cosine_there;
-        const double disc = depth_m * beam.radius / (2.0 * kIndex * c);
-        const double along = disc * beam.to_sun.z / (c * c);
-        for (int axis = 0; axis < 2; ++axis) {
-            const double part = beam.away[axis] * beam.away[axis];
-            // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
-            constexpr double kLeast_texels = 0.6;
-            const double least_m = kLeast_texels * map.texel_m;
-            const double variance =
-                least_m * least_m + spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
-            blur(map, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m);
+        floor.has_depths() ? depth_before(view, floor) : static_cast<double>(wanted.water.floor_m);
+    floor.set_light({});
+    if (!(gain > 0.0)) return;
+    if (depth_m > 0.0 && shows_floor(wanted.water, depth_m) && kMeshesADepth * wanted.finest_m <= depth_m) {
+        const double texel_m = std::max(depth_m / kTexelsADepth, wanted.finest_m);
+        Floor::Light light{.side = side, .texel_m = texel_m, .from_m = {}, .gain = gain};
+        const double coarse_m = kFloorLightStep * texel_m;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double width_m = side * texel_m * (i == 0 ? 1.0 : kFloorLightStep);
+            light.from_m[i] = coarse_m * glm::floor((middle_of(view, width_m) - 0.5 * width_m) / coarse_m);
         }
+        const std::span<float> texels = floor.set_light(light);
+        const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+        for (std::size_t i = 0; i < 2; ++i)
+            fill(Map{light.from_m[i], texel_m * (i == 0 ? 1.0 : kFloorLightStep), side,
+                     texels.subspan(i * count, count)},
+                 floor, frame, wanted, beam_of(wanted), depth_m, cancel);
     }
+    if (wanted.is_below) light_shafts(floor, frame, wanted, floor.rest_m(), gain, cancel);
 }
 
 template void light_floor(Floor&, const Frame<float>&, const FloorLightWanted&, const std::atomic<bool>*);

@@ -202,6 +202,7 @@ class RendererOf final : public Impl {
             const SeaView middle{view_at(scene_.camera, pass.frame), frame_};
             FloorLightWanted wanted;
             wanted.view = middle.view;
+            wanted.is_below = may_be_below_;
             set_footprints(wanted, drawn_, middle);
             sea_.light_floor_before(wanted, drawn_.rest_m(), watch.cancel);
         }

@@ -223,7 +223,7 @@ struct Water {
     double floor_pattern_m = 4.0;               // the side of that picture, > 0
     double crest_light = 1.0;  // ≥ 0, times what waves' shape does to that light, crests above all
     double bubbles = 1.0;      // ≥ 0, times the bubbles below foam
-    double caustics = 1.0;     // ≥ 0, times the pattern of the sun's light on the floor
+    double caustics = 1.0;     // ≥ 0, times the pattern of the sun's light on the floor and in the water
 };
 
 // [effects]

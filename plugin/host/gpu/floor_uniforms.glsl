@@ -8,6 +8,8 @@ uniform vec4 floor_colours;
 uniform float floor_colours_first;
 uniform vec4 floor_light_maps;
 uniform vec4 floor_coarse;
+uniform vec4 floor_shafts;
+uniform vec3 floor_shafts_look;
 
 float floor_value(int i) {
     return kFloorMaps ? texelFetch(floor_maps, ivec2(i % kFloorColumns, i / kFloorColumns), 0).x : 0.0;

@@ -9,5 +9,5 @@ SeaLight sea_light() {
                                 water_body_look.z, water_body_look.w, water_bubbles.x, water_bubbles.y);
     return SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance, water,
                     FloorView(kFloorMaps && floor_level.x > 0.0, floor_level.y, floor_level.z, floor_level.w, floor_lowest_m, floor_depths, floor_depths_per_m,
-                              floor_colours, floor_colours_first, floor_light_maps, floor_coarse));
+                              floor_colours, floor_colours_first, floor_light_maps, floor_coarse, floor_shafts, floor_shafts_look));
 }

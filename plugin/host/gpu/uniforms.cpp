@@ -75,7 +75,9 @@ std::vector<Uniform> floor_uniforms(const FloorSeen& floor) {
             {"floor_colours", 4, floor.colours},
             number("floor_colours_first", static_cast<double>(floor.colours_first)),
             {"floor_light_maps", 4, floor.light},
-            {"floor_coarse", 4, floor.coarse}};
+            {"floor_coarse", 4, floor.coarse},
+            {"floor_shafts", 4, floor.shafts},
+            vector("floor_shafts_look", floor.shafts_look)};
 }
 
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {

@@ -255,7 +255,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
                                     .water = water,
                                     .sun_direction = sky.sun_direction,
                                     .sun_angular_radius = sky.sun_angular_radius,
-                                    .gain = planned.scene.water.caustics};
+                                    .gain = planned.scene.water.caustics,
+                                    .is_below = from_below || waterline.has_value()};
             set_footprints(wanted, *planned.drawn, {view, planned.frame});
             light_floor(*floor, state, wanted);
         }

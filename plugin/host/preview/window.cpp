@@ -581,11 +581,12 @@ class Preview {
         readout_.times.gpu = renderer_.times();
     }
 
-    // The floor as it is lit before a camera, where it is seen at all.
+    // The floor and the water as they are lit before a camera, where their pattern is seen at all.
     std::optional<LiveSea::FloorWanted> floor_before(const View& view) const {
         constexpr int kSide = 512;  // half of a single picture's: each frame has one
+        const bool is_below = frame_ && frame_->build->drawn->is_below(view);
         if (!floor_ || !sky_ || controls_.scene.water.caustics == 0.0 ||
-            !(floor_->has_depths() || shows_floor(water_, static_cast<double>(water_.floor_m))))
+            !(is_below || floor_->has_depths() || shows_floor(water_, static_cast<double>(water_.floor_m))))
             return {};
         return LiveSea::FloorWanted{.floor = floor_,
                                     .light = {.view = view,
@@ -593,7 +594,8 @@ class Preview {
                                               .sun_direction = sky_->sky.sun_direction,
                                               .sun_angular_radius = sky_->sky.sun_angular_radius,
                                               .gain = controls_.scene.water.caustics,
-                                              .side = kSide}};
+                                              .side = kSide,
+                                              .is_below = is_below}};
     }
 
     // The spray before the last camera for which it is ready, and its drops.

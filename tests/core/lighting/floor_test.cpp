@@ -13,8 +13,9 @@ namespace pelagic::optics {
 namespace {
 
 Optics::FloorView glsl(const FloorSeen& seen) {
-    return {seen.is_seen,      seen.z_m,     seen.curvature_per_m, seen.pixel, seen.lowest_m, seen.depths,
-            seen.depths_per_m, seen.colours, seen.colours_first,   seen.light, seen.coarse};
+    return {seen.is_seen, seen.z_m,          seen.curvature_per_m, seen.pixel,         seen.lowest_m,
+            seen.depths,  seen.depths_per_m, seen.colours,         seen.colours_first, seen.light,
+            seen.coarse,  seen.shafts,       seen.shafts_look};
 }
 
 Optics shading_of(const Floor& floor) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -282,6 +283,49 @@ TEST(FromBelow, HostileViewsAreFinite) {
                         }
                         picture_under(scene, sky);
                     }
+}
+
+// Shafts move the sun's light in the water about and keep it. A picture has few of them: the mean is over many places.
+TEST(FromBelow, ShaftsKeepTheLightsMean) {
+    Scene scene = with_body(sea_of(WaveModel::Fft));
+    scene.sea.wind_speed_mps = 4.0;
+    scene.sea.fetch_m = 20e3;
+    scene.waves.cascades = {{60.0, 128}, {11.0, 128}, {2.3, 128}};
+    scene.camera.fov_deg = 80.0;
+    scene.camera.resolution = {32, 18};
+    const Sky sky = make_sky(scene);
+    const glm::dvec2 to_sun = glm::normalize(glm::dvec2(sky.sun_direction));
+    std::vector<int> frames;
+    for (int frame = 1; frame <= 24; ++frame) {
+        const glm::dvec3 eye_m(517.0 * frame, -310.0 * frame, -4.0);
+        frames.push_back(frame);
+        scene.camera.keys.push_back({.frame = frame,
+                                     .position_m = eye_m,
+                                     .look_at_m = eye_m + glm::dvec3(-to_sun.y, to_sun.x, -0.1)});
+    }
+    RenderOptions options = render_options(scene);
+    options.samples = 1;
+    Renderer shafts(scene, options, sky, frames);
+    scene.water.caustics = 0.0;
+    Renderer none(scene, options, sky, frames);
+    double even = 0.0, gathered = 0.0, squares = 0.0;
+    int pixels = 0;
+    Picture with, without;
+    for (const int frame : frames) {
+        shafts.render(frame, with);
+        none.render(frame, without);
+        for (std::size_t i = 0; i < with.layers.size(); ++i) {
+            const auto a = static_cast<double>(without.layers[i].sea.y),
+                       b = static_cast<double>(with.layers[i].sea.y);
+            even += a;
+            gathered += b;
+            squares += (b / a - 1.0) * (b / a - 1.0);
+            ++pixels;
+        }
+    }
+    std::printf("    shafts: mean %.4f, rms %.4f\n", gathered / even, std::sqrt(squares / pixels));
+    EXPECT_NEAR(gathered / even, 1.0, 0.01);
+    EXPECT_GT(std::sqrt(squares / pixels), 0.02);
 }
 
 // The floor is seen where it is, and a camera in it is refused.

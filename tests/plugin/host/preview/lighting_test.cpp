@@ -161,7 +161,7 @@ struct Functions {
                                         WaterBands(vec3(0.2f), vec3(0.3f)), bb > 0.5f ? 3.0f : 1.0e9f,
                                         vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
                               FloorView(aa > 0.1f, -4.0f, 1.0e-7f, 1.0e-3f, -4.0f, vec4(0.0f), vec4(0.0f),
-                                        vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f))));
+                                        vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f), vec4(0.0f), vec3(0.0f))));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(below,
                  SeaTerms t = sea_from_below(
@@ -175,7 +175,8 @@ struct Functions {
                                         WaterBands(vec3(0.2f), vec3(0.3f)), cc > 0.3f ? 12.0f : 1.0e9f,
                                         vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
                               FloorView(aa > 0.1f, 15.0f * bb - 14.0f, 1.0e-7f, 1.0e-3f, -20.0f, vec4(0.0f),
-                                        vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f))));
+                                        vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f), vec4(0.0f),
+                                        vec3(0.0f))));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(screen, return vec4(display_colour(vec3(aa, bb, ww), 2.0f), 0.0f);)
     PELAGIC_BOTH(disc,

@@ -70,6 +70,22 @@ TEST(PreviewsPicture, IsTheCpusFromBelow) {
     scene.sea.depth_m = 15.0;
     compare_frame("from below, over a floor", scene, {320, 180});
 }
+// Towards the sun, in the shafts of its light.
+TEST(PreviewsPicture, IsTheCpusInShafts) {
+    Scene scene = scene_of({0.0, 0.0, -4.0}, {1.5, 6.0, -1.5});
+    scene.sea.wind_speed_mps = 4.0;
+    scene.sea.fetch_m = 20e3;
+    scene.light.sun_azimuth_deg = 20.0;
+    scene.camera.fov_deg = 80.0;
+    const auto [cpu, gpu] = compare_frame("in shafts", scene, {320, 180});
+    scene.water.caustics = 0.0;
+    scene.camera.resolution = {320, 180};
+    const OffscreenPicture even = render_offscreen(plan_offscreen(scene, 5), make_sky(scene));
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < cpu.layers.size(); ++i)
+        other += std::abs(gpu.layers[i].sea.y / even.picture.layers[i].sea.y - 1.0f) > 0.02f;
+    EXPECT_GT(other, cpu.layers.size() / 4);
+}
 TEST(PreviewsPicture, IsTheCpusHalfUnder) {
     Scene scene = scene_of({0.0, 0.0, -0.04}, {0.0, 10.0, -2.0});
     scene.camera.fov_deg = 90.0;

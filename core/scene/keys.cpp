@@ -655,7 +655,7 @@ void add_light_and_water(Built& out) {
         row<&Water::caustics>(
             {.name = "caustics",
              .help =
-                 "how much waves gather the sun's light on a floor that is seen; 1 is as computed, 0 even light",
+                 "how much waves gather the sun's light, on a floor that is seen and in shafts under water; 1 is as computed, 0 even light",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0},
              .key_parts = kWater}));

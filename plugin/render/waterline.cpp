@@ -78,6 +78,15 @@ bool Waterline::is_under(glm::dvec2 pixel) const {
     });
 }
 
+bool Waterline::is_any_under() const {
+    constexpr int kPlaces = 32;  // a side
+    for (int y = 0; y <= kPlaces; ++y)
+        for (int x = 0; x <= kPlaces; ++x)
+            if (is_under(glm::dvec2(x, y) / static_cast<double>(kPlaces) * glm::dvec2(view_.resolution)))
+                return true;
+    return false;
+}
+
 template Waterline::Waterline(const View&, double, glm::dvec2, std::span<const glm::vec3>,
                               std::span<const std::uint32_t>);
 template Waterline::Waterline(const View&, double, glm::dvec2, std::span<const glm::dvec3>,

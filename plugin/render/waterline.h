@@ -31,6 +31,8 @@ class Waterline {
 
     // Whether the surface, its highest sheet where it has folded, lies over the glass at a place of the picture in pixels.
     bool is_under(glm::dvec2 pixel) const;
+    // Whether it does anywhere, as far as a coarse grid of places shows.
+    bool is_any_under() const;
 
   private:
     static constexpr int kCells = 64;  // a side of a grid over the glass, seen from above

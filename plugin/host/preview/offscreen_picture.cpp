@@ -256,7 +256,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
                                     .sun_direction = sky.sun_direction,
                                     .sun_angular_radius = sky.sun_angular_radius,
                                     .gain = planned.scene.water.caustics,
-                                    .is_below = from_below || waterline.has_value()};
+                                    .is_below = from_below || (waterline && waterline->is_any_under())};
             set_footprints(wanted, *planned.drawn, {view, planned.frame});
             light_floor(*floor, state, wanted);
         }

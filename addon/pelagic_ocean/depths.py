@@ -24,12 +24,13 @@ from .nodes import Tree
 
 SURFACE, VOLUME, OUTPUT = "Clear Surface", "Water Volume", "Clear Water"  # nodes, the last one only where it is switched on
 ABSORPTION, SCATTERING, EXTINCTION = "Water Absorption", "Water Scattering", "Water Extinction"
+FROM_BELOW = "Camera Under Water"  # the node: 1 while it is
 
 UNDER = "pelagic_camera_under"  # on an ocean whose water the scene's camera is in
 LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
 MARK = "pelagic_floor"  # on the object under clear water
 FLOOR_M, FLOOR_DEPTH_M = 40e3, 500.0
-FLOOR_CORNERS = 4  # of its face; one more vertex is above it while the camera is under water
+WALL_M = 20.0  # how high the floor's walls are above the water at rest, while the camera is under it
 SCATTERED_ONCE = 0.147
 MOST_GIVEN_BACK = 15.0  # as an exponent: a sun 5 degrees high over the deepest floor that shows
 RETURNED = 0.48  # of a uniform light from below a level surface
@@ -78,8 +79,10 @@ def add_depths(tree, part, foam, mirror, white, upwards, before_air):
     cosine = tree.math("ABSOLUTE", tree.value(geometry, "Incoming").parts()[2])
     below = (1.0 - (1.0 - cosine * cosine) * WATER_INDEX**-2).sqrt()
     extinction = named(EXTINCTION, "ShaderNodeCombineXYZ")
-    # Only where it leaves the water the first time: beyond, its length is that of its way through air, too.
-    in_water = tree.value(geometry, "Backfacing") * tree.value(path, "Transmission Depth").above(0.5)
+    # Only where it leaves the water the first time: beyond, its length is that of its way through air, too. Before, it has come through
+    # the surface once, or not at all from a camera in the water.
+    above = tree.value(path, "Transmission Depth").above(0.5)
+    in_water = tree.value(geometry, "Backfacing") * tree.math("ABSOLUTE", above - named(FROM_BELOW, "ShaderNodeValue"))
     in_water = in_water * (1.0 - tree.value(path, "Transparent Depth").above(0.5))
     longer_m = in_water * tree.value(path, "Ray Length") * (1.0 - cosine / below)
     let_in = (1.0 - add_fresnel(tree, cosine)) * (1.0 - foam["Hidden"])
@@ -158,11 +161,12 @@ def _set_floor(obj, scene):
     depth_m, colour = (scene.sea.depth_m, scene.water.floor_colour) if is_seen else (FLOOR_DEPTH_M, (0.0, 0.0, 0.0))
     for floor in [child for child in obj.children if MARK in child]:
         floor.scale = (1.0, 1.0, -depth_m / floor.data.vertices[0].co.z)
-        # Cycles takes a camera to be in a volume only where it is within the box of an object that has one, and a sea's is flat.
+        # A camera in the water sees it, and its walls, past which a level sight would meet nothing. And Cycles takes a camera to be in
+        # a volume only where it is within the box of an object that has one: a sea's is flat.
         floor.visible_camera = floor.visible_glossy = UNDER in obj
-        if len(floor.data.vertices) > FLOOR_CORNERS:
-            floor.data.vertices[FLOOR_CORNERS].co.z = 1.0 if UNDER in obj else -1.0
-            floor.data.update_tag()
+        for corner in floor.data.vertices[4:]:
+            corner.co.z = WALL_M / depth_m if UNDER in obj else floor.data.vertices[0].co.z
+        floor.data.update()
         for node in floor.data.materials[0].node_tree.nodes if floor.data.materials else ():
             if node.type == "BSDF_DIFFUSE":
                 node.inputs["Color"].default_value = (*colour, 1.0)
@@ -170,8 +174,8 @@ def _set_floor(obj, scene):
 
 def _add_floor(obj):
     mesh = bpy.data.meshes.new("Pelagic Floor")
-    mesh.from_pydata([(x * FLOOR_M, y * FLOOR_M, -1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0))], [],
-                     [tuple(range(FLOOR_CORNERS))])
+    mesh.from_pydata(2 * [(x * FLOOR_M, y * FLOOR_M, -1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [],
+                     [(0, 1, 2, 3)] + [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)])
     black = bpy.data.materials.new("Pelagic Floor")
     black.use_nodes = True
     tree = Tree(black.node_tree)

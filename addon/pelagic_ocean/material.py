@@ -46,6 +46,7 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
+        _set(material, depths.FROM_BELOW, float(depths.UNDER in obj))
         depths.connect(obj, material, scene)
         upwelling.connect(material, scene)
         if significant_height_m is not None:

@@ -108,7 +108,7 @@ def _follow(bpy_scene, depsgraph):
         of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name
         under = is_camera_under(obj, bpy_scene, depsgraph)
-        wanted = [of_sea, ocean.frame_rate(bpy_scene), under, depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
+        wanted = [under, of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
         is_first = first_ocean(bpy_scene) == obj
         view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None
         seen = view, bpy_scene.view_settings.view_transform
@@ -124,7 +124,7 @@ def _follow(bpy_scene, depsgraph):
                 continue
             _mark_under(obj, under)
             material.update_material(obj, scene, *of_sea)
-            if is_first:
+            if is_first and (before[0] is None or before[0][1:] != wanted[1:]):  # a dive changes the water alone
                 light.update_light(bpy_scene, scene)
             material.put_air(obj, scene, light.sky_picture(bpy_scene))
             drops.put_light(obj, scene, light.sky_picture(bpy_scene))

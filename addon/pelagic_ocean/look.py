@@ -124,8 +124,9 @@ def _follow(bpy_scene, depsgraph):
                 continue
             _mark_under(obj, under)
             material.update_material(obj, scene, *of_sea)
-            if is_first and (before[0] is None or before[0][1:] != wanted[1:]):  # a dive changes the water alone
-                light.update_light(bpy_scene, scene)
+            if is_first:
+                dives = before[0] is not None and before[0][1:] == wanted[1:]  # which changes the water, not sun and sky
+                (light.meter if dives else light.update_light)(bpy_scene, scene)
             material.put_air(obj, scene, light.sky_picture(bpy_scene))
             drops.put_light(obj, scene, light.sky_picture(bpy_scene))
         except (ValueError, pelagic.ShotError) as error:

@@ -8,6 +8,8 @@ asked for more, as bright as the opaque water.
 Light comes in straight: Cycles finds no lamp through a surface that bends. What it loses on that way is brought to what it would lose
 on the bent one, and of what comes from below the surface sends down its share. Seen from above, things stand where refraction shows them.
 EEVEE keeps the opaque water: a volume fills its object's box there, and the air over the sea with it.
+
+While the scene's camera is under water, any sea is seen through (UNDER), and its surface from below is that of below.glsl.
 """
 
 import copy
@@ -22,9 +24,13 @@ from .nodes import Tree
 
 SURFACE, VOLUME, OUTPUT = "Clear Surface", "Water Volume", "Clear Water"  # nodes, the last one only where it is switched on
 ABSORPTION, SCATTERING, EXTINCTION = "Water Absorption", "Water Scattering", "Water Extinction"
+FROM_BELOW = "Camera Under Water"  # the node: 1 while it is
 
+UNDER = "pelagic_camera_under"  # on an ocean whose water the scene's camera is in
+LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
 MARK = "pelagic_floor"  # on the object under clear water
 FLOOR_M, FLOOR_DEPTH_M = 40e3, 500.0
+WALL_M = 20.0  # how high the floor's walls are above the water at rest, while the camera is under it
 SCATTERED_ONCE = 0.147
 MOST_GIVEN_BACK = 15.0  # as an exponent: a sun 5 degrees high over the deepest floor that shows
 RETURNED = 0.48  # of a uniform light from below a level surface
@@ -52,14 +58,31 @@ def add_depths(tree, part, foam, mirror, white, upwards, before_air):
     seen = named(upwelling.CLEAR_SUM, "ShaderNodeAddShader", {0: seen})
     seen = before_air(tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: seen, 2: white}))
 
+    # From below: nothing comes through beyond the critical angle, and within it radiance is n² times that of the sky. A facet has the same
+    # Fresnel term on both sides, each at its own angle.
+    facet = {"Roughness": part["Roughness"], "Normal": part["Normal"]}
+    beyond = (1.0 - (1.0 - part["Facet Cosine"] * part["Facet Cosine"]) * WATER_INDEX**2).sqrt()
+    kept = add_fresnel(tree, beyond)
+    underside = tree.add("ShaderNodeAddShader", {
+        0: tree.add("ShaderNodeBsdfAnisotropic", {"Color": tree.vector(1.0, 1.0, 1.0) * kept, "Anisotropy": 0.0, **facet},
+                    distribution="BECKMANN"),
+        1: tree.add("ShaderNodeBsdfRefraction", {"Color": tree.vector(1.0, 1.0, 1.0) * ((1.0 - kept) * WATER_INDEX**2),
+                                                 "IOR": WATER_INDEX, **facet}, distribution="BECKMANN")})
+    through_foam = tree.add("ShaderNodeBsdfTranslucent", {"Color": foam["Color"] * -LETS_THROUGH + (LETS_THROUGH,) * 3})
+    underside = tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: underside,
+                                                 2: tree.add("ShaderNodeAddShader", {0: white, 1: through_foam})})
+    seen = tree.add("ShaderNodeMixShader", {0: tree.value(geometry, "Backfacing"), 1: seen, 2: underside})
+
     # Towards lamp and sky, and for rays that happen to find the sky, it is a window without a bend. What such a ray has lost on its way
     # through the water is brought to what it would have lost on the way of a bent one, under level water: as if it stood at the
     # angle of refraction.
     cosine = tree.math("ABSOLUTE", tree.value(geometry, "Incoming").parts()[2])
     below = (1.0 - (1.0 - cosine * cosine) * WATER_INDEX**-2).sqrt()
     extinction = named(EXTINCTION, "ShaderNodeCombineXYZ")
-    # Only where it leaves the water the first time: beyond, its length is that of its way through air, too.
-    in_water = tree.value(geometry, "Backfacing") * tree.value(path, "Transmission Depth").above(0.5)
+    # Only where it leaves the water the first time: beyond, its length is that of its way through air, too. Before, it has come through
+    # the surface once, or not at all from a camera in the water.
+    above = tree.value(path, "Transmission Depth").above(0.5)
+    in_water = tree.value(geometry, "Backfacing") * tree.math("ABSOLUTE", above - named(FROM_BELOW, "ShaderNodeValue"))
     in_water = in_water * (1.0 - tree.value(path, "Transparent Depth").above(0.5))
     longer_m = in_water * tree.value(path, "Ray Length") * (1.0 - cosine / below)
     let_in = (1.0 - add_fresnel(tree, cosine)) * (1.0 - foam["Hidden"])
@@ -97,9 +120,12 @@ def clear_to_m(scene):
 
 
 def is_seen_through(obj, scene):
-    """Whether an ocean's water is a volume for Cycles: by hand, or where its floor shows and the surface reaches to the horizon."""
+    """Whether an ocean's water is a volume for Cycles: by hand, or where the camera is in it, or its floor shows and the surface reaches to
+    the horizon."""
     if obj.pelagic.see_through_by_hand:
         return obj.pelagic.see_through
+    if UNDER in obj:
+        return scene.water.body
     return scene.water.body and scene.sea.depth_m < (clear_to_m(scene) or 0.0) and reaches_far(obj)
 
 
@@ -135,6 +161,12 @@ def _set_floor(obj, scene):
     depth_m, colour = (scene.sea.depth_m, scene.water.floor_colour) if is_seen else (FLOOR_DEPTH_M, (0.0, 0.0, 0.0))
     for floor in [child for child in obj.children if MARK in child]:
         floor.scale = (1.0, 1.0, -depth_m / floor.data.vertices[0].co.z)
+        # A camera in the water sees it, and its walls, past which a level sight would meet nothing. And Cycles takes a camera to be in
+        # a volume only where it is within the box of an object that has one: a sea's is flat.
+        floor.visible_camera = floor.visible_glossy = UNDER in obj
+        for corner in floor.data.vertices[4:]:
+            corner.co.z = WALL_M / depth_m if UNDER in obj else floor.data.vertices[0].co.z
+        floor.data.update()
         for node in floor.data.materials[0].node_tree.nodes if floor.data.materials else ():
             if node.type == "BSDF_DIFFUSE":
                 node.inputs["Color"].default_value = (*colour, 1.0)
@@ -142,17 +174,19 @@ def _set_floor(obj, scene):
 
 def _add_floor(obj):
     mesh = bpy.data.meshes.new("Pelagic Floor")
-    mesh.from_pydata([(x * FLOOR_M, y * FLOOR_M, -1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [],
-                     [(0, 1, 2, 3)])
+    mesh.from_pydata(2 * [(x * FLOOR_M, y * FLOOR_M, -1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [],
+                     [(0, 1, 2, 3)] + [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)])
     black = bpy.data.materials.new("Pelagic Floor")
     black.use_nodes = True
     tree = Tree(black.node_tree)
-    tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeBsdfDiffuse", {"Color": (0.0, 0.0, 0.0, 1.0)})})
+    # The volume is empty: the water is the sea's.
+    tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeBsdfDiffuse", {"Color": (0.0, 0.0, 0.0, 1.0)}),
+                                           "Volume": tree.add("ShaderNodeVolumeAbsorption", {"Density": 0.0})})
     mesh.materials.append(black)
     floor = bpy.data.objects.new("Pelagic Floor", mesh)
     floor[MARK] = True
     floor.parent, floor.hide_select, floor.display_type = obj, True, "BOUNDS"
-    floor.visible_camera = floor.visible_glossy = False  # past the edge of a patch it isn't there
+    floor.visible_camera = floor.visible_glossy = False  # past the edge of a patch it isn't there, from above
     for collection in obj.users_collection:
         collection.objects.link(floor)
 

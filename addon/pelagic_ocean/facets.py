@@ -147,20 +147,27 @@ def _facets(tree, asked):
     foam_facet = (normal + x_axis * (v_x * lean).plus_product(spread, z_x)
                   + y_axis * (v_y * lean).plus_product(spread, z_y)).normalized()
 
-    return {"Normal": transformed(tree, facet, "NORMAL", "OBJECT", "WORLD").normalized(),
+    def in_world(facet):
+        return transformed(tree, facet * tree.vector(1.0, 1.0, frame["Side"]), "NORMAL", "OBJECT", "WORLD").normalized()
+
+    return {"Normal": in_world(facet),
             "Roughness": (2.0 * lobe).sqrt().at_least(LEAST_ALPHA).sqrt(),
             "Fresnel": fresnel_seen - again * (1.0 - mirrored), "Reflection": fresnel * open_part, "Again": again * mirrored,
-            "Again Normal": transformed(tree, again_facet, "NORMAL", "OBJECT", "WORLD").normalized(),
+            "Again Normal": in_world(again_facet),
             "Again Roughness": (0.85 * towards_eye).at_least(LEAST_ALPHA).sqrt(),
-            "Foam Normal": transformed(tree, foam_facet, "NORMAL", "OBJECT", "WORLD").normalized()}
+            "Foam Normal": in_world(foam_facet),
+            "Facet Cosine": facet.dot(x_axis * v_x + y_axis * v_y + normal * cosine)}
 
 
 def _slope_frame(tree, _):
     """slope_frame() and facing_normal() of slopes.glsl, in the object's axes: the normal and the axes beside it, the
-    direction to the eye in them, and (xx, yy, xy) of the slope variance."""
+    direction to the eye in them, and (xx, yy, xy) of the slope variance. Side: 1, or -1 for an eye below the surface, where all is upside
+    down (upside_down() of below.glsl)."""
     geometry = tree.node("ShaderNodeNewGeometry")
-    to_eye = transformed(tree, tree.value(geometry, "Incoming"), "VECTOR", "WORLD", "OBJECT").normalized()
-    normal = transformed(tree, tree.value(geometry, "Normal"), "NORMAL", "WORLD", "OBJECT")
+    side = 1.0 - 2.0 * tree.value(geometry, "Backfacing")
+    upright = tree.vector(1.0, 1.0, side)
+    to_eye = transformed(tree, tree.value(geometry, "Incoming"), "VECTOR", "WORLD", "OBJECT").normalized() * upright
+    normal = transformed(tree, tree.value(geometry, "Normal"), "NORMAL", "WORLD", "OBJECT") * upright
 
     # Bent so that the eye sees it and it mirrors the eye's ray upwards.
     up = to_eye.parts()[2]
@@ -181,7 +188,7 @@ def _slope_frame(tree, _):
         return s_xx * a * c + s_yy * b * d + s_xy * (a * d + b * c)
 
     x_axis, y_axis = tree.vector(xx, xy, -n_x), tree.vector(xy, yy, -n_y)
-    return {"Normal": normal, "X": x_axis, "Y": y_axis,
+    return {"Normal": normal, "X": x_axis, "Y": y_axis, "Side": side,
             "To Eye": tree.vector(to_eye.dot(x_axis), to_eye.dot(y_axis), to_eye.dot(normal).at_least(1e-4)),
             "Variance": tree.vector(between(xx, xy, xx, xy), between(xy, yy, xy, yy), between(xx, xy, xy, yy))}
 

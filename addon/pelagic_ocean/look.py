@@ -9,7 +9,7 @@ from bpy.app.handlers import persistent
 from . import depths, drops, handlers, light, material, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
-from .query import first_ocean
+from .query import first_ocean, is_camera_under
 
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
@@ -41,11 +41,20 @@ def give(obj, bpy_scene, sun_and_sky):
     """An ocean's material; if wanted, sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
     scene = ocean.scene_of(obj, bpy_scene)
     _shown.pop((obj.name_full, bpy_scene.name), None)
+    _mark_under(obj, is_camera_under(obj, bpy_scene))
     material.ensure_material(obj, scene)
     if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
     material.put_air(obj, scene, light.sky_picture(bpy_scene))
     drops.put_light(obj, scene, light.sky_picture(bpy_scene))
+
+
+def _mark_under(obj, under):
+    """Says in an ocean's file whether the scene's camera is in its water."""
+    if under and obj.library is None:
+        obj[depths.UNDER] = True
+    elif depths.UNDER in obj:
+        del obj[depths.UNDER]
 
 
 def try_to(operator, give):
@@ -98,7 +107,8 @@ def _follow(bpy_scene, depsgraph):
         sea = play.simulation_of(obj).sea
         of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name
-        wanted = [of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
+        under = is_camera_under(obj, bpy_scene, depsgraph)
+        wanted = [under, of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
         is_first = first_ocean(bpy_scene) == obj
         view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None
         seen = view, bpy_scene.view_settings.view_transform
@@ -112,9 +122,11 @@ def _follow(bpy_scene, depsgraph):
                 if is_first:
                     light.meter(bpy_scene, scene)
                 continue
+            _mark_under(obj, under)
             material.update_material(obj, scene, *of_sea)
             if is_first:
-                light.update_light(bpy_scene, scene)
+                dives = before[0] is not None and before[0][1:] == wanted[1:]  # which changes the water, not sun and sky
+                (light.meter if dives else light.update_light)(bpy_scene, scene)
             material.put_air(obj, scene, light.sky_picture(bpy_scene))
             drops.put_light(obj, scene, light.sky_picture(bpy_scene))
         except (ValueError, pelagic.ShotError) as error:

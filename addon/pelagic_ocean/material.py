@@ -13,7 +13,7 @@ from .module import pelagic
 from .nodes import Tree
 
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
-VERSION = 6
+VERSION = 7
 AIR, AIR_SKY = "Air Extinction", "Air Sky"  # nodes
 THIN = "Crest Light"  # the node: how much more light comes through high crests of water without a body
 JUST_ABOVE = 0.006  # the horizon: half a row of the sky's picture
@@ -46,6 +46,7 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
+        _set(material, depths.FROM_BELOW, float(depths.UNDER in obj))
         depths.connect(obj, material, scene)
         upwelling.connect(material, scene)
         if significant_height_m is not None:

@@ -13,7 +13,7 @@ import bpy
 from . import compat
 
 MARK = "pelagic_group"  # on a node group that call() made: its name and version
-VERSION = 6
+VERSION = 7
 
 _SPACING = (190, 150)  # of the nodes in the editor
 

@@ -123,11 +123,13 @@ def _draw_water(layout, obj):
     clear_m = depths.clear_to_m(scene) if scene else None
     if clear_m:
         layout.label(text=say("Clear down to {:.0f} m", clear_m) if clear_m >= 3.0 else say("Clear down to {:.1f} m", clear_m), translate=False)
-        if not settings.see_through_by_hand and scene.water.body and not math.isinf(scene.sea.depth_m):
+        if not settings.see_through_by_hand and scene.water.body and (depths.UNDER in obj or not math.isinf(scene.sea.depth_m)):
             draw_words(layout.box(), _why_seen_through(obj, scene, clear_m))
 
 
 def _why_seen_through(obj, scene, clear_m):
+    if depths.UNDER in obj:
+        return "The camera is under water: for Cycles it is a volume. EEVEE can't show it from below"
     if scene.sea.depth_m >= clear_m:
         return "The floor is too deep to show: the water is opaque in Cycles"
     if not depths.reaches_far(obj):

@@ -257,8 +257,9 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
 
 def _eye_of(obj, bpy_scene, depsgraph):
     """Where the camera is that sees the light in the waves, in the ocean's coordinates [m], and the ocean's axes in the world, rows of a
-    matrix: (3 numbers, 9 numbers). None without a camera, and in water that is seen through."""
-    pinhole = None if depths.is_seen_through(obj, _simulation(obj).scene) else pinhole_of(obj, bpy_scene, depsgraph)
+    matrix: (3 numbers, 9 numbers). None without a camera, and for Cycles in water that is seen through, which is opaque in EEVEE."""
+    is_clear = bpy_scene.render.engine == "CYCLES" and depths.is_seen_through(obj, _simulation(obj).scene)
+    pinhole = None if is_clear else pinhole_of(obj, bpy_scene, depsgraph)
     turned = obj.evaluated_get(depsgraph).matrix_world.to_3x3().normalized()
     return pinhole and (tuple(map(float, pinhole.position_m)), tuple(number for row in turned for number in row))
 

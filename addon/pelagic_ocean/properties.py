@@ -330,7 +330,8 @@ def _ocean_annotations():
                         "as a volume, which takes longer to render. Off, the water is opaque, with the same light from below"),
         "see_through_by_hand": BoolProperty(
             name="See Through by Hand", default=False, update=_touched,
-            description="Whether you choose if the water is seen through; otherwise it is where its floor is near enough to show"),
+            description="Whether you choose if the water is seen through; otherwise it is where its floor is near enough to show, "
+                        "and while the camera is under water"),
         "quality_menu": EnumProperty(
             name="Quality", items=_quality_items(), get=_quality, set=_set_quality, update=_touched,
             description="How much time accuracy may take: a level, or a budget of error or of time that chooses the settings"),

@@ -12,6 +12,18 @@ def first_ocean(bpy_scene):
     return min((obj for obj in bpy_scene.objects if ocean.is_ocean(obj)), key=lambda obj: obj.name, default=None)
 
 
+def is_camera_under(obj, bpy_scene, depsgraph=None):
+    """Whether the scene's camera is below an ocean's surface, as that plays just now; at rest where there is no sea yet."""
+    pinhole = ocean.pinhole_of(obj, bpy_scene, depsgraph)
+    if pinhole is None:
+        return False
+    x, y, z = pinhole.position_m
+    sea = play.simulation_of(obj).sea
+    if sea is None or abs(z) > 1.5 * sea.significant_height_m:
+        return z < 0.0
+    return z < Water(obj, bpy_scene).heights([(x, y)])[0]
+
+
 class Water:
     """The sea of an ocean at one frame. Places are the ocean's own, in metres, with z = 0 at rest; `matrix` leads from
     them to the world."""

@@ -30,12 +30,25 @@ def run():
     from pictures import shot_in_blender
 
     with checking("EEVEE draws sea and sky like the core's in brightness"):
-        shot_in_blender(ROOT / "examples" / "first-shot.toml", SIZE)
+        obj = shot_in_blender(ROOT / "examples" / "first-shot.toml", SIZE)
         pixels = picture()
         assert np.isfinite(pixels).all()
         sea, sky = pixels[:45].mean(), pixels[80:].mean()
         print("   sea", sea, "sky", sky)
         assert 20 < sky < 80 and 12 < sea < 48 and pixels[:45].std() > 0.5  # `pelagic render`: 41 and 25
+
+    with checking("EEVEE shows a lagoon, of which Cycles has a volume, in the colour that its floor and depth give the water"):
+        from pelagic_ocean import depths
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], object=obj):
+            bpy.ops.pelagic.preset_apply(name="lagoon")
+        obj.pelagic.surface.kind, obj.pelagic.horizon = "patch", True
+        bpy.context.view_layer.update()
+        assert depths.OUTPUT in obj.data.materials[0].node_tree.nodes
+        lagoon = picture()[:30].mean((0, 1))
+        ratio = lagoon / (2.466, 6.925, 7.291)  # `pelagic render`
+        print("   lagoon", ratio)
+        # Red light is the most changed by the way up to a level eye: 1.35 in the colour for an eye at 45 degrees.
+        assert (np.abs(ratio - 1.0) < (0.28, 0.1, 0.1)).all(), ratio
 
 
 def main():

@@ -15,7 +15,7 @@ from harness import *  # noqa: F403
 enable(sky_width=None)
 import pelagic
 from mathutils import Matrix
-from pelagic_ocean import depths, ocean, play, surfaces, upwelling
+from pelagic_ocean import depths, ocean, play, query, surfaces, upwelling
 from pelagic_ocean.properties import FIELDS
 from pictures import core_layers, cycles_exr, shot_in_blender
 
@@ -157,3 +157,52 @@ with checking("a lagoon in three steps: added, its preset, rendered; as bright a
     ratio = cycles_exr(FOLDER / "lagoon.exr", (48, 27), 64)[..., :3].mean((0, 1)) / core
     print("  ", np.round(ratio, 3))
     assert (np.abs(ratio - 1.0) < 0.15).all(), ratio
+
+
+def from_below(z_m, pitch_deg, fov_deg):
+    """The lagoon that is open from a camera in it: (Cycles' picture, the core's, directions of the pixels)."""
+    size, bpy_scene = (48, 27), bpy.context.scene
+    camera = bpy_scene.camera
+    camera.data.sensor_fit, camera.data.angle = "HORIZONTAL", math.radians(fov_deg)
+    camera.location, camera.rotation_euler = (0.0, 0.0, z_m), (math.radians(90.0 + pitch_deg), 0.0, 0.0)
+    bpy.context.view_layer.update()
+    scene = ocean.scene_of(obj, bpy_scene)
+    scene.shot.name, scene.shot.frames = "below", (1, 1)
+    scene.save(FOLDER / "below.toml")
+    core = sum(core_layers(PROGRAM, FOLDER / "below.toml", FOLDER, size).values())
+    x, y = np.meshgrid(*((np.arange(count) + 0.5 - 0.5 * count) * 2.0 * math.tan(math.radians(0.5 * fov_deg)) / size[0] for count in size))
+    towards = np.stack([x, y, -np.ones_like(x)], axis=-1) @ np.array(camera.matrix_world.to_3x3()).T
+    return cycles_exr(FOLDER / "below.exr", size, 32)[..., :3], core, towards / np.linalg.norm(towards, axis=-1, keepdims=True)
+
+
+# Alone this sees the surface from below, the camera in the volume and the floor that it sees: two renders.
+with checking("a camera in the lagoon sees Snell's window, the floor mirrored round it, and the water before it, as in the core's pictures"):
+    cycles, core, towards = from_below(-1.5, 89.0, 120.0)
+    sun = np.array(pelagic.Sky(scene).sun_direction) / 1.34
+    sun[2] = math.sqrt(1.0 - sun[0] ** 2 - sun[1] ** 2)  # as it is seen from below
+    window, outside = (towards[..., 2] > 0.77) & (towards @ sun < 0.9), towards[..., 2] < 0.57
+    ahead, core_ahead, towards = from_below(-1.5, -10.0, 70.0)
+    floor, level = towards[..., 2] < -0.25, np.abs(towards[..., 2]) < 0.02
+    ratios = [mine[part].mean(0)[1:] / its[part].mean(0)[1:] for mine, its, part in (
+        (cycles, core, window), (cycles, core, outside), (ahead, core_ahead, floor), (ahead, core_ahead, level))]
+    print("   green and blue: window {}, outside {}, floor {}, level {}".format(*(np.round(each, 3) for each in ratios)))
+    # Level views lack what the core scatters ahead; without water before it the floor would be five times as bright there.
+    assert (np.abs(np.array(ratios[:3]) - 1.0) < 0.1).all() and (0.4 < ratios[3]).all() and (ratios[3] < 1.3).all(), ratios
+
+with checking("a dive: deep water is a volume while the camera is below its surface, not its level at rest, and opaque again above"):
+    fresh_file()
+    obj, camera = add_ocean(horizon=True, sea__wind_speed_mps=12.0), bpy.context.scene.camera
+    bpy.context.view_layer.update()
+    surface = query.Water(obj, bpy.context.scene).world_heights([(0.0, 0.0)])[0]
+    nodes, found = obj.data.materials[0].node_tree.nodes, []
+    for frame, z in ((1, 3.0), (2, surface - 0.1), (3, surface + 0.1), (4, -3.0), (5, 3.0)):
+        camera.location = (0.0, 0.0, z)
+        camera.keyframe_insert("location", frame=frame)
+    change(obj, shot__time_scale=0.01)  # the waves stand still
+    for frame in range(1, 6):
+        bpy.context.scene.frame_set(frame)
+        floor = [child for child in obj.children if depths.MARK in child and child.visible_camera]
+        found.append((depths.OUTPUT in nodes, len(floor), nodes[depths.FROM_BELOW].outputs[0].default_value))
+        if frame == 4:
+            assert any(text.startswith("The camera is under water") for text in drawn(panel)), drawn(panel)
+    assert found == [(False, 0, 0.0), (True, 1, 1.0), (False, 0, 0.0), (True, 1, 1.0), (False, 0, 0.0)], (surface, found)

@@ -34,7 +34,7 @@ PlaceChange place_changes(vec3 to_eye, SlopeFrame frame) {
 // The effective Fresnel term for a given slope variance; v in the frame.
 float effective_fresnel(vec3 v, vec3 variance) {
     float sine2 = v.x * v.x + v.y * v.y;
-    float sigma_v = sqrt(variance_towards(v, variance) / max(sine2, 1.0e-12f));
+    float sigma_v = sqrt(max(variance_towards(v, variance), 0.0f) / max(sine2, 1.0e-12f));
     if (!kExactFresnel) return fresnel_effective_paper(v.z, sigma_v);
     return fresnel_effective_exact(v.z, sigma_v, max(variance.x + variance.y - square(sigma_v), 0.0f));
 }

@@ -194,7 +194,7 @@ CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec
     float slope = crest.x * ahead.x + crest.y * ahead.y;
     float height = per_m * crest.z;
     float steepness = max(sqrt(slope * slope + height * height), 1.0e-4f);
-    float phase = atan(abs(slope), height + 1.0e-6f);  // from the crest, as of a sine
+    float phase = abs(atan(abs(slope), height + 1.0e-6f));  // from the crest, as of a sine; a slope of −0 has −π in a trough
     float behind = 0.5f * steepness;                   // slope of the face that the sun enters
     float there = (behind * level + to_sun.z) * inversesqrt(1.0f + behind * behind);
     float here = (to_sun.z - slope * level) * inversesqrt(1.0f + crest.x * crest.x + crest.y * crest.y);

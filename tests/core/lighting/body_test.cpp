@@ -191,7 +191,8 @@ TEST(Water, BodysHardCasesStayFinite) {
             for (const double chlorophyll : {0.0, 100.0})
                 for (const vec3 waves :
                      {vec3(1e-10f, 1e-10f, 0.0f), vec3(0.3f, 1e-10f, 0.0f), vec3(2.0f, 2.0f, 1.999f)})
-                    for (const vec3 crest : {vec3(0.0f), vec3(1e6f, -1e6f, 1e6f), vec3(0.0f, 1e-30f, -1e4f)})
+                    for (const vec3 crest : {vec3(0.0f), vec3(1e6f, -1e6f, 1e6f), vec3(0.0f, 1e-30f, -1e4f),
+                                             vec3(-0.1f, -0.02f, -300.0f)})
                         for (const float bubbles_m : {0.0f, 1e-6f, 10.0f})
                             for (const double theta : {0.0, 60.0, 90.0, 120.0}) {
                                 WaterBody water = body(depth, 1.0, chlorophyll);
@@ -203,6 +204,7 @@ TEST(Water, BodysHardCasesStayFinite) {
                                 Sky sky = sunny(elevation * kDegree);
                                 sky.sky_irradiance = vec3(3.0f);
                                 if (elevation <= 0.0) sky.sun_irradiance = vec3(0.0f);
+                                if (elevation == 90.0) sky.sun_direction = vec3(0.0f, 0.0f, 1.0f);
                                 const vec3 seen = sea_of(sky, water,
                                                          {.to_eye = from(theta * kDegree),
                                                           .slope_variance = waves,

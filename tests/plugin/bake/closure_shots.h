@@ -151,15 +151,16 @@ inline BaseShot daylight_shot() {
     return base;
 }
 
-// `skies`, `foams`: two paths of pictures each.
+// `skies`, `foams`: two paths of pictures each, of a sky and of all else.
 inline BaseShot sky_shot(std::vector<std::string> skies, std::vector<std::string> foams) {
     BaseShot base = daylight_shot();
-    base.name = "pictures under a picture of a sky, with a picture of foam";
+    base.name = "pictures with a picture in each key that has one";
     descend(base.scene);
     base.scene.shot.last_frame = 3;
     base.scene.camera.resolution = {32, 18};
     base.scene.light.sky = skies.front();
-    base.scene.effects.foam_pattern = foams.front();
+    for (const Key& key : keys())
+        if (key.is_picture && key.path != "light.sky") key.set(base.scene, foams.front());
     base.skies = std::move(skies);
     base.foams = std::move(foams);
     base.tables.clear();

@@ -92,6 +92,7 @@ std::span<float> Floor::set_shafts(const Shafts& shafts) {
     shafts_first_ =
         light_first_ + 2 * static_cast<std::size_t>(light_.side) * static_cast<std::size_t>(light_.side);
     const auto side = static_cast<std::size_t>(shafts.side);
+    values_.reserve(shafts_first_ + (4 * side * side - 1) / 3);  // with halve_shafts()'s
     values_.resize(shafts_first_ + side * side);
     return std::span(values_).subspan(shafts_first_);
 }

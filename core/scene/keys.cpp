@@ -133,13 +133,13 @@ void add_sea(Built& out) {
             {.name = "depth_file",
              .help =
                  "how deep the floor lies that is seen, in metres: a picture of depths from above, north at its top, grey or its red, "
-                 "or a mesh of the floor, z up, 0 the sea at rest; beyond it the floor goes to depth_m. Waves are those of depth_m",
+                 "or a mesh of the floor, z up, which lies where it lies in the world; beyond it the floor goes to depth_m. Waves are those of depth_m",
              .accepted = "\"none\", or the path of an .exr or .obj, from the shot file's folder",
              .key_parts = key_parts(KeyPart::Water),
              .is_picture = true,
              .may_be_mesh = true}),
         row<&SeaState::depth_size_m>({.name = "depth_size_m",
-                                      .help = "from west to east of that picture",
+                                      .help = "from west to east of that picture; a mesh has none",
                                       .unit = "m",
                                       .range = limits::kSurfaceSize_m,
                                       .soft = SoftRange{10.0, 1e4, true},

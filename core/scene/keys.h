@@ -118,7 +118,7 @@ struct Key {
     bool is_required = false;          // in an entry: it has no default
     bool is_picture = false;           // a text: its fallback, or the path of an .exr in its place
     bool may_be_mesh = false;          // or of an .obj
-    std::string of_picture;            // of a number that means nothing without it: such a text's path
+    std::string of_picture;            // of a number that means nothing without it: that text's key
     std::int64_t least = 0;            // of an integer, or each of two: what its member holds
     std::int64_t largest = 0;          // likewise
     std::vector<std::string> choices;  // of words

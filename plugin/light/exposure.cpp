@@ -40,7 +40,7 @@ constexpr double kSameHeight = 0.1;
 
 class Meter {
   public:
-    Meter(const Scene& scene, const Sky& sky)
+    Meter(const Scene& scene, const Sky& sky, const Floor* floor)
         : sky_(sky),
           water_(make_water(scene)),
           curvature_per_m_(scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0) {
@@ -51,14 +51,17 @@ class Meter {
         if (is_open && water_.has_body)
             under_m_ = -std::max(2.0 * std::sqrt(DirectionalSpectrum(scene.sea, scene.waves.band_gains).m0()),
                                  kLeastHeight_m);
-        if (water_.has_body && scene.sea.depth_file != SeaState{}.depth_file) floor_ = make_floor(scene);
         variance_ = static_cast<float>(0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total);
+        if (!water_.has_body || scene.sea.depth_file == SeaState{}.depth_file) return;
+        if (!floor) made_ = make_floor(scene);
+        floor_ = floor ? floor : &*made_;
     }
 
     void add(const View& view) {
         is_under_ = view.position_m.z < under_m_;
         eye_m_ = static_cast<float>(view.position_m.z);
         position_m_ = glm::dvec2(view.position_m);
+        if (floor_ && is_under_) water_.floor_m = static_cast<float>(floor_->depth_m(position_m_));
         is_foam_seen_ = is_foam_seen_ || !is_under_;
         height_m_ = std::max(view.position_m.z, kLeastHeight_m);
         if (sky_.air && !(std::abs(std::log(height_m_ / air_height_m_)) < kSameHeight)) {
@@ -117,7 +120,7 @@ class Meter {
         return {calm + luminance(glm::dvec3(lit.sun)), calm};
     }
 
-    Seen along(glm::dvec3 direction) {
+    Seen along(glm::dvec3 direction) const {
         const glm::vec3 to(direction);
         if (is_under_) return below(to);
         const double distance = distance_m(direction);
@@ -132,10 +135,11 @@ class Meter {
                              .slope_variance = {variance_, variance_, 0.0f},
                              .up = glm::vec3(glm::normalize(at))};
         SeaRadiance lit;
+        WaterBody water = water_;
         if (floor_)
-            water_.floor_m =
+            water.floor_m =
                 static_cast<float>(floor_->depth_m(position_m_ + distance * glm::dvec2(direction)));
-        shade_sea({.whitecaps = false}, sky_, water_, {&point, 1}, {&lit, 1}, &air_);
+        shade_sea({.whitecaps = false}, sky_, water, {&point, 1}, {&lit, 1}, &air_);
         const auto metres = static_cast<float>(distance);
         see_through(air_, {&point.to_eye, 1}, {&metres, 1}, {&lit, 1});
         const double calm = luminance(glm::dvec3(lit.sky + lit.sea + lit.air));
@@ -144,7 +148,8 @@ class Meter {
 
     const Sky& sky_;
     WaterBody water_;
-    std::optional<Floor> floor_;  // where a map says how deep it is
+    std::optional<Floor> made_;
+    const Floor* floor_ = nullptr;  // where a map says how deep it is
     glm::dvec2 position_m_{0.0};
     double curvature_per_m_;
     float variance_;
@@ -180,10 +185,10 @@ std::vector<View> metered_views(const Scene& scene) {
     return views;
 }
 
-float shot_exposure(const Scene& scene, const Sky& sky, double stops) {
+float shot_exposure(const Scene& scene, const Sky& sky, double stops, const Floor* floor) {
     stops += scene.camera.exposure_ev;
     if (scene.camera.ev100) return static_cast<float>(exposure_of_ev100(*scene.camera.ev100 - stops));
-    Meter meter(scene, sky);
+    Meter meter(scene, sky, floor);
     for (const View& view : metered_views(scene)) meter.add(view);
     const double metered = exposure_for(meter.log_mean()),
                  most = kBrightestFoam /

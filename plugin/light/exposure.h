@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/lighting/floor.h"
 #include "core/lighting/sky.h"
 #include "core/surface/view.h"
 #include "pelagic/scene.h"
@@ -19,7 +20,8 @@ std::vector<View> metered_views(const Scene& scene);
 // and through the air before it a sea that is at rest in the mean, on the earth's sphere where the shot's is, with the slopes that
 // Cox and Munk 1954 saw at the shot's wind, from below where the water has a body and the eye is deep in it, over the depths of sea.depth_file; less where white foam
 // would be burnt out. So nothing has to be rendered; a table of air
-// for each height of the eye takes some 40 ms. `sky` is the shot's own (make_sky()). Throws as make_floor().
-float shot_exposure(const Scene& scene, const Sky& sky, double stops = 0.0);
+// for each height of the eye takes some 40 ms. `sky` is the shot's own (make_sky()), and so is `floor` (make_floor()); without it a
+// shot with a map of depths reads that anew, and throws as make_floor().
+float shot_exposure(const Scene& scene, const Sky& sky, double stops = 0.0, const Floor* floor = nullptr);
 
 }  // namespace pelagic

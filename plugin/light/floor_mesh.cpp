@@ -65,38 +65,52 @@ Cage read_floor_mesh(const std::filesystem::path& path) {
 }
 
 FloorDepths depths_of(const CageMesh& mesh, double rest_m, double beyond_m) {
+    std::vector<bool> is_hole(mesh.face_counts.size());
+    for (const std::int32_t face : mesh.holes) is_hole[static_cast<std::size_t>(face)] = true;
+    // Each face's corners, as triangles round its first.
+    const auto each_triangle = [&](const auto& take) {
+        std::size_t first = 0;
+        const auto point = [&](std::size_t i) {
+            return mesh.points_m[static_cast<std::size_t>(mesh.indices[i])];
+        };
+        for (std::size_t face = 0; face < mesh.face_counts.size(); ++face) {
+            const auto count = static_cast<std::size_t>(mesh.face_counts[face]);
+            for (std::size_t k = 2; k < count && !is_hole[face]; ++k)
+                take(point(first), point(first + k - 1), point(first + k));
+            first += count;
+        }
+    };
     glm::dvec3 least(1e300), most(-1e300);
-    for (const std::int32_t index : mesh.indices) {
-        const glm::dvec3& point = mesh.points_m[static_cast<std::size_t>(index)];
-        least = glm::min(least, point);
-        most = glm::max(most, point);
-    }
+    each_triangle([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        least = glm::min(least, glm::min(a, glm::min(b, c)));
+        most = glm::max(most, glm::max(a, glm::max(b, c)));
+    });
     const glm::dvec2 extent(most - least);
-    const double texel_m = std::max(extent.x, extent.y) / kFloorMeshTexels;
-    if (!(std::min(extent.x, extent.y) > 1e-6 * std::max(extent.x, extent.y)))
+    const double longer_m = std::max(extent.x, extent.y);
+    if (!(std::min(extent.x, extent.y) > kThinnest * longer_m && longer_m >= kLeastSide_m))
         throw FloorMeshError("has no area from above", kAccepted);
     FloorDepths depths;
-    depths.columns_rows = glm::clamp(glm::ivec2(glm::ceil(extent / texel_m)), 1, kFloorMeshTexels);
+    depths.columns_rows = glm::max(glm::ivec2(glm::round(kFloorMeshTexels / longer_m * extent)), 1);
     depths.from_m = glm::dvec2(least);
-    depths.size_m = texel_m * glm::dvec2(depths.columns_rows);
+    depths.size_m = extent;
     constexpr float kNone = -1e30f;
     depths.depths_m.assign(
         static_cast<std::size_t>(depths.columns_rows.x) * static_cast<std::size_t>(depths.columns_rows.y),
         kNone);
-    const auto corner = [&](std::size_t i) {
-        const glm::dvec3& point = mesh.points_m[static_cast<std::size_t>(mesh.indices[i])];
-        return glm::dvec3((glm::dvec2(point) - depths.from_m) / texel_m, point.z);
+    const auto in_texels = [&](const glm::dvec3& point) {
+        return glm::dvec3((glm::dvec2(point) - depths.from_m) / extent * glm::dvec2(depths.columns_rows),
+                          point.z);
     };
-    std::vector<bool> is_hole(mesh.face_counts.size());
-    for (const std::int32_t face : mesh.holes) is_hole[static_cast<std::size_t>(face)] = true;
-    std::size_t first = 0;
-    for (std::size_t face = 0; face < mesh.face_counts.size(); ++face) {
-        const auto count = static_cast<std::size_t>(mesh.face_counts[face]);
-        for (std::size_t k = 2; k < count && !is_hole[face]; ++k)
-            raise(depths.depths_m, depths.columns_rows, corner(first), corner(first + k - 1),
-                  corner(first + k));
-        first += count;
-    }
+    double work = 0.0;
+    each_triangle([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        const glm::dvec3 p = in_texels(a), q = in_texels(b), r = in_texels(c);
+        const glm::dvec2 box(glm::max(p, glm::max(q, r)) - glm::min(p, glm::min(q, r)));
+        work += (box.x + 1.0) * (box.y + 1.0);
+    });
+    if (work > kMostWork) throw FloorMeshError("covers itself too often", kAccepted);
+    each_triangle([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        raise(depths.depths_m, depths.columns_rows, in_texels(a), in_texels(b), in_texels(c));
+    });
     constexpr double kLeast_m = 0.01, kMost_m = 1e5;
     for (float& depth : depths.depths_m)
         depth = static_cast<float>(

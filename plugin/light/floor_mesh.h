@@ -33,10 +33,10 @@ inline constexpr int kFloorMeshTexels = 1024;  // of the longer side
 
 // Whether a path is that of a mesh (.obj), not of a picture.
 bool is_floor_mesh(const std::string& path);
-// A file (Wavefront OBJ, z up, metres, z = 0 the sea at rest). Throws FloorMeshError.
+// A file (Wavefront OBJ, z up, in the world's metres). Throws FloorMeshError.
 Cage read_floor_mesh(const std::filesystem::path& path);
 // The highest of the mesh's faces at the middle of each texel, faces as fans of triangles; beyond_m where there is none. `rest_m`: the
-// height of the sea at rest. Throws FloorMeshError for a mesh that has no area from above.
+// height of the sea at rest. Throws FloorMeshError for a mesh that has no area from above, or that covers itself hundreds of times.
 FloorDepths depths_of(const CageMesh& mesh, double rest_m, double beyond_m);
 
 }  // namespace pelagic

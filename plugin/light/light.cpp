@@ -100,7 +100,7 @@ std::vector<Problem> check_floor_picture(const Scene& scene, const Key& key) {
         return std::vector{Problem{key.path, quoted_text(path), line_text(text), accepted}};
     };
     try {
-        if (is_floor_mesh(path)) {
+        if (is_depths && is_floor_mesh(path)) {
             depths_of(read_floor_mesh(path).mesh(), 0.0, 0.0);
             return {};
         }
@@ -294,11 +294,12 @@ std::size_t floor_bytes(const Scene& scene) {
     for (const Key* key : floor_keys(scene)) {
         if (!check_floor_picture(scene, *key).empty()) continue;
         const std::string path = std::get<std::string>(value_of(scene, *key));
-        if (is_floor_mesh(path)) {
+        if (key->path == "sea.depth_file" && is_floor_mesh(path)) {
             // Its text, and points and corners as they are read, which take some three times as much; then a grid of depths, twice.
             constexpr std::size_t kOfText = 4, kTexels = std::size_t{kFloorMeshTexels} * kFloorMeshTexels;
-            bytes += kOfText * static_cast<std::size_t>(std::filesystem::file_size(path)) +
-                     2 * kTexels * sizeof(float);
+            std::error_code gone;
+            const std::uintmax_t size = std::filesystem::file_size(path, gone);
+            if (!gone) bytes += kOfText * static_cast<std::size_t>(size) + 2 * kTexels * sizeof(float);
             continue;
         }
         const exr::RgbFile file(path);
@@ -319,10 +320,12 @@ Floor make_floor(const Scene& scene, double rest_m) {
             throw std::invalid_argument(
                 text_of(Problem{key->path, quoted_text(path), line_text(problem), accepted}));
         };
-        for (const Problem& problem : check_floor_picture(scene, *key))
-            throw std::invalid_argument(text_of(problem));
+        const bool is_mesh = key->path == "sea.depth_file" && is_floor_mesh(path);
+        if (!is_mesh)
+            for (const Problem& problem : check_floor_picture(scene, *key))
+                throw std::invalid_argument(text_of(problem));
         try {
-            if (is_floor_mesh(path)) {
+            if (is_mesh) {
                 FloorDepths of = depths_of(read_floor_mesh(path).mesh(), rest_m, beyond_m);
                 floor.set_depths(of.columns_rows, std::move(of.depths_m), of.from_m, of.size_m);
                 continue;
@@ -358,6 +361,8 @@ Floor make_floor(const Scene& scene, double rest_m) {
             }
         } catch (const exr::ReadError& error) {
             refuse(error.problem(), error.accepted());
+        } catch (const FloorMeshError& error) {
+            refuse(error.what(), error.accepted());
         }
     }
     return floor;

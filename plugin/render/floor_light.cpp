@@ -362,21 +362,24 @@ void fill(const Map& map, const Floor& floor, const Frame<T>& frame, const Floor
 
 // In the water about as deep as a camera in it looks through: its map, as wide as eight of that depth.
 template <class T>
-void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted, double rest_m,
-                  double gain, const std::atomic<bool>* cancel) {
+void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted, double gain,
+                  const std::atomic<bool>* cancel) {
     constexpr double kShallowest_m = 1.0, kDeepest_m = 12.0, kDepths = 8.0;
-    const double depth_m = std::clamp(rest_m - wanted.view.position_m.z, kShallowest_m, kDeepest_m);
+    const double eye_m = floor.rest_m() - wanted.view.position_m.z,
+                 depth_m = std::clamp(eye_m, kShallowest_m, kDeepest_m);
     const double texel_m = std::max(kDepths * depth_m / kShaftSide, wanted.finest_m);
+    // An eye deeper than the plane sees the light that came through it nearer to the sun.
+    const Beam beam = beam_of(wanted);
+    const glm::dvec2 middle = middle_of(wanted.view, kShaftSide * texel_m) -
+                              std::max(eye_m - depth_m, 0.0) * beam.tangent * beam.away;
     const Floor::Shafts shafts{
         .side = kShaftSide,
         .texel_m = texel_m,
         .depth_m = depth_m,
-        .from_m =
-            texel_m *
-            glm::floor((middle_of(wanted.view, kShaftSide * texel_m) - 0.5 * kShaftSide * texel_m) / texel_m),
+        .from_m = texel_m * glm::floor((middle - 0.5 * kShaftSide * texel_m) / texel_m),
         .gain = gain};
     fill(Map{shafts.from_m, texel_m, kShaftSide, floor.set_shafts(shafts)}, Floor(depth_m), frame, wanted,
-         beam_of(wanted), depth_m, cancel);
+         beam, depth_m, cancel);
     floor.halve_shafts();
 }
 
@@ -412,7 +415,7 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
                      texels.subspan(i * count, count)},
                  floor, frame, wanted, beam_of(wanted), depth_m, cancel);
     }
-    if (wanted.is_below) light_shafts(floor, frame, wanted, floor.rest_m(), gain, cancel);
+    if (wanted.is_below) light_shafts(floor, frame, wanted, gain, cancel);
 }
 
 template void light_floor(Floor&, const Frame<float>&, const FloorLightWanted&, const std::atomic<bool>*);

@@ -202,7 +202,8 @@ class RendererOf final : public Impl {
             const SeaView middle{view_at(scene_.camera, pass.frame), frame_};
             FloorLightWanted wanted;
             wanted.view = middle.view;
-            wanted.is_below = waterline_ && waterline_->is_any_under();
+            // Places of a lens may differ; made for one of them, the maps are for all.
+            wanted.is_below = waterline_ && (scene_.camera.f_stop > 0.0 || waterline_->is_any_under());
             set_footprints(wanted, drawn_, middle);
             sea_.light_floor_before(wanted, drawn_.rest_m(), watch.cancel);
         }

@@ -125,9 +125,7 @@ void find_pictures(Reader& reader, const std::filesystem::path& folder, Scene& s
         if (!is_file(file))
             reader.refuse({key.path, quoted_text(path),
                            "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
-                           value_text(key, key.fallback) + ", or the path of an " +
-                               (key.may_be_mesh ? ".exr or .obj" : ".exr") +
-                               ", from the shot file's folder"});
+                           key.accepted});
         return file.string();
     });
 }

@@ -460,11 +460,9 @@ class Preview {
 
     void meter() {
         metered_wind_mps_ = controls_.scene.sea.wind_speed_mps;
-        try {
-            exposure_ = shot_exposure(controls_.scene, sky_->sky);
-        } catch (
-            const std::invalid_argument&) {  // a map of depths that is gone: the panel says it of the floor
-        }
+        // Where a map of depths is gone, as the panel says, over deep water.
+        const Floor deep;
+        exposure_ = shot_exposure(controls_.scene, sky_->sky, 0.0, floor_ ? floor_.get() : &deep);
     }
 
     // Requests what the panel asks for and takes finished results, without waiting.

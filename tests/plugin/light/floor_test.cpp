@@ -89,6 +89,13 @@ TEST_F(FloorPictures, MayBeMeshesAsTheyLieInTheWorld) {
     const Floor part = make_floor(scene);
     EXPECT_NEAR(part.depth_m({1.0, 1.0}), 3.0, 1e-4);
     EXPECT_NEAR(part.depth_m({7.0, 7.0}), 30.0, 1e-4);
+    // Up to its edges, of whatever shape.
+    for (const std::string& north : {"10.003", "9.98", "0.2"}) {
+        files::write_atomically(
+            path, "v 0 0 -3\nv 40 0 -3\nv 40 " + north + " -3\nv 0 " + north + " -3\nf 1 2 3 4\n");
+        const Floor whole = make_floor(scene);
+        for (const float depth : whole.values()) ASSERT_NEAR(depth, 3.0f, 1e-4f) << north;
+    }
 }
 
 TEST_F(FloorPictures, ThatAreNoneAreRefusedByName) {
@@ -121,6 +128,13 @@ TEST_F(FloorPictures, ThatAreNoneAreRefusedByName) {
     EXPECT_NE(refusal(scene).find("no area from above"), std::string::npos) << refusal(scene);
     files::write_atomically(wall, "v 0 0 0\nf 1 2 3\n");
     EXPECT_NE(refusal(scene).find("wall.obj:2"), std::string::npos) << refusal(scene);
+    std::string layers;
+    for (int i = 0; i < 1000; ++i) {
+        const std::string z = std::to_string(-i);
+        layers += "v 0 0 " + z + "\nv 9 0 " + z + "\nv 9 9 " + z + "\nv 0 9 " + z + "\nf -4 -3 -2 -1\n";
+    }
+    files::write_atomically(wall, layers);
+    EXPECT_NE(refusal(scene).find("too often"), std::string::npos) << refusal(scene);
 }
 
 // Over bright sand that only a map says the picture isn't burnt out.

@@ -14,7 +14,11 @@ namespace pelagic {
 namespace {
 
 constexpr const char* kAccepted =
-    "a Wavefront OBJ of at most 256 MiB: z up, in metres, with an area from above";
+    "a Wavefront OBJ of at most 256 MiB and a million faces, none of whose edges three faces share: z up, in metres, with an area from above";
+constexpr double kThinnest = 1e-3;     // shorter over longer side
+constexpr double kLeastSide_m = 0.01;  // as of a picture
+// Texels of triangles' boxes: some seconds. A mesh without folds has two for each texel, or a few for each of many small faces.
+constexpr double kMostWork = 1e9;
 
 double cross(glm::dvec2 a, glm::dvec2 b) {
     return a.x * b.y - a.y * b.x;

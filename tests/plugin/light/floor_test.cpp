@@ -90,7 +90,7 @@ TEST_F(FloorPictures, MayBeMeshesAsTheyLieInTheWorld) {
     EXPECT_NEAR(part.depth_m({1.0, 1.0}), 3.0, 1e-4);
     EXPECT_NEAR(part.depth_m({7.0, 7.0}), 30.0, 1e-4);
     // Up to its edges, of whatever shape.
-    for (const std::string& north : {"10.003", "9.98", "0.2"}) {
+    for (const std::string north : {"10.003", "9.98", "0.2"}) {
         files::write_atomically(
             path, "v 0 0 -3\nv 40 0 -3\nv 40 " + north + " -3\nv 0 " + north + " -3\nf 1 2 3 4\n");
         const Floor whole = make_floor(scene);

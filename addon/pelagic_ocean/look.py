@@ -51,7 +51,9 @@ def give(obj, bpy_scene, sun_and_sky):
 
 def _mark_under(obj, under):
     """Says in an ocean's file whether the scene's camera is in its water."""
-    if under and obj.library is None:
+    if obj.library is not None:
+        return  # as it was saved
+    if under:
         obj[depths.UNDER] = True
     elif depths.UNDER in obj:
         del obj[depths.UNDER]

@@ -150,6 +150,10 @@ _ENTRY_FIELDS = {field.path: tuple(_field(key) for key in field.key["keys"]) for
 
 def counts(field, settings):
     """Whether a key counts with the other settings of an ocean, obj.pelagic."""
+    picture = BY_PATH.get(field.key["of_picture"])
+    if picture is not None:
+        path = picture.read(getattr(settings, picture.table))
+        return path != picture.key["default"] and not path.lower().endswith(".obj")
     other, values = ONLY_WITH.get(field.path, (None, ()))
     return other is None or getattr(getattr(settings, BY_PATH[other].table), BY_PATH[other].name) in values
 

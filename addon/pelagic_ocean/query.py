@@ -14,6 +14,8 @@ def first_ocean(bpy_scene):
 
 def is_camera_under(obj, bpy_scene, depsgraph=None):
     """Whether the scene's camera is below an ocean's surface, as that plays just now; at rest where there is no sea yet."""
+    if obj.pelagic.surface.kind == "cage" or obj.pelagic.own_mesh:  # whose water may lie anywhere
+        return False
     pinhole = ocean.pinhole_of(obj, bpy_scene, depsgraph)
     if pinhole is None:
         return False

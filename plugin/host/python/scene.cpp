@@ -170,6 +170,7 @@ py::dict described_key(const Key& key) {
     out["keys"] = inner;
     out["entry"] = key.entry_name;
     out["other_word"] = key.other_word;
+    out["of_picture"] = key.of_picture;
     return out;
 }
 
@@ -326,8 +327,8 @@ void add_scene(py::module_& module) {
         "keys", &described_keys,
         "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "
         "required, range, soft_range (of a slider), logarithmic, choices (words), feeds (what depends on it), "
-        "the keys of a list's entries, the entries' class, and other_word (that may stand in the place of a list or an "
-        "integer).");
+        "the keys of a list's entries, the entries' class, other_word (that may stand in the place of a list or an "
+        "integer), and of_picture (the key of the picture without which this one means nothing, or \"\").");
 }
 
 }  // namespace pelagic::python

@@ -410,10 +410,11 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
         }
         const std::span<float> texels = floor.set_light(light);
         const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+        const Beam beam = beam_of(wanted);
         for (std::size_t i = 0; i < 2; ++i)
             fill(Map{light.from_m[i], texel_m * (i == 0 ? 1.0 : kFloorLightStep), side,
                      texels.subspan(i * count, count)},
-                 floor, frame, wanted, beam_of(wanted), depth_m, cancel);
+                 floor, frame, wanted, beam, depth_m, cancel);
     }
     if (wanted.is_below) light_shafts(floor, frame, wanted, gain, cancel);
 }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <span>
 
+#include "core/lighting/floor.h"
 #include "core/lighting/lighting.h"
 #include "tests/core/lighting/optics.h"
 
@@ -150,21 +152,32 @@ TEST(Below, HostileCasesAreFinite) {
         for (const double sun_deg : {-90.0, -1.0, 0.0, 1e-3, 40.0, 90.0})
             for (const double floor_m : {1e-3, 10.0, 1e4, 1e9})
                 for (const float waves : {kMirror, 0.1f})
-                    for (const float depth_m : depths)
+                    for (const float depth_m : depths) {
+                        // With the harshest of shafts: dark, or dark but for one texel.
+                        Floor floor(floor_m);
+                        std::span<float> shafts = floor.set_shafts({.side = 64,
+                                                                    .texel_m = 1.0,
+                                                                    .depth_m = 1.0,
+                                                                    .from_m = {-32.0, -32.0},
+                                                                    .gain = 10.0});
+                        std::fill(shafts.begin(), shafts.end(), 0.0f);
+                        if (waves != kMirror) shafts[32 * 64 + 33] = 1e6f;
+                        floor.halve_shafts();
+                        const FloorSeen seen = floor.seen_from({.position_m = {0.0, 0.0, -depth_m}});
                         for (const double theta :
                              {0.0, 1e-4, 48.27, 60.0, 89.999, 90.0, 90.001, 130.0, 180.0}) {
                             const WaterBody water = deep_body(chlorophyll, floor_m, 1.0, waves);
                             const Sky sky = lit_by(sun_deg, 0.1f);
                             const vec3 direction = tilted(theta * kOneDegree, 0.7);
                             SeaRadiance lit[2];
-                            shade_water({}, sky, water, -depth_m, {&direction, 1}, {lit, 1});
+                            shade_water({}, sky, water, -depth_m, {&direction, 1}, {lit, 1}, seen);
                             const SeaPoint point{.to_eye = -direction,
                                                  .normal = tilted(0.4, 2.0),
                                                  .slope_variance = vec3(waves, waves, 0.0f),
                                                  .coverage = 0.5f};
                             const float distance_m = depth_m / std::max(std::abs(direction.z), 1e-3f);
                             shade_sea_from_below({}, sky, water, -depth_m, {&point, 1}, {&distance_m, 1},
-                                                 {lit + 1, 1});
+                                                 {lit + 1, 1}, {}, seen);
                             for (const SeaRadiance& of : lit)
                                 for (const vec3& part : {of.sun, of.sky, of.sea, of.foam})
                                     for (int c = 0; c < 3; ++c)
@@ -172,6 +185,7 @@ TEST(Below, HostileCasesAreFinite) {
                                             << chlorophyll << ' ' << sun_deg << ' ' << floor_m << ' ' << waves
                                             << ' ' << depth_m << ' ' << theta;
                         }
+                    }
 }
 
 // Under a sky that is the same everywhere nothing in the water is brighter than n² of it, nor than the sky that is seen through a level

@@ -197,20 +197,26 @@ double MaximumEntropy::density(double theta) const {
     return variance_ / (kTwoPi * std::norm(1.0 - w * (phi1_ + w * phi2_)));
 }
 
-// The coefficients obey c_n = φ1 c_{n−1} + φ2 c_{n−2}, so c_n = a p1ⁿ + b p2ⁿ with p the roots of p² = φ1 p +
-// φ2, and 2π D = −1 + 2 Re Σ_{n≥0} c_n wⁿ (w = e^{−iθ}) integrates to θ + 2 Im Σ a_j ln(1 − p_j w). |p_j| < 1
-// keeps each logarithm on its principal branch.
-double MaximumEntropy::cumulative(double theta) const {
+// The coefficients obey c_n = φ1 c_{n−1} + φ2 c_{n−2}, so c_n = a p1ⁿ + b p2ⁿ with p the roots of p² = φ1 p + φ2.
+MaximumEntropy::Poles MaximumEntropy::find_poles() const {
     // Equal roots would need another form. Set 1e-5 apart they give the same D to 1e-10, and rounding costs as much.
     std::complex<double> discriminant = 0.25 * phi1_ * phi1_ + phi2_;
     if (std::abs(discriminant) < 2.5e-11) discriminant = 2.5e-11;
     const std::complex<double> root = std::sqrt(discriminant);
     const std::complex<double> p1 = 0.5 * phi1_ + root, p2 = 0.5 * phi1_ - root;
-    const std::complex<double> a = (c1_ - p2) / (p1 - p2), b = 1.0 - a;
+    return {p1, p2, (c1_ - p2) / (p1 - p2)};
+}
 
+// 2π D = −1 + 2 Re Σ_{n≥0} c_n wⁿ (w = e^{−iθ}) integrates to θ + 2 Im Σ a_j ln(1 − p_j w). |p_j| < 1 keeps each logarithm on
+// its principal branch.
+double MaximumEntropy::cumulative(double theta) const {
+    const Poles poles = find_poles();
     const Turned t = reduce(theta);
     const auto antiderivative = [&](const std::complex<double>& w) {
-        return (a * std::log(1.0 - p1 * w) + b * std::log(1.0 - p2 * w)).imag() / kPi;
+        return (poles.share * std::log(1.0 - poles.first * w) +
+                (1.0 - poles.share) * std::log(1.0 - poles.second * w))
+                   .imag() /
+               kPi;
     };
     return t.turns + t.rest / kTwoPi + antiderivative(std::polar(1.0, -t.rest)) - antiderivative(1.0);
 }

@@ -96,12 +96,24 @@ class MaximumEntropy {
     std::complex<double> harmonic(int n) const;
     double scale() const;  // the distance of the nearest pole of D from the real axis
     double centre() const { return std::arg(c1_); }
+    // ∫ D f(e^{iθ}) dθ of a function that is analytic within the unit circle.
+    template <class F>
+    std::complex<double> mean(F&& f) const {
+        const Poles poles = find_poles();
+        return poles.share * f(poles.first) + (1.0 - poles.share) * f(poles.second);
+    }
 
     // D = numerator / (d0 + d1 cos θ + d2 sin θ + d3 cos 2θ + d4 sin 2θ).
     double numerator() const;
     std::array<double, 5> denominator() const;
 
   private:
+    // ∫ D e^{inθ} dθ = share firstⁿ + (1 − share) secondⁿ, n ≥ 0; both within the unit circle.
+    struct Poles {
+        std::complex<double> first, second, share;
+    };
+    Poles find_poles() const;
+
     std::complex<double> phi1_, phi2_;
     double variance_;  // σ²
     std::complex<double> c1_;

@@ -46,35 +46,41 @@ class Directed {
         if (kappa_ < 1.0) return kappa_ * shape_.cumulative(theta) + (1.0 - kappa_) * theta / kTwoPi;
         return shape_.cumulative(centre() + turned(theta - centre(), kappa_));
     }
-    // ∫ D(φ) e^{inθ(φ)} dφ by the midpoint rule, which is made for what is periodic. In φ = u + sin u, because an almost
-    // isotropic CosinePower has a cusp at π. All in one pass over half of the circle: e^{iθ} = (e^{iφ} + r)/(1 + r e^{iφ}), and
-    // −φ goes to −θ.
+    // ∫ D(φ) e^{inθ(φ)} dφ, e^{iθ} = (e^{iφ} + r)/(1 + r e^{iφ}).
     Harmonics harmonics() const {
         if (kappa_ < 1.0) return harmonics_of(shape_).scaled(kappa_);
-        constexpr int kLeastSteps = 128;
-        const int steps =
-            std::max(kLeastSteps, static_cast<int>(kPi / (0.1 * std::min(shape_.scale(), 2.0 / kappa_))));
         const double r = (kappa_ - 1.0) / (kappa_ + 1.0);
-        Harmonics sum;
-        for (int i = 0; i < steps; ++i) {
-            const double u = kPi * (i + 0.5) / steps, phi = u + std::sin(u), c = std::cos(phi);
-            const double weight = (1.0 + std::cos(u)) * (kPi / steps);
-            const double left = weight * shape_.density(centre() + phi);
-            const double right = kIsEven ? left : weight * shape_.density(centre() - phi);
-            const double per = 1.0 / (1.0 + r * (r + 2.0 * c));
-            double real = per * (c * (1.0 + r * r) + 2.0 * r),
-                   imaginary = per * (1.0 - r * r) * std::sin(phi);
-            for (std::complex<double>* n : {&sum.first, &sum.second, &sum.fourth}) {
-                *n += std::complex((left + right) * real, (left - right) * imaginary);
-                imaginary *= 2.0 * real;  // of twice the angle
-                real = 2.0 * real * real - 1.0;
-            }
+        if constexpr (requires { shape_.centre(); }) {
+            const std::complex<double> back = std::polar(1.0, -centre());
+            const auto moved = [&](std::complex<double> w) { return (w * back + r) / (1.0 + r * w * back); };
+            const auto square = [](std::complex<double> z) { return z * z; };
+            return Harmonics{shape_.mean(moved), shape_.mean([&](auto w) { return square(moved(w)); }),
+                             shape_.mean([&](auto w) { return square(square(moved(w))); })}
+                .turned(centre());
+        } else {
+            return harmonics_by_rule(r);
         }
-        return sum.turned(centre());
     }
 
   private:
-    static constexpr bool kIsEven = !requires(const Shape& shape) { shape.centre(); };
+    // Of an even shape by the midpoint rule, which is made for what is periodic. In φ = u + sin u, because an almost isotropic
+    // CosinePower has a cusp at π. All in one pass over half of the circle.
+    Harmonics harmonics_by_rule(double r) const {
+        constexpr int kLeastSteps = 128;
+        const int steps =
+            std::max(kLeastSteps, static_cast<int>(kPi / (0.1 * std::min(shape_.scale(), 2.0 / kappa_))));
+        Harmonics sum;
+        for (int i = 0; i < steps; ++i) {
+            const double u = kPi * (i + 0.5) / steps, phi = u + std::sin(u), c = std::cos(phi);
+            const double weight = 2.0 * ((1.0 + std::cos(u)) * (kPi / steps) * shape_.density(phi));
+            double real = 1.0 / (1.0 + r * (r + 2.0 * c)) * (c * (1.0 + r * r) + 2.0 * r);
+            for (std::complex<double>* n : {&sum.first, &sum.second, &sum.fourth}) {
+                *n += weight * real;
+                real = 2.0 * real * real - 1.0;  // of twice the angle
+            }
+        }
+        return sum;
+    }
 
     double centre() const { return centre_of(shape_); }
     // 2 atan(factor tan(θ/2)), and whole turns stay turns.

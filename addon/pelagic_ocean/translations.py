@@ -48,7 +48,7 @@ GERMAN = {
     "Patch": "Ausschnitt", "Projected grid": "Projiziertes Gitter", "Near far": "Nah bis fern", "Cage": "Käfig", "By kind": "Je nach Art", "Nothing": "Nichts", "Ocean": "Ozean",
     "Coastal": "Küste", "Turbid": "Trüb", "Draft": "Entwurf", "Preview": "Vorschau", "Final": "Endfassung", "Reference": "Referenz",
     "Custom budget": "Eigenes Budget", "Normal": "Normale", "Velocity": "Geschwindigkeit", "Slope variance": "Neigungsvarianz",
-    "Displacement": "Auslenkung", "CatmullClark": "Catmull-Clark", "Level set": "Level-Set",
+    "Displacement": "Auslenkung", "Floor": "Boden", "CatmullClark": "Catmull-Clark", "Level set": "Level-Set",
     # What Blender alone has
     "To the horizon": "Bis zum Horizont", "UV Map": "UV-Karte", "See Through": "Durchsichtig", "See Through by Hand": "Durchsichtig nach Wahl",
     "Viewport": "Ansicht",

@@ -24,6 +24,8 @@ const std::array kMapTable = std::to_array<MapRow>({
     {MapKind::Normal, [] { return products(Product::Normal); }, false},
     {MapKind::SlopeVariance, [] { return products(Product::SlopeVariance); }, true},
     {MapKind::Whitecaps, [] { return products(Product::JacobianMoments, Product::Coverage); }, false},
+    {MapKind::Floor, [] { return products(Product::Position, Product::Normal, Product::SlopeVariance); },
+     false, key_parts(KeyPart::Light, KeyPart::Water), true},
 });
 
 void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
@@ -71,7 +73,7 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
     const auto [size_m, n, cascade] = square;
     for (const MapKind map : context.prepared.scene.output.maps)
         for (const MapRow& at : kMapTable) {
-            if (at.map != map) continue;
+            if (at.map != map || (cascade && at.is_below)) continue;
             Query query;
             query.name = (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) +
                          std::string(word_of(map));
@@ -81,7 +83,11 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
             if (cascade && query.products[index(Product::SlopeVariance)])
                 query.products = products(Product::SlopeVarianceAtRest);
             query.points = static_cast<std::size_t>(n) * n;
-            query.lattice = Lattice{-0.5 * size_m, size_m / n, 0.5 * size_m};
+            // What falls on a floor comes from elsewhere, and the sea is asked by rows.
+            if (at.is_below)
+                query.points = static_cast<std::size_t>(n);
+            else
+                query.lattice = Lattice{-0.5 * size_m, size_m / n, 0.5 * size_m};
             query.only_cascade = cascade;
             query.pixel_m = at.asks_each_level ? mip_footprints(size_m, n) : std::vector{size_m / n};
             // A tile's nodes carry each of its modes: there is nothing to filter out.

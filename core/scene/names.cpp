@@ -102,6 +102,7 @@ constexpr std::array kMaps = std::to_array<Word<MapKind>>({
     {MapKind::Normal, "normal"},
     {MapKind::SlopeVariance, "slope-variance"},
     {MapKind::Whitecaps, "whitecaps"},
+    {MapKind::Floor, "floor"},
 });
 constexpr std::array kSchemes = std::to_array<Word<MeshScheme>>({
     {MeshScheme::None, "none"},

@@ -524,7 +524,9 @@ void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) 
     }
 }
 
-void check_output(SceneChecker& check, const Effects& effects, const Output& output) {
+void check_output(SceneChecker& check, const Scene& scene) {
+    const Effects& effects = scene.effects;
+    const Output& output = scene.output;
     if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty() && !output.drops) {
         check.refuse({"output.mesh", choice_text(output.mesh),
                       "leaves nothing to bake: there are no maps and no volumes either",
@@ -546,9 +548,10 @@ void check_output(SceneChecker& check, const Effects& effects, const Output& out
                        " has none",
                    "effects.spray_law = \"andreas-1998\"");
     }
-    if (output.cascade_tiles && output.maps.empty()) {
+    if (output.cascade_tiles &&
+        std::ranges::all_of(output.maps, [](MapKind map) { return map == MapKind::Floor; })) {
         check.refuse({"output.cascade_tiles", "true", "asks for tiles of no map",
-                      "true together with at least one map in output.maps, or false"});
+                      "true together with at least one map in output.maps other than floor, or false"});
     }
     for (std::size_t i = 0; i < output.maps.size(); ++i) {
         if (output.maps[i] == MapKind::Whitecaps && !effects.whitecaps) {
@@ -556,6 +559,15 @@ void check_output(SceneChecker& check, const Effects& effects, const Output& out
                           "asks for coverage while effects.whitecaps is false",
                           "effects.whitecaps = true, or no such map"});
         }
+        if (output.maps[i] != MapKind::Floor) continue;
+        if (!scene.water.body)
+            check.refuse({indexed("output.maps", i), choice_text(output.maps[i]),
+                          "asks for the light on the floor while water.body is false",
+                          "water.body = true, or no such map"});
+        else if (!std::isfinite(scene.sea.depth_m) && scene.sea.depth_file == SeaState{}.depth_file)
+            check.refuse({indexed("output.maps", i), choice_text(output.maps[i]),
+                          "asks for the light on the floor of a sea without one",
+                          "a finite sea.depth_m, or no such map"});
     }
 }
 
@@ -610,7 +622,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_cage(check, scene.surface);
     check_pictures(check, scene);
     check_water(check, scene.water);
-    check_output(check, scene.effects, scene.output);
+    check_output(check, scene);
     check_scheme(check, scene.output, scene.surface);
     check_budget(check, scene.quality);
     check_tiles(check, scene.output, scene.waves);

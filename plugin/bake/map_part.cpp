@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -18,6 +19,8 @@
 #include "pelagic/version.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/format/exr/exr.h"
+#include "plugin/light/caustics.h"
+#include "plugin/light/light.h"
 
 namespace pelagic {
 namespace {
@@ -28,7 +31,8 @@ struct MapSlot final : OutputSlot {
     // Of whitecaps: what the moments of J are compared with, one value, or by mip level and texel where gusts make it differ.
     float whitecap_threshold = 0.0f;
     std::vector<std::vector<float>> whitecap_thresholds;
-    std::string file;  // encoded
+    std::vector<glm::vec3> floor_light;  // thrice the same, as pictures want it
+    std::string file;                    // encoded
 };
 
 class MapPart final : public OutputPart {
@@ -37,9 +41,12 @@ class MapPart final : public OutputPart {
         : OutputPart(plan, output),
           squares_(std::move(squares)),
           kind_(*output.map),
-          n_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(query().points))))),
-          size_m_(query().lattice->spacing_m * n_),
-          periodic_(output.cascade ? true : patch_is_periodic()) {}
+          n_(query().lattice ? static_cast<int>(std::lround(std::sqrt(static_cast<double>(query().points))))
+                             : scene().output.map_resolution),
+          size_m_(query().lattice ? query().lattice->spacing_m * n_ : scene().surface.size_m),
+          periodic_(output.cascade ? true : patch_is_periodic()) {
+        if (kind_ == MapKind::Floor) base_ = Fingerprint().add(base_).add(picture_content(scene())).text();
+    }
 
     FilePattern pattern() const override {
         const std::string name = scene().shot.name + '.' + std::string(word_of(kind_)) + '.';
@@ -56,7 +63,7 @@ class MapPart final : public OutputPart {
     }
 
     OutputMemory memory() const override {
-        const std::size_t texels = query().points;
+        const auto texels = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
         // With mip levels a third more. A tile's slope variances are the same all over, and packed to nothing.
         struct Encoded {
@@ -75,10 +82,13 @@ class MapPart final : public OutputPart {
                     // Moments, and by level what is written; of persistent foam, its past and what that becomes.
                     return has_foam_history() ? Encoded{22 * 4 / 3, 12 * 4 / 3 + 36 * 4 / 3}
                                               : Encoded{16 * 4 / 3, 12 * 4 / 3 + 12 * 4 / 3};
+                case MapKind::Floor:
+                    return {8 * 4 / 3, 12 / 3, 12};
             }
             throw std::logic_error("a map of no kind");
         }();
-        return {.once = texels * 2 * scalar,
+        const std::size_t points = texels * 2 * scalar;
+        return {.once = kind_ == MapKind::Floor ? floor_bytes() : points,
                 .slot = texels * (file + levels + (has_gusts() ? sizeof(float) * 4 / 3 : 0)),
                 .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
@@ -120,6 +130,7 @@ class MapPart final : public OutputPart {
 
     template <class T>
     void compute_as(State<T>& state, const SeaAtTime<T>& sea, MapSlot& slot, const BuildWatch& watch) {
+        if (kind_ == MapKind::Floor) return light_floor(sea.frame(), slot, watch);
         if (!state.rest)
             state.rest = squares_->points<T>({.per_side = n_,
                                               .spacing_m = query().lattice->spacing_m,
@@ -129,6 +140,61 @@ class MapPart final : public OutputPart {
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
         if (kind_ == MapKind::SlopeVariance) find_unresolved(state, sea.frame(), slot);
         if (has_gusts()) find_thresholds(state, sea.frame(), slot);
+    }
+
+    struct FloorBelow {
+        Floor floor;
+        SunThroughWaves sun;
+        CausticsOn on;
+        double gain = 1.0;
+    };
+    // The floor of the shot. Of an uneven one as sharp as where it is least deep, the pattern's best place; where it is several times deeper,
+    // which only shows as a faint glow, the light may fall somewhat aside.
+    FloorBelow floor_below() const {
+        const Sky sky = make_sky(scene());
+        FloorBelow below{.floor = make_floor(scene()),
+                         .sun = {.to_sun = sky.sun_direction,
+                                 .angular_radius = sky.sun_angular_radius,
+                                 .waves = make_water(scene(), plan_.from->spectrum).waves},
+                         .on = {}};
+        below.gain = scene().water.caustics * caustics_share(below.sun);
+        if (sky.sun_irradiance == glm::vec3(0.0f)) below.gain = 0.0;
+        constexpr int kPlaces = 64;  // a side
+        double least_m = std::numeric_limits<double>::infinity(), most_m = 0.0;
+        for (int i = 0; i < kPlaces * kPlaces; ++i) {
+            const glm::dvec2 place(i % kPlaces, i / kPlaces);
+            const double depth_m = below.floor.depth_m(size_m_ * ((place + 0.5) / double(kPlaces) - 0.5));
+            least_m = std::min(least_m, depth_m);
+            most_m = std::max(most_m, depth_m);
+        }
+        constexpr double kUneven = 4.0;
+        below.on = {.depth_m = least_m,
+                    .uneven_m = std::min(most_m - least_m, kUneven * least_m),
+                    .most_margin_m = size_m_};
+        return below;
+    }
+
+    std::size_t floor_bytes() const {
+        const FloorBelow below = floor_below();
+        const double margin_m =
+            caustics_margin_m(below.sun, below.floor, plan_.from->spectrum.m0(), below.on);
+        return caustics_bytes(n_, margin_m / size_m_) + pelagic::floor_bytes(scene());
+    }
+
+    template <class T>
+    void light_floor(const Frame<T>& frame, MapSlot& slot, const BuildWatch& watch) {
+        if (!below_) below_ = floor_below();
+        const double texel_m = size_m_ / n_;
+        std::vector<float> light(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 1.0f);
+        // A texel's middle is where the map says that it lies.
+        if (below_->gain > 0.0)
+            find_caustics({glm::dvec2(-0.5 * (size_m_ + texel_m)), texel_m, n_, light}, below_->floor, frame,
+                          output_.query, below_->sun, below_->on, watch.cancel);
+        slot.floor_light.clear();
+        slot.floor_light.reserve(light.size());
+        for (const float value : light)
+            slot.floor_light.emplace_back(
+                std::max(1.0f + static_cast<float>(below_->gain) * (value - 1.0f), 0.0f));
     }
 
     bool has_gusts() const { return plan_.gusts && !output_.cascade && kind_ == MapKind::Whitecaps; }
@@ -257,6 +323,16 @@ class MapPart final : public OutputPart {
             }
             case MapKind::Whitecaps:
                 return encoded_whitecaps(slot, frame);
+            case MapKind::Floor: {
+                const std::vector<glm::vec3>& texels = slot.floor_light;
+                const exr::Header header =
+                    header_of(made_of, frame,
+                              {"the sun's light on the floor over that below a level sea", "1", texels});
+                const auto below = mean_mips({.n = n_, .texels = texels, .periodic = periodic_});
+                std::vector<Level> levels{{n_, texels}};
+                for (const MipLevel<glm::vec3>& level : below) levels.push_back({level.n, level.texels});
+                return encode_levels(header, levels, red_green_blue(exr::PixelType::Half));
+            }
         }
         throw std::logic_error("a map of no kind");
     }
@@ -412,7 +488,8 @@ class MapPart final : public OutputPart {
     MapKind kind_;
     int n_;
     double size_m_;
-    bool periodic_;  // whether its square is a common period of the waves
+    bool periodic_;                    // whether its square is a common period of the waves
+    std::optional<FloorBelow> below_;  // from the first frame on
     State<float> single_;
     State<double> wide_;
 };

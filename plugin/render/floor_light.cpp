@@ -1,264 +1,37 @@
 #include "plugin/render/floor_light.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <span>
 #include <utility>
-#include <vector>
 
-#include "core/base/build_watch.h"
-#include "core/evaluate/evaluate.h"
-#include "core/lighting/lighting.h"
-#include "core/plan/plan.h"
 #include "core/surface/footprint_levels.h"
+#include "plugin/light/caustics.h"
 
 namespace pelagic {
 namespace {
 
-constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
 // The finer map's: the net of light at that depth has lines some three texels wide.
 constexpr double kTexelsADepth = 128.0;
-constexpr int kRowsAtOnce = 64;
-constexpr int kParts = 4;  // of the sea, always as many, so that sums are the same on any number of threads
-constexpr int kShaftSide = 512;  // texels of the shafts' map
-constexpr int kSplits = 4;       // of a cell's side: its light falls as so many points
+constexpr int kShaftSide = 512;       // texels of the shafts' map
+constexpr double kMostMargin = 0.25;  // over a map's side
 
-// The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
-struct Beam {
-    glm::dvec3 to_sun{0.0, 0.0, 1.0};
-    glm::dvec2 away{1.0, 0.0};
-    double tangent = 0.0;       // of its way below a level sea
-    double cosine_there = 1.0;  // of that
-    glm::dmat2 per_slope{1.0};  // how far a slope moves it on a floor 1 m deep
-    double radius = 0.0;
-};
-
-Beam beam_of(const FloorLightWanted& wanted) {
-    Beam beam;
-    beam.to_sun = glm::dvec3(wanted.sun_direction);
-    beam.radius = static_cast<double>(wanted.sun_angular_radius);
-    const double level = glm::length(glm::dvec2(beam.to_sun));
-    beam.away = level > 1e-6 ? -glm::dvec2(beam.to_sun) / level : glm::dvec2(1.0, 0.0);
-    const double sine = level / kIndex;
-    beam.cosine_there = std::sqrt(1.0 - sine * sine);
-    beam.tangent = sine / beam.cosine_there;
-    // A slope s tilts the normal by −s and with it the ray by (c_t − c_i/n) s: along its plane and across it.
-    const double bend = (beam.cosine_there - beam.to_sun.z / kIndex) / beam.cosine_there;
-    const glm::dmat2 along = glm::outerProduct(beam.away, beam.away);
-    beam.per_slope = bend * (glm::dmat2(1.0) + beam.tangent * beam.tangent * along);
-    return beam;
+SunThroughWaves sun_of(const FloorLightWanted& wanted) {
+    return {.to_sun = wanted.sun_direction,
+            .angular_radius = wanted.sun_angular_radius,
+            .waves = wanted.water.waves};
 }
-
-double transmitted(double cosine) {
-    const double there = std::sqrt(1.0 - (1.0 - cosine * cosine) / (kIndex * kIndex));
-    const double across = (cosine - kIndex * there) / (cosine + kIndex * there),
-                 along = (there - kIndex * cosine) / (there + kIndex * cosine);
-    return 1.0 - 0.5 * (across * across + along * along);
-}
-
-struct Map {
-    glm::dvec2 from_m;
-    double texel_m;
-    int side;
-    std::span<float> texels;
-};
-
-// Where light falls, in a map's texels, and how much of it, by cells of the sea.
-struct Falls {
-    int columns = 0, rows = 0;  // of the cells; places have one more
-    std::vector<glm::vec2> place;
-    std::vector<float> light;
-};
 
 template <class T>
-Falls falls_on(const Map& map, const Floor& floor, const Frame<T>& frame, const Beam& beam, double depth_m,
-               double finest_cell_m, double margin_m, double waves_m, const std::atomic<bool>* cancel) {
-    const double s = map.texel_m;
-    const int margin = static_cast<int>(std::ceil(margin_m / s));
-    Falls falls{.columns = map.side + 2 * margin, .rows = map.side + 2 * margin, .place = {}, .light = {}};
-    const auto width = static_cast<std::size_t>(falls.columns) + 1;
-    falls.place.resize(width * (static_cast<std::size_t>(falls.rows) + 1));
-    falls.light.resize(static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(falls.rows));
-    const glm::dvec2 from_m = map.from_m - depth_m * beam.tangent * beam.away - margin * s;
-    // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than in the middle.
-    const double range_m = std::max(margin_m - waves_m, 0.0) / std::max(beam.tangent, 0.02);
-    std::vector<glm::vec<2, T>> rest;
-    std::vector<glm::vec<3, T>> position, normal;
-    for (int row = 0; row < falls.rows; row += kRowsAtOnce) {
-        stop_if(cancel);
-        const int rows = std::min(kRowsAtOnce, falls.rows - row);
-        const std::size_t count = width * (static_cast<std::size_t>(rows) + 1);
-        rest.resize(count);
-        position.resize(count);
-        normal.resize(count);
-        for (std::size_t i = 0; i < count; ++i)
-            rest[i] = glm::vec<2, T>(static_cast<T>(static_cast<double>(i % width) * s),
-                                     static_cast<T>(static_cast<double>(i / width) * s));
-        const glm::dvec2 origin = from_m + glm::dvec2(0.0, row * s);
-        Results<T> results;
-        results.set(Product::Position, {position.data()});
-        results.set(Product::Normal, {normal.data()});
-        const std::vector<T> pixels(count, static_cast<T>(s)),
-            cells(count, static_cast<T>(std::max(s, finest_cell_m)));
-        evaluate(frame, 0,
-                 Points<T>{.origin_m = origin,
-                           .count = count,
-                           .rest_m = {rest.data()},
-                           .cell_m = {cells.data()},
-                           .pixel_m = {pixels.data()}},
-                 results);
-        const std::size_t first = width * static_cast<std::size_t>(row);
-        using Range = tbb::blocked_range<std::size_t>;
-        tbb::parallel_for(Range(0, count, 1024), [&](const Range& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const glm::dvec3 n(normal[i]);
-                const double facing = std::max(glm::dot(n, beam.to_sun), 0.0),
-                             there = std::sqrt(1.0 - (1.0 - facing * facing) / (kIndex * kIndex));
-                const glm::dvec3 ray = -beam.to_sun / kIndex - (there - facing / kIndex) * n;
-                const glm::dvec2 along = glm::dvec2(ray) / std::max(-ray.z, 0.05);
-                const glm::dvec2 at = origin + glm::dvec2(position[i]);
-                const auto height = static_cast<double>(position[i].z);
-                // The floor's height hardly changes over the way of the light.
-                double local_m = depth_m;
-                if (floor.has_depths())
-                    local_m =
-                        std::clamp(floor.depth_m(at + depth_m * along), depth_m - range_m, depth_m + range_m);
-                const glm::dvec2 hit = at + std::max(height + local_m, 0.0) * along;
-                falls.place[first + i] = glm::vec2((hit - map.from_m) / s);
-            }
-        });
-        tbb::parallel_for(0, rows, [&](int y) {
-            for (int x = 0; x < falls.columns; ++x) {
-                const std::size_t i = width * static_cast<std::size_t>(y) + static_cast<std::size_t>(x);
-                // The cell's area by its diagonals, normal to it.
-                const glm::dvec3 area = 0.5 * glm::cross(glm::dvec3(position[i + width + 1] - position[i]),
-                                                         glm::dvec3(position[i + width] - position[i + 1]));
-                const double across = glm::dot(area, beam.to_sun), size = glm::length(area);
-                double light = 0.0;
-                if (across > 0.0) light = across * transmitted(std::min(across / size, 1.0));
-                falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(row + y) +
-                            static_cast<std::size_t>(x)] = static_cast<float>(light);
-            }
-        });
-    }
-    return falls;
-}
-
-// Adds each cell's light to the texels on which it falls, over `mean`, that of a cell.
-void gather(const Falls& falls, const Map& map, double mean) {
-    const auto scale = static_cast<float>(1.0 / (mean * kSplits * kSplits));
-    const auto width = static_cast<std::size_t>(falls.columns) + 1;
-    // With a texel round the map, for light that falls on its edge.
-    const auto side = static_cast<std::size_t>(map.side), padded = side + 2;
-    std::array<std::vector<float>, kParts> parts;
-    tbb::parallel_for(0, kParts, [&](int part) {
-        std::vector<float>& sums = parts[static_cast<std::size_t>(part)];
-        sums.assign(padded * padded, 0.0f);
-        const int first = falls.rows * part / kParts, last = falls.rows * (part + 1) / kParts;
-        const auto most = static_cast<float>(side + 1);
-        for (int y = first; y < last; ++y)
-            for (int x = 0; x < falls.columns; ++x) {
-                const std::size_t i = width * static_cast<std::size_t>(y) + static_cast<std::size_t>(x);
-                const float light =
-                    scale *
-                    falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(y) +
-                                static_cast<std::size_t>(x)];
-                if (light == 0.0f) continue;
-                for (int v = 0; v < kSplits; ++v)
-                    for (int u = 0; u < kSplits; ++u) {
-                        const float a = (static_cast<float>(u) + 0.5f) / kSplits,
-                                    b = (static_cast<float>(v) + 0.5f) / kSplits;
-                        const glm::vec2 at =
-                            glm::mix(glm::mix(falls.place[i], falls.place[i + 1], a),
-                                     glm::mix(falls.place[i + width], falls.place[i + width + 1], a), b) +
-                            0.5f;
-                        if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < most && at.y < most)) continue;
-                        const auto column = static_cast<std::size_t>(at.x),
-                                   row = static_cast<std::size_t>(at.y);
-                        const float right = at.x - static_cast<float>(column),
-                                    up = at.y - static_cast<float>(row);
-                        float* const texel = sums.data() + row * padded + column;
-                        texel[0] += light * (1.0f - right) * (1.0f - up);
-                        texel[1] += light * right * (1.0f - up);
-                        texel[padded] += light * (1.0f - right) * up;
-                        texel[padded + 1] += light * right * up;
-                    }
-            }
-    });
-    for (std::size_t row = 0; row < side; ++row)
-        for (std::size_t column = 0; column < side; ++column) {
-            float sum = 0.0f;
-            for (const std::vector<float>& sums : parts) sum += sums[(row + 1) * padded + column + 1];
-            map.texels[row * side + column] = sum;
-        }
-}
-
-// What a square metre of the sea at rest lets in of a beam of 1, in the mean over waves of this slope variance towards the sun.
-double mean_light(const Beam& beam, double variance) {
-    const double level = std::sqrt(std::max(1.0 - beam.to_sun.z * beam.to_sun.z, 0.0)),
-                 deviation = std::sqrt(std::max(variance, 0.0));
-    constexpr int kSteps = 24;
-    double sum = 0.0, weights = 0.0;
-    for (int i = -kSteps; i <= kSteps; ++i) {
-        const double z = 4.0 * i / kSteps, slope = deviation * z, weight = std::exp(-0.5 * z * z);
-        const double across = beam.to_sun.z + slope * level;  // the slope falls towards the sun
-        weights += weight;
-        if (across > 0.0)
-            sum += weight * across * transmitted(std::min(across / std::sqrt(1.0 + slope * slope), 1.0));
-    }
-    return sum / weights;
-}
-
-// Variances of the slopes that the map's texels don't resolve: the mean over some places of it.
-template <class T>
-glm::dmat2 hidden_slopes(const Frame<T>& frame, const Map& map) {
-    constexpr int kPlaces = 16;  // a side
-    std::vector<glm::vec<2, T>> rest;
-    for (int i = 0; i < kPlaces * kPlaces; ++i)
-        rest.push_back(static_cast<T>(map.side * map.texel_m / kPlaces) *
-                       glm::vec<2, T>(static_cast<T>(i % kPlaces), static_cast<T>(i / kPlaces)));
-    const std::vector<T> width(rest.size(), static_cast<T>(map.texel_m));
-    std::vector<glm::vec<3, T>> hidden(rest.size());
-    Results<T> results;
-    results.set(Product::SlopeVariance, {hidden.data()});
-    evaluate(
-        frame, 0,
-        Points<T>{
-            .origin_m = map.from_m, .count = rest.size(), .rest_m = {rest.data()}, .pixel_m = {width.data()}},
-        results);
-    glm::dvec3 mean(0.0);
-    for (const glm::vec<3, T>& one : hidden) mean += glm::dvec3(one) / static_cast<double>(hidden.size());
-    return {mean.x, mean.z, mean.z, mean.y};
-}
-
-// A normal distribution of that deviation [texels], along one axis; beyond the map light is even.
-void blur(const Map& map, int axis, double deviation) {
-    const int reach = std::min(static_cast<int>(std::ceil(3.0 * deviation)), map.side / 2);
-    if (deviation < 0.05 || reach < 1) return;
-    std::vector<float> weight(static_cast<std::size_t>(2 * reach) + 1);
-    float sum = 0.0f;
-    for (int i = -reach; i <= reach; ++i)
-        sum += weight[static_cast<std::size_t>(i + reach)] =
-            static_cast<float>(std::exp(-0.5 * (i / deviation) * (i / deviation)));
-    for (float& w : weight) w /= sum;
-    const std::ptrdiff_t side = map.side, step = axis == 0 ? 1 : side, across = axis == 0 ? side : 1;
-    tbb::parallel_for(std::ptrdiff_t{0}, side, [&](std::ptrdiff_t line) {
-        std::vector<float> before(static_cast<std::size_t>(side + 2 * reach), 1.0f);
-        float* const first = map.texels.data() + line * across;
-        for (std::ptrdiff_t i = 0; i < side; ++i)
-            before[static_cast<std::size_t>(i + reach)] = first[i * step];
-        for (std::ptrdiff_t i = 0; i < side; ++i) {
-            float value = 0.0f;
-            for (std::size_t k = 0; k < weight.size(); ++k)
-                value += weight[k] * before[static_cast<std::size_t>(i) + k];
-            first[i * step] = value;
-        }
-    });
+void fill(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
+          double depth_m, const std::atomic<bool>* cancel) {
+    find_caustics(map, floor, frame, 0, sun_of(wanted),
+                  {.depth_m = depth_m,
+                   .most_margin_m = kMostMargin * map.side * map.texel_m,
+                   .finest_cell_m = wanted.finest_cell_m},
+                  cancel);
 }
 
 // Where most of the floor is looked at from near: some depths ahead.
@@ -299,11 +72,9 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
 
 std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side) {
     if (!water.has_body || scene.water.caustics == 0.0) return 0;
-    constexpr std::size_t kWithMargins = 9;  // quarters of them, a quarter of its side beyond each edge
     const auto bytes = [](int of_side, std::size_t maps) {
         const auto texels = static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side);
-        return texels * (maps + kParts) * sizeof(float) +
-               texels * kWithMargins / 4 * (sizeof(glm::vec2) + sizeof(float));
+        return texels * maps * sizeof(float) + caustics_bytes(of_side, kMostMargin);
     };
     double lowest_m = scene.camera.position_m.z;
     for (const auto& key : scene.camera.keys) lowest_m = std::min(lowest_m, key.position_m.z);
@@ -327,39 +98,6 @@ bool shows_floor(const WaterBody& water, double depth_m) {
 
 namespace {
 
-// The light on a plane or a floor that is so deep.
-template <class T>
-void fill(const Map& map, const Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
-          const Beam& beam, double depth_m, const std::atomic<bool>* cancel) {
-    const glm::dvec3 all(wanted.water.waves);
-    const double m0 = frame.sea().plan().from->spectrum.m0();
-    const double per_slope = depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
-    const double most_m = 0.25 * map.side * map.texel_m,
-                 waves_m = std::min(3.0 * std::sqrt(0.5 * (all.x + all.y)) * per_slope +
-                                        3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
-                                    most_m);
-    const glm::dmat2 hidden = hidden_slopes(frame, map);
-    const glm::dmat2 waves(all.x, all.z, all.z, all.y);
-    const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
-    gather(falls_on(map, floor, frame, beam, depth_m, wanted.finest_cell_m,
-                    floor.has_depths() ? most_m : waves_m, waves_m, cancel),
-           map, mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
-    const glm::dmat2 spread = depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
-    // The sun's disc: a uniform one's variance is a quarter of its radius' square.
-    const double c = beam.cosine_there;
-    const double disc = depth_m * beam.radius / (2.0 * kIndex * c);
-    const double along = disc * beam.to_sun.z / (c * c);
-    for (int axis = 0; axis < 2; ++axis) {
-        const double part = beam.away[axis] * beam.away[axis];
-        // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
-        constexpr double kLeast_texels = 0.6;
-        const double least_m = kLeast_texels * map.texel_m;
-        const double variance =
-            least_m * least_m + spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
-        blur(map, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m);
-    }
-}
-
 // In the water about as deep as a camera in it looks through: its map, as wide as eight of that depth.
 template <class T>
 void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted, double gain,
@@ -369,17 +107,16 @@ void light_shafts(Floor& floor, const Frame<T>& frame, const FloorLightWanted& w
                  depth_m = std::clamp(eye_m, kShallowest_m, kDeepest_m);
     const double texel_m = std::max(kDepths * depth_m / kShaftSide, wanted.finest_m);
     // An eye deeper than the plane sees the light that came through it nearer to the sun.
-    const Beam beam = beam_of(wanted);
     const glm::dvec2 middle = middle_of(wanted.view, kShaftSide * texel_m) -
-                              std::max(eye_m - depth_m, 0.0) * beam.tangent * beam.away;
+                              std::max(eye_m - depth_m, 0.0) * level_way(sun_of(wanted));
     const Floor::Shafts shafts{
         .side = kShaftSide,
         .texel_m = texel_m,
         .depth_m = depth_m,
         .from_m = texel_m * glm::floor((middle - 0.5 * kShaftSide * texel_m) / texel_m),
         .gain = gain};
-    fill(Map{shafts.from_m, texel_m, kShaftSide, floor.set_shafts(shafts)}, Floor(depth_m), frame, wanted,
-         beam, depth_m, cancel);
+    fill({shafts.from_m, texel_m, kShaftSide, floor.set_shafts(shafts)}, Floor(depth_m), frame, wanted,
+         depth_m, cancel);
     floor.halve_shafts();
 }
 
@@ -390,10 +127,7 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
                  const std::atomic<bool>* cancel) {
     const View& view = wanted.view;
     const int side = wanted.side;
-    // Nearer the horizon hardly any of the sun's light gets in: the pattern goes by then, rather than in one frame.
-    constexpr float kLowSun = 0.02f, kNoLowSun = 0.06f;  // sines of its elevation
-    const double gain =
-        wanted.gain * static_cast<double>(glm::smoothstep(kLowSun, kNoLowSun, wanted.sun_direction.z));
+    const double gain = wanted.gain * caustics_share(sun_of(wanted));
     // Where pixels are as wide as a net's mesh, it is even.
     constexpr double kMeshesADepth = 8.0;
     const double depth_m =
@@ -410,11 +144,10 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
         }
         const std::span<float> texels = floor.set_light(light);
         const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-        const Beam beam = beam_of(wanted);
         for (std::size_t i = 0; i < 2; ++i)
-            fill(Map{light.from_m[i], texel_m * (i == 0 ? 1.0 : kFloorLightStep), side,
-                     texels.subspan(i * count, count)},
-                 floor, frame, wanted, beam, depth_m, cancel);
+            fill({light.from_m[i], texel_m * (i == 0 ? 1.0 : kFloorLightStep), side,
+                  texels.subspan(i * count, count)},
+                 floor, frame, wanted, depth_m, cancel);
     }
     if (wanted.is_below) light_shafts(floor, frame, wanted, gain, cancel);
 }

@@ -36,10 +36,9 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
 // wavelengths.
 bool shows_floor(const WaterBody& water, double depth_m);
 
-// Sets the floor's light, or takes it away where nothing of it shows. Cells of the sea, as wide as a map's texels, send what they let in by
-// Snell's law for their own slopes to the floor, where it is spread by the slopes that they don't resolve and by the sun's disc. So all light
-// arrives somewhere, and its mean is 1. The maps lie before the camera, on texels of the world, so that they are the same
-// whatever it sees. For a view from below the same on a plane in the water, for shafts. All threads of the calling arena. Throws BuildCancelled.
+// Sets the floor's light, or takes it away where nothing of it shows: caustics (plugin/light/caustics.h) on maps before the camera, on
+// texels of the world, so that they are the same whatever it sees. For a view from below the same on a plane in the water, for shafts. All threads
+// of the calling arena. Throws BuildCancelled.
 template <class T>
 void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wanted,
                  const std::atomic<bool>* cancel = nullptr);

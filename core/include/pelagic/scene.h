@@ -52,7 +52,7 @@ enum class WaterType {
 enum class QualityLevel { Draft, Preview, Final, Reference };
 enum class MeshFormat { Usda, Usdc, None };
 enum class MeshAttribute { Normal, Velocity, SlopeVariance, Whitecaps };
-enum class MapKind { Displacement, Normal, SlopeVariance, Whitecaps };
+enum class MapKind { Displacement, Normal, SlopeVariance, Whitecaps, Floor };
 enum class MeshScheme { None, CatmullClark };
 enum class VolumeKind { Spray, LevelSet };
 

@@ -32,7 +32,7 @@ TEST(Names, AreTheShotFilesWords) {
     expect_words<QualityLevel>({"draft", "preview", "final", "reference"});
     expect_words<MeshFormat>({"usda", "usdc", "none"});
     expect_words<MeshAttribute>({"normal", "velocity", "slope-variance", "whitecaps"});
-    expect_words<MapKind>({"displacement", "normal", "slope-variance", "whitecaps"});
+    expect_words<MapKind>({"displacement", "normal", "slope-variance", "whitecaps", "floor"});
     expect_words<MeshScheme>({"none", "catmullClark"});
     expect_words<VolumeKind>({"spray", "level-set"});
 }

@@ -493,6 +493,26 @@ TEST(Validate, WhitecapsThatAreOff) {
         {"output.maps[1]", "\"whitecaps\"", "effects.whitecaps = true"});
 }
 
+TEST(Validate, FloorsThatArentThere) {
+    const auto with_floor = [](bool body, double depth_m) {
+        return [=](Scene& s) {
+            s.output.maps = {MapKind::Floor};
+            s.water.body = body;
+            s.sea.depth_m = depth_m;
+        };
+    };
+    expect_good(with_floor(true, 20.0));
+    expect_refused(with_floor(true, std::numeric_limits<double>::infinity()),
+                   {"output.maps[0]", "\"floor\"", "a finite sea.depth_m"});
+    expect_refused(with_floor(false, 20.0), {"output.maps[0]", "\"floor\"", "water.body = true"});
+    expect_refused(
+        [&](Scene& s) {
+            with_floor(true, 20.0)(s);
+            s.output.cascade_tiles = true;
+        },
+        {"output.cascade_tiles", "true", "other than floor"});
+}
+
 // A change to a scene of wave trains.
 std::function<void(Scene&)> of_trains(const std::function<void(Scene&)>& change) {
     return [change](Scene& s) {

@@ -88,7 +88,8 @@ inline BaseShot trains_shot() {
     base.scene.waves.trains = 12;
     base.scene.waves.cascades = {{.size_m = 20.0, .resolution = 32}};
     base.scene.output.mesh = MeshFormat::Usda;
-    base.scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
+    base.scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps, MapKind::Floor};
+    base.scene.sea.depth_m = 6.0;
     base.scene.output.cascade_tiles = true;
     return base;
 }

@@ -11,10 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <random>
 #include <set>
 #include <string>
+#include <vector>
 
-#include <glm/geometric.hpp>
 #include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
 #include "core/plan/random_tiling.h"
@@ -127,9 +129,101 @@ TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
     EXPECT_GT(std::abs(whole / fine_coverage - 1.0), 1e-4);
 }
 
+// Beside rays of the sun that know only Fresnel and Snell, and meet the slopes that the map doesn't resolve by chance.
+TEST_F(BakedMaps, FloorsHaveTheLightOfRaysThroughTheSea) {
+    constexpr int kSide = 128, kTexels = 4, kBins = kSide / kTexels;
+    constexpr double kSize_m = 20.0, kDepth_m = 2.5, kTexel_m = kSize_m / kSide;
+    scene_.sea.wind_speed_mps = 4.0;
+    scene_.sea.fetch_m = 2e3;
+    scene_.sea.depth_m = kDepth_m;
+    scene_.waves.choppiness = 0.0;  // so that places at rest are as dense as rays
+    scene_.waves.cascades = {{.size_m = kSize_m, .resolution = 256}};
+    scene_.surface.size_m = kSize_m;
+    scene_.light.sun_elevation_deg = 50.0;
+    scene_.light.sun_azimuth_deg = 20.0;
+    const auto light = test::read_level(bake_map(MapKind::Floor, "maps/sea.floor.0001.exr"), "R", 0);
+    ASSERT_EQ(light.n, kSide);
+    Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene_)));
+    frame.set(scene_.shot.time_s(1));
+    constexpr std::size_t kRays = 2'000'000;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-kSize_m, kSize_m);
+    std::normal_distribution<double> usual;
+    std::vector<glm::vec2> rest(kRays);
+    for (glm::vec2& place : rest) place = glm::vec2(uniform(random), uniform(random));
+    std::vector<glm::vec3> position(kRays), normal(kRays), hidden(kRays);
+    Results<float> results;
+    results.set(Product::Position, {position.data()});
+    results.set(Product::Normal, {normal.data()});
+    results.set(Product::SlopeVariance, {hidden.data()});
+    const float width = static_cast<float>(kTexel_m);
+    Points<float> points{.count = kRays, .rest_m = {rest.data()}};
+    points.pixel_m = points.cell_m = {&width, 0};
+    evaluate(frame, 0, points, results);
+    const double elevation = glm::radians(50.0), azimuth = glm::radians(20.0);
+    const glm::dvec3 to_sun(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                            std::sin(elevation));
+    std::vector<double> bins(kBins * kBins);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kRays; ++i) {
+        const glm::dvec2 slope = -glm::dvec2(normal[i]) / static_cast<double>(normal[i].z) +
+                                 glm::sqrt(glm::dvec2(hidden[i])) * glm::dvec2(usual(random), usual(random));
+        const glm::dvec3 n = glm::normalize(glm::dvec3(-slope, 1.0)),
+                         ray = glm::refract(-to_sun, n, 1.0 / 1.34);
+        const double c = glm::dot(n, to_sun), t = -glm::dot(n, ray);
+        const double across = (c - 1.34 * t) / (c + 1.34 * t), along = (t - 1.34 * c) / (t + 1.34 * c);
+        const double power = c / n.z * (1.0 - 0.5 * (across * across + along * along));
+        sum += power;
+        const glm::dvec2 hit = glm::dvec2(position[i]) +
+                               glm::dvec2(ray) / -ray.z * (static_cast<double>(position[i].z) + kDepth_m);
+        const glm::ivec2 bin(glm::floor((hit + 0.5 * kSize_m + 0.5 * kTexel_m) / (kTexels * kTexel_m)));
+        if (bin.x >= 0 && bin.y >= 0 && bin.x < kBins && bin.y < kBins)
+            bins[static_cast<std::size_t>(bin.y * kBins + bin.x)] += power;
+    }
+    double mean = 0.0, squares = 0.0, spread = 0.0;
+    for (const float value : light.values) mean += static_cast<double>(value) / (kSide * kSide);
+    for (int y = 0; y < kBins; ++y)
+        for (int x = 0; x < kBins; ++x) {
+            double here = 0.0;
+            for (int v = 0; v < kTexels; ++v)
+                for (int u = 0; u < kTexels; ++u)
+                    here +=
+                        static_cast<double>(light.at(x * kTexels + u, y * kTexels + v)) / (kTexels * kTexels);
+            // Rays are sown over twice the patch's side.
+            const double rays = bins[static_cast<std::size_t>(y * kBins + x)] / sum * 4.0 * kBins * kBins;
+            squares += (here - rays) * (here - rays) / (kBins * kBins);
+            spread += (rays - 1.0) * (rays - 1.0) / (kBins * kBins);
+        }
+    EXPECT_NEAR(mean, 1.0, 2e-3);
+    // 0.065: the rays' own sums err by 0.045.
+    EXPECT_LT(std::sqrt(squares), 0.08);
+    EXPECT_GT(std::sqrt(spread), 0.2);
+}
+
+// Where the floor is uneven, and goes to no floor at all, all light still arrives somewhere; a sun that is down has no pattern.
+TEST_F(BakedMaps, FloorsOfAnyDepthAndSunAreLit) {
+    scene_.sea.wind_speed_mps = 5.0;
+    scene_.sea.depth_file = fs::path(PELAGIC_SOURCE_DIR) / "examples" / "data" / "atoll.exr";
+    scene_.sea.depth_size_m = 400.0;
+    for (const double elevation_deg : {90.0, 30.0, 4.0, 0.0, -10.0}) {
+        SCOPED_TRACE(elevation_deg);
+        scene_.light.sun_elevation_deg = elevation_deg;
+        const auto light = test::read_level(bake_map(MapKind::Floor, "maps/sea.floor.0001.exr"), "R", 0);
+        double mean = 0.0, squares = 0.0;
+        for (const float value : light.values) {
+            ASSERT_TRUE(std::isfinite(value) && value >= 0.0f);
+            mean += static_cast<double>(value) / (128.0 * 128.0);
+            squares += static_cast<double>(value * value) / (128.0 * 128.0);
+        }
+        EXPECT_NEAR(mean, 1.0, 0.02);
+        EXPECT_EQ(squares - mean * mean > 1e-6, elevation_deg > 2.0);
+    }
+}
+
 // What Blender, Cycles and OpenImageIO show of a file, found in the real ones by tests/addon/maps.py: red, green and
 // blue, if no channel is in a layer, and the fourth channel as alpha.
 TEST_F(BakedMaps, AreAPictureToEveryProgram) {
+    scene_.sea.depth_m = 30.0;
     for (const Word<MapKind>& kind : words_of(MapKind{})) {
         SCOPED_TRACE(kind.word);
         const fs::path path =

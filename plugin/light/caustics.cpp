@@ -1,0 +1,323 @@
+#include "plugin/light/caustics.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/base/build_watch.h"
+#include "core/evaluate/evaluate.h"
+#include "core/plan/plan.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
+constexpr int kRowsAtOnce = 64;
+constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
+constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
+
+// The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
+struct Beam {
+    glm::dvec3 to_sun{0.0, 0.0, 1.0};
+    glm::dvec2 away{1.0, 0.0};
+    double tangent = 0.0;       // of its way below a level sea
+    double cosine_there = 1.0;  // of that
+    glm::dmat2 per_slope{1.0};  // how far a slope moves it on a floor 1 m deep
+    double radius = 0.0;
+};
+
+Beam beam_of(const SunThroughWaves& sun) {
+    Beam beam;
+    beam.to_sun = glm::dvec3(sun.to_sun);
+    beam.radius = static_cast<double>(sun.angular_radius);
+    const double level = glm::length(glm::dvec2(beam.to_sun));
+    beam.away = level > 1e-6 ? -glm::dvec2(beam.to_sun) / level : glm::dvec2(1.0, 0.0);
+    const double sine = level / kIndex;
+    beam.cosine_there = std::sqrt(1.0 - sine * sine);
+    beam.tangent = sine / beam.cosine_there;
+    // A slope s tilts the normal by −s and with it the ray by (c_t − c_i/n) s: along its plane and across it.
+    const double bend = (beam.cosine_there - beam.to_sun.z / kIndex) / beam.cosine_there;
+    const glm::dmat2 along = glm::outerProduct(beam.away, beam.away);
+    beam.per_slope = bend * (glm::dmat2(1.0) + beam.tangent * beam.tangent * along);
+    return beam;
+}
+
+double transmitted(double cosine) {
+    const double there = std::sqrt(1.0 - (1.0 - cosine * cosine) / (kIndex * kIndex));
+    const double across = (cosine - kIndex * there) / (cosine + kIndex * there),
+                 along = (there - kIndex * cosine) / (there + kIndex * cosine);
+    return 1.0 - 0.5 * (across * across + along * along);
+}
+
+// Where light falls, in a map's texels, and how much of it, by cells of the sea.
+struct Falls {
+    int columns = 0, rows = 0;  // of the cells; places have one more
+    std::vector<glm::vec2> place;
+    std::vector<float> light;
+};
+
+template <class T>
+Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query, const Beam& beam,
+               const CausticsOn& on, double margin_m, double range_m, const std::atomic<bool>* cancel) {
+    const double depth_m = on.depth_m;
+    const double s = map.texel_m;
+    const int margin = static_cast<int>(std::ceil(margin_m / s));
+    Falls falls{.columns = map.side + 2 * margin, .rows = map.side + 2 * margin, .place = {}, .light = {}};
+    const auto width = static_cast<std::size_t>(falls.columns) + 1;
+    falls.place.resize(width * (static_cast<std::size_t>(falls.rows) + 1));
+    falls.light.resize(static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(falls.rows));
+    const glm::dvec2 from_m = map.from_m - depth_m * beam.tangent * beam.away - margin * s;
+    std::vector<glm::vec<2, T>> rest;
+    std::vector<glm::vec<3, T>> position, normal;
+    for (int row = 0; row < falls.rows; row += kRowsAtOnce) {
+        stop_if(cancel);
+        const int rows = std::min(kRowsAtOnce, falls.rows - row);
+        const std::size_t count = width * (static_cast<std::size_t>(rows) + 1);
+        rest.resize(count);
+        position.resize(count);
+        normal.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+            rest[i] = glm::vec<2, T>(static_cast<T>(static_cast<double>(i % width) * s),
+                                     static_cast<T>(static_cast<double>(i / width) * s));
+        const glm::dvec2 origin = from_m + glm::dvec2(0.0, row * s);
+        Results<T> results;
+        results.set(Product::Position, {position.data()});
+        results.set(Product::Normal, {normal.data()});
+        const std::vector<T> pixels(count, static_cast<T>(s)),
+            cells(count, static_cast<T>(std::max(s, on.finest_cell_m)));
+        evaluate(frame, query,
+                 Points<T>{.origin_m = origin,
+                           .count = count,
+                           .rest_m = {rest.data()},
+                           .cell_m = {cells.data()},
+                           .pixel_m = {pixels.data()}},
+                 results);
+        const std::size_t first = width * static_cast<std::size_t>(row);
+        using Range = tbb::blocked_range<std::size_t>;
+        tbb::parallel_for(Range(0, count, 1024), [&](const Range& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const glm::dvec3 n(normal[i]);
+                const double facing = std::max(glm::dot(n, beam.to_sun), 0.0),
+                             there = std::sqrt(1.0 - (1.0 - facing * facing) / (kIndex * kIndex));
+                const glm::dvec3 ray = -beam.to_sun / kIndex - (there - facing / kIndex) * n;
+                const glm::dvec2 along = glm::dvec2(ray) / std::max(-ray.z, 0.05);
+                const glm::dvec2 at = origin + glm::dvec2(position[i]);
+                const auto height = static_cast<double>(position[i].z);
+                // The floor's height hardly changes over the way of the light.
+                double local_m = depth_m;
+                if (floor.has_depths())
+                    local_m =
+                        std::clamp(floor.depth_m(at + depth_m * along), depth_m - range_m, depth_m + range_m);
+                const glm::dvec2 hit = at + std::max(height + local_m, 0.0) * along;
+                falls.place[first + i] = glm::vec2((hit - map.from_m) / s);
+            }
+        });
+        tbb::parallel_for(0, rows, [&](int y) {
+            for (int x = 0; x < falls.columns; ++x) {
+                const std::size_t i = width * static_cast<std::size_t>(y) + static_cast<std::size_t>(x);
+                // The cell's area by its diagonals, normal to it.
+                const glm::dvec3 area = 0.5 * glm::cross(glm::dvec3(position[i + width + 1] - position[i]),
+                                                         glm::dvec3(position[i + width] - position[i + 1]));
+                const double across = glm::dot(area, beam.to_sun), size = glm::length(area);
+                double light = 0.0;
+                if (across > 0.0) light = across * transmitted(std::min(across / size, 1.0));
+                falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(row + y) +
+                            static_cast<std::size_t>(x)] = static_cast<float>(light);
+            }
+        });
+    }
+    return falls;
+}
+
+// Adds each cell's light to the texels on which it falls, over `mean`, that of a cell.
+void gather(const Falls& falls, const CausticsMap& map, double mean) {
+    const auto scale = static_cast<float>(1.0 / (mean * kSplits * kSplits));
+    const auto width = static_cast<std::size_t>(falls.columns) + 1;
+    // With a texel round the map, for light that falls on its edge.
+    const auto side = static_cast<std::size_t>(map.side), padded = side + 2;
+    std::array<std::vector<float>, kParts> parts;
+    tbb::parallel_for(0, kParts, [&](int part) {
+        std::vector<float>& sums = parts[static_cast<std::size_t>(part)];
+        sums.assign(padded * padded, 0.0f);
+        const int first = falls.rows * part / kParts, last = falls.rows * (part + 1) / kParts;
+        const auto most = static_cast<float>(side + 1);
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < falls.columns; ++x) {
+                const std::size_t i = width * static_cast<std::size_t>(y) + static_cast<std::size_t>(x);
+                const float light =
+                    scale *
+                    falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(y) +
+                                static_cast<std::size_t>(x)];
+                if (light == 0.0f) continue;
+                for (int v = 0; v < kSplits; ++v)
+                    for (int u = 0; u < kSplits; ++u) {
+                        const float a = (static_cast<float>(u) + 0.5f) / kSplits,
+                                    b = (static_cast<float>(v) + 0.5f) / kSplits;
+                        const glm::vec2 at =
+                            glm::mix(glm::mix(falls.place[i], falls.place[i + 1], a),
+                                     glm::mix(falls.place[i + width], falls.place[i + width + 1], a), b) +
+                            0.5f;
+                        if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < most && at.y < most)) continue;
+                        const auto column = static_cast<std::size_t>(at.x),
+                                   row = static_cast<std::size_t>(at.y);
+                        const float right = at.x - static_cast<float>(column),
+                                    up = at.y - static_cast<float>(row);
+                        float* const texel = sums.data() + row * padded + column;
+                        texel[0] += light * (1.0f - right) * (1.0f - up);
+                        texel[1] += light * right * (1.0f - up);
+                        texel[padded] += light * (1.0f - right) * up;
+                        texel[padded + 1] += light * right * up;
+                    }
+            }
+    });
+    for (std::size_t row = 0; row < side; ++row)
+        for (std::size_t column = 0; column < side; ++column) {
+            float sum = 0.0f;
+            for (const std::vector<float>& sums : parts) sum += sums[(row + 1) * padded + column + 1];
+            map.texels[row * side + column] = sum;
+        }
+}
+
+// What a square metre of the sea at rest lets in of a beam of 1, in the mean over waves of this slope variance towards the sun.
+double mean_light(const Beam& beam, double variance) {
+    const double level = std::sqrt(std::max(1.0 - beam.to_sun.z * beam.to_sun.z, 0.0)),
+                 deviation = std::sqrt(std::max(variance, 0.0));
+    constexpr int kSteps = 24;
+    double sum = 0.0, weights = 0.0;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+        const double z = 4.0 * i / kSteps, slope = deviation * z, weight = std::exp(-0.5 * z * z);
+        const double across = beam.to_sun.z + slope * level;  // the slope falls towards the sun
+        weights += weight;
+        if (across > 0.0)
+            sum += weight * across * transmitted(std::min(across / std::sqrt(1.0 + slope * slope), 1.0));
+    }
+    return sum / weights;
+}
+
+// Variances of the slopes that the map's texels don't resolve: the mean over some places of it.
+template <class T>
+glm::dmat2 hidden_slopes(const Frame<T>& frame, int query, const CausticsMap& map) {
+    constexpr int kPlaces = 16;  // a side
+    std::vector<glm::vec<2, T>> rest;
+    for (int i = 0; i < kPlaces * kPlaces; ++i)
+        rest.push_back(static_cast<T>(map.side * map.texel_m / kPlaces) *
+                       glm::vec<2, T>(static_cast<T>(i % kPlaces), static_cast<T>(i / kPlaces)));
+    const std::vector<T> width(rest.size(), static_cast<T>(map.texel_m));
+    std::vector<glm::vec<3, T>> hidden(rest.size());
+    Results<T> results;
+    results.set(Product::SlopeVariance, {hidden.data()});
+    evaluate(
+        frame, query,
+        Points<T>{
+            .origin_m = map.from_m, .count = rest.size(), .rest_m = {rest.data()}, .pixel_m = {width.data()}},
+        results);
+    glm::dvec3 mean(0.0);
+    for (const glm::vec<3, T>& one : hidden) mean += glm::dvec3(one) / static_cast<double>(hidden.size());
+    return {mean.x, mean.z, mean.z, mean.y};
+}
+
+// A normal distribution of that deviation [texels], along one axis; beyond the map light is even.
+void blur(const CausticsMap& map, int axis, double deviation) {
+    const int reach = std::min(static_cast<int>(std::ceil(3.0 * deviation)), map.side / 2);
+    if (deviation < 0.05 || reach < 1) return;
+    std::vector<float> weight(static_cast<std::size_t>(2 * reach) + 1);
+    float sum = 0.0f;
+    for (int i = -reach; i <= reach; ++i)
+        sum += weight[static_cast<std::size_t>(i + reach)] =
+            static_cast<float>(std::exp(-0.5 * (i / deviation) * (i / deviation)));
+    for (float& w : weight) w /= sum;
+    const std::ptrdiff_t side = map.side, step = axis == 0 ? 1 : side, across = axis == 0 ? side : 1;
+    tbb::parallel_for(std::ptrdiff_t{0}, side, [&](std::ptrdiff_t line) {
+        std::vector<float> before(static_cast<std::size_t>(side + 2 * reach), 1.0f);
+        float* const first = map.texels.data() + line * across;
+        for (std::ptrdiff_t i = 0; i < side; ++i)
+            before[static_cast<std::size_t>(i + reach)] = first[i * step];
+        for (std::ptrdiff_t i = 0; i < side; ++i) {
+            float value = 0.0f;
+            for (std::size_t k = 0; k < weight.size(); ++k)
+                value += weight[k] * before[static_cast<std::size_t>(i) + k];
+            first[i * step] = value;
+        }
+    });
+}
+
+// How far waves throw light aside: 3 deviations of their slopes and their heights.
+double waves_reach_m(const SunThroughWaves& sun, const Beam& beam, double m0, const CausticsOn& on) {
+    const double per_slope = on.depth_m * glm::length(glm::dvec2(beam.per_slope[0][0], beam.per_slope[1][1]));
+    const double variance = 0.5 * static_cast<double>(sun.waves.x + sun.waves.y);
+    return std::min(3.0 * std::sqrt(variance) * per_slope + 3.0 * std::sqrt(m0) * (1.0 + beam.tangent),
+                    on.most_margin_m);
+}
+
+constexpr double kLeastTangent = 0.02;  // light of a sun in the zenith goes astray as well
+
+}  // namespace
+
+double caustics_share(const SunThroughWaves& sun) {
+    constexpr float kLowSun = 0.02f, kNoLowSun = 0.06f;  // sines of its elevation
+    return static_cast<double>(glm::smoothstep(kLowSun, kNoLowSun, sun.to_sun.z));
+}
+
+glm::dvec2 level_way(const SunThroughWaves& sun) {
+    const Beam beam = beam_of(sun);
+    return beam.tangent * beam.away;
+}
+
+double caustics_margin_m(const SunThroughWaves& sun, const Floor& floor, double m0, const CausticsOn& on) {
+    const Beam beam = beam_of(sun);
+    double margin_m = waves_reach_m(sun, beam, m0, on);
+    if (floor.has_depths()) margin_m += std::max(beam.tangent, kLeastTangent) * on.uneven_m;
+    return std::min(margin_m, on.most_margin_m);
+}
+
+std::size_t caustics_bytes(int side, double margin) {
+    const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    const double with_margins = (1.0 + 2.0 * margin) * (1.0 + 2.0 * margin);
+    return texels * kParts * sizeof(float) +
+           static_cast<std::size_t>(static_cast<double>(texels) * with_margins) *
+               (sizeof(glm::vec2) + sizeof(float));
+}
+
+template <class T>
+void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query,
+                   const SunThroughWaves& sun, const CausticsOn& on, const std::atomic<bool>* cancel) {
+    const Beam beam = beam_of(sun);
+    const double m0 = frame.sea().plan().from->spectrum.m0(),
+                 margin_m = caustics_margin_m(sun, floor, m0, on);
+    // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than in the middle.
+    const double range_m =
+        std::max(margin_m - waves_reach_m(sun, beam, m0, on), 0.0) / std::max(beam.tangent, kLeastTangent);
+    const glm::dmat2 hidden = hidden_slopes(frame, query, map);
+    const glm::dvec3 all(sun.waves);
+    const glm::dmat2 waves(all.x, all.z, all.z, all.y);
+    const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
+    gather(falls_on(map, floor, frame, query, beam, on, margin_m, range_m, cancel), map,
+           mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
+    const double depth_m = on.depth_m;
+    const glm::dmat2 spread = depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
+    // The sun's disc: a uniform one's variance is a quarter of its radius' square.
+    const double c = beam.cosine_there;
+    const double disc = depth_m * beam.radius / (2.0 * kIndex * c);
+    const double along = disc * beam.to_sun.z / (c * c);
+    for (int axis = 0; axis < 2; ++axis) {
+        const double part = beam.away[axis] * beam.away[axis];
+        // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
+        constexpr double kLeast_texels = 0.6;
+        const double least_m = kLeast_texels * map.texel_m;
+        const double variance =
+            least_m * least_m + spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
+        blur(map, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m);
+    }
+}
+
+template void find_caustics(const CausticsMap&, const Floor&, const Frame<float>&, int,
+                            const SunThroughWaves&, const CausticsOn&, const std::atomic<bool>*);
+template void find_caustics(const CausticsMap&, const Floor&, const Frame<double>&, int,
+                            const SunThroughWaves&, const CausticsOn&, const std::atomic<bool>*);
+
+}  // namespace pelagic

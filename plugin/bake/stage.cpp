@@ -163,7 +163,9 @@ usd::Material material_of(const Plan& plan, const WaterBody& water) {
     return {.ior = std::round(static_cast<double>(albedo.water_index) * 1e6) / 1e6,
             .roughness = roughness(plan),
             .color = albedo.water,
-            .whitecap_color = albedo.foam};
+            .whitecap_color = albedo.foam,
+            .absorption_per_m = water.absorption_per_m,
+            .scattering_per_m = 2.0f * water.backscatter_per_m};
 }
 
 // The volumes of the shot; none: the plan has none.

@@ -145,6 +145,8 @@ struct Material {
     double opacity = 1.0;            // 0 … 1
     glm::vec3 color{0.0f};           // albedo of the water below the surface, linear
     glm::vec3 whitecap_color{1.0f};  // albedo of foam, linear
+    // Of the water, for who lets light through it; without extinction: not written. Scattering is isotropic.
+    glm::vec3 absorption_per_m{0.0f}, scattering_per_m{0.0f};
 };
 
 // A value of the root's customLayerData. Infinity is allowed (deep water), NaN is refused.

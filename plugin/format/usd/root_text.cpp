@@ -1,6 +1,7 @@
 // The root layer as text. See text.h.
 #include <array>
 #include <cmath>
+#include <glm/exponential.hpp>
 #include <initializer_list>
 #include <span>
 #include <stdexcept>
@@ -274,7 +275,7 @@ void write_microfacets(Network& network) {
 
 // MaterialX's standard_surface. It takes whitecaps, roughness and its axes from the mesh's primvars where the mesh
 // has them. Its reflection lies over its diffuse base and takes its share away, as the sea's surface does. Foam has
-// no surface over it.
+// no surface over it. What the water does to light on its way waits for who sets transmission to 1 and base to 0.
 void write_materialx_surface(Page& page, const Stage& stage, const std::string& path) {
     const Material& material = stage.material;
     const bool foam = stage.attributes.whitecap_coverage, slopes = stage.attributes.slope_variance;
@@ -294,6 +295,15 @@ void write_materialx_surface(Page& page, const Stage& stage, const std::string& 
     if (slopes) {
         inputs.push_back({"float", "specular_anisotropy", "Anisotropy", true});
         inputs.push_back({"float3", "tangent", "Tangent", true});
+    }
+    // What is left after transmission_depth, 1 m; the part of the rest that is scattered, over that depth.
+    if (const glm::vec3 extinction = material.absorption_per_m + material.scattering_per_m;
+        extinction != glm::vec3(0.0f)) {
+        inputs.push_back(
+            {"color3f", "transmission_color", color("what water lets through", glm::exp(-extinction))});
+        inputs.push_back({"float", "transmission_depth", "1"});
+        inputs.push_back(
+            {"color3f", "transmission_scatter", color("the water's scattering", material.scattering_per_m)});
     }
     network.node("Surface", "ND_standard_surface_surfaceshader", "token", inputs);
 

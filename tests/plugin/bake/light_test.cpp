@@ -522,6 +522,25 @@ TEST_F(StageLightTest, MicrofacetsHaveTheTensorsAxes) {
     }
 }
 
+// A metre of it, as the surface's words put it, takes what the coefficients do; the scattered part goes all ways alike.
+TEST_F(StageLightTest, WaterLetsThroughWhatItsCoefficientsLeave) {
+    Scene scene = small_scene();
+    for (const WaterType type : {WaterType::Ocean, WaterType::Jerlov5C}) {
+        scene.water.type = type;
+        const std::string stage = baked(scene);
+        Network network(stage, glm::vec3(0.0f), 0.0f);
+        const WaterBody water = make_water(scene);
+        EXPECT_EQ(network.surface("float", "transmission_depth").x, 1.0f);
+        const glm::vec3 scattered = network.surface("color3f", "transmission_scatter"),
+                        left = network.surface("color3f", "transmission_color");
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_GT(left[c], 0.0f);
+            EXPECT_NEAR(-std::log(left[c]) - scattered[c], water.absorption_per_m[c], 1e-5);
+            EXPECT_NEAR(0.5f * scattered[c], water.backscatter_per_m[c], 1e-6);
+        }
+    }
+}
+
 TEST_F(StageLightTest, FoamCoversTheWater) {
     const std::string stage = baked(small_scene());
     const glm::dvec3 foam = vector_in(prim_of(stage, "def Shader \"BaseColor\"").at("color3f inputs:fg"));

@@ -413,6 +413,7 @@ TEST(UsdText, RefusesWhatNoStageCanSay) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(root_text({.custom_data = {{"depth_m", nan}}}), std::invalid_argument);
     EXPECT_THROW(root_text({.material = {.roughness = nan}}), std::invalid_argument);
+    EXPECT_THROW(root_text({.material = {.absorption_per_m = glm::vec3(nan)}}), std::invalid_argument);
     EXPECT_THROW(root_text({.sun = Sun{.azimuth_deg = nan}}), std::invalid_argument);
 }
 

@@ -2,11 +2,12 @@
 // and as GLSL; needs no other file.
 
 // Film and eye respond to light by a sigmoid in its logarithm: xⁿ/(xⁿ + sⁿ) (Naka and Rushton 1966, for the
-// retina). n = 1.25 gives middle grey the contrast of a print, 1.25 · (1 − 0.18) = 1.02 in logarithms; s =
-// 0.6055 maps 0.18 to 0.18. Written so that neither end overflows or underflows.
+// retina). n = 1.6 gives middle grey the contrast of a camera's picture, 1.6 · (1 − 0.18) = 1.3 in logarithms: at that of the
+// light itself, as with 1.25, a sea in the sun looked veiled beside photographs, its whites grey. s = 0.4644 maps 0.18
+// to 0.18. Written so that neither end overflows or underflows.
 float film_curve(float x) {
-    float contrast = 1.25f;
-    float half_way = 0.6055f;
+    float contrast = 1.6f;
+    float half_way = 0.4644f;
     float least = 1e-20f;  // the power of a smaller x isn't representable
     return 1.0f / (1.0f + pow(half_way / max(x, least), contrast));
 }
@@ -43,7 +44,7 @@ vec3 colour_of_oklab(vec3 lab) {
 // The sRGB display value, 0 … 1, of a radiance. exposure: radiance × exposure = 0.18 is middle grey.
 //
 // The curve is applied to the largest component, and the others keep their ratio to it: a curve per component would turn the orange
-// of a low sun's glitter into yellow. Very bright colours go to white, as on film and in the eye, by the sixteenth power of the curve:
+// of a low sun's glitter into yellow. Very bright colours go to white, as on film and in the eye, by the 48th power of the curve:
 // a low sun's light keeps two thirds of its saturation two stops above white paper, and the sun's disc is white.
 vec3 display_colour(vec3 radiance, float exposure) {
     vec3 light = clamp(radiance * exposure, vec3(0.0f), vec3(1e30f));  // no ratios of infinities
@@ -51,7 +52,8 @@ vec3 display_colour(vec3 radiance, float exposure) {
     if (!(strongest > 0.0f)) return vec3(0.0f);
     float shown = film_curve(strongest);
     float fourth = (shown * shown) * (shown * shown);
-    float white = (fourth * fourth) * (fourth * fourth);
+    float sixteenth = (fourth * fourth) * (fourth * fourth);
+    float white = sixteenth * sixteenth * sixteenth;
     vec3 colour = light / strongest;
     // Where nothing is to be changed rounding shouldn't change anything.
     if (white > 1e-5f) colour = colour_of_oklab(mix(oklab_of(colour), vec3(1.0f, 0.0f, 0.0f), white));

@@ -1,9 +1,9 @@
 """A shot by the add-on and Cycles, as a picture: examples/blender-pictures.sh makes those of the gallery.
 
     PYTHONPATH=… blender -b --factory-startup --python-exit-code 1 --python examples/blender-pictures.py -- \
-        SHOT.toml OUT.jpg [frame=N] [size=WxH] [samples=N] [stops=X] [beside=PROGRAM]
+        SHOT.toml OUT.jpg [frame=N] [size=WxH] [samples=N] [stops=X] [beside=core]
 
-beside: to the left of it the same frame by `pelagic render`, PROGRAM, seen through the same view transform. stops: brighter by these.
+beside: to the left of it the same frame by the core, seen through the same view transform. stops: brighter by these.
 """
 
 import sys
@@ -30,7 +30,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         parts = []
         if "beside" in named:
-            parts.append(sum(core_layers(named["beside"], shot, folder, size).values()))
+            parts.append(sum(core_layers(shot, size).values()))
         sea = shot_in_blender(shot, size)
         bpy_scene = bpy.context.scene
         bpy_scene.frame_set(int(named.get("frame", bpy_scene.frame_start)))

@@ -17,5 +17,5 @@ picture() {
 
 picture glassy-swell blender-calm
 picture north-sea-storm blender-storm
-picture trade-wind blender-beside size=480x270 beside="$PELAGIC_ROOT/build/release/pelagic"
+picture trade-wind blender-beside size=480x270 beside=core
 picture pictures/spray blender-spray size=560x315

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
+#include "core/base/constants.h"
 #include "core/scene/editions.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -11,10 +13,12 @@
 namespace pelagic {
 namespace {
 
-// A camera over (0, −60) that looks along +y.
+// A camera, by default over (0, −60), that looks along +y.
 struct Framing {
     double height_m, aim_m;  // of the camera, and of what it looks at 60 m ahead
     double fov_deg;
+    double east_m = 0.0, north_m = -60.0, towards_deg = 90.0;
+    double stops = 0.0;
 };
 
 struct Day {
@@ -31,7 +35,9 @@ struct Force {
     const char* help;
 };
 
-// What the sea looks like: after the same table's descriptions, shortened.
+// What the sea looks like: after the same table's descriptions, shortened. From force 6 on the camera is low, as on a small boat in a trough,
+// where the next sea stands over the horizon: from the seas' own height they are low hills. The places are those of the default seed, found by a
+// search: the water stays below the camera for ten seconds, and a crest is ahead.
 // clang-format off
 constexpr std::array<Force, 13> kForces{{
     {"Calm", 0.0, 100.0, 1.0, {5.0, 75.0, 2.4}, {2.2, 2.6, 45.0}, "like a mirror"},
@@ -40,13 +46,13 @@ constexpr std::array<Force, 13> kForces{{
     {"Gentle breeze", 4.4, 300.0, 1.0, {16.0, 90.0, 2.0}, {3.0, 1.0, 50.0}, "large wavelets, the first scattered whitecaps"},
     {"Moderate breeze", 6.7, 70.0, 1.0, {52.0, 150.0, 2.0}, {4.0, 0.0, 50.0}, "small waves that grow longer, fairly frequent whitecaps; 1 m"},
     {"Fresh breeze", 9.3, 150.0, 1.0, {38.0, 20.0, 2.0}, {4.5, 1.0, 46.0}, "moderate, long waves, many whitecaps; 2 m"},
-    {"Strong breeze", 12.3, 180.0, 1.2, {24.0, 118.0, 2.2}, {5.0, 2.4, 42.0}, "large waves, white crests everywhere; 3 m"},
-    {"Near gale", 15.5, 190.0, 1.4, {46.0, 250.0, 2.2}, {7.0, 3.0, 40.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
-    {"Gale", 18.9, 240.0, 1.7, {14.0, 62.0, 2.6}, {6.0, 4.5, 38.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
-    {"Strong gale", 22.6, 270.0, 2.0, {30.0, 140.0, 3.0}, {9.0, 5.5, 36.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
-    {"Storm", 26.4, 320.0, 3.2, {9.0, 195.0, 3.0}, {9.0, 7.5, 34.0}, "very high waves with overhanging crests, the sea looks white; 9 m"},
-    {"Violent storm", 30.5, 385.0, 4.5, {26.0, 215.0, 3.0}, {11.0, 8.0, 34.0}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
-    {"Hurricane", 35.0, 425.0, 7.5, {40.0, 60.0, 3.5}, {13.0, 8.0, 36.0}, "the air is full of foam, the sea white; 14 m"},
+    {"Strong breeze", 12.3, 180.0, 1.2, {34.0, 90.0, 2.0}, {1.4, 2.0, 34.0, -151.0, 60.0, 210.0}, "large waves, white crests everywhere; 3 m"},
+    {"Near gale", 15.5, 190.0, 1.4, {40.0, 250.0, 2.2}, {1.6, 2.0, 34.0, 262.0, -335.0, 130.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
+    {"Gale", 18.9, 240.0, 1.7, {22.0, 120.0, 2.4}, {1.6, 2.2, 30.0, -288.0, 109.0, 230.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
+    {"Strong gale", 22.6, 270.0, 2.0, {30.0, 340.0, 2.6}, {1.5, 2.2, 30.0, -374.0, 152.0, 230.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
+    {"Storm", 26.4, 320.0, 3.2, {10.0, 70.0, 3.0}, {1.6, 2.2, 30.0, -445.0, -225.0, 130.0}, "very high waves with overhanging crests, the sea looks white; 9 m"},
+    {"Violent storm", 30.5, 385.0, 4.5, {26.0, 275.0, 3.0}, {2.3, 2.9, 30.0, -495.0, -284.0, 150.0}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
+    {"Hurricane", 35.0, 425.0, 7.5, {24.0, 235.0, 3.5}, {2.1, 3.0, 32.0, -329.0, -451.0, 90.0}, "the air is full of foam, the sea white; 14 m"},
 }};
 // clang-format on
 
@@ -56,11 +62,60 @@ void add(Preset& preset, const char* path, KeyValue value) {
     preset.values.push_back({path, std::move(value), kLooks});
 }
 
+// Their light and cameras until edition 3: cameras as high as the seas.
+struct Before {
+    std::string_view name;
+    Day day;
+    Framing framing;
+};
+// clang-format off
+constexpr std::array kBefore = std::to_array<Before>({
+    {"beaufort-6", {24.0, 118.0, 2.2}, {5.0, 2.4, 42.0}},
+    {"beaufort-7", {46.0, 250.0, 2.2}, {7.0, 3.0, 40.0}},
+    {"beaufort-8", {14.0, 62.0, 2.6}, {6.0, 4.5, 38.0}},
+    {"beaufort-9", {30.0, 140.0, 3.0}, {9.0, 5.5, 36.0}},
+    {"beaufort-10", {9.0, 195.0, 3.0}, {9.0, 7.5, 34.0}},
+    {"beaufort-11", {26.0, 215.0, 3.0}, {11.0, 8.0, 34.0}},
+    {"beaufort-12", {40.0, 60.0, 3.5}, {13.0, 8.0, 36.0}},
+    {"lagoon", {55.0, 60.0, 2.0}, {3.0, 0.6, 50.0}},
+    {"north-sea-storm", {24.0, 35.0, 2.0}, {10.0, 7.0, 36.0}},
+    {"southern-ocean", {16.0, 60.0, 2.0}, {7.0, 6.0, 34.0}},
+});
+// clang-format on
+
+using Values = std::vector<std::pair<const char*, KeyValue>>;
+Values values_of(const Day& day) {
+    return {{"light.sun_elevation_deg", day.sun_elevation_deg},
+            {"light.sun_azimuth_deg", day.sun_azimuth_deg},
+            {"light.turbidity", day.turbidity}};
+}
+Values values_of(const Framing& framing) {
+    constexpr double kAhead_m = 60.0;
+    const double towards = framing.towards_deg * kPi / 180.0;
+    const auto whole_cm = [](double m) { return std::round(100.0 * m) / 100.0; };
+    return {{"camera.position_m", std::vector<double>{framing.east_m, framing.north_m, framing.height_m}},
+            {"camera.look_at_m",
+             std::vector<double>{whole_cm(framing.east_m + kAhead_m * std::cos(towards)),
+                                 whole_cm(framing.north_m + kAhead_m * std::sin(towards)), framing.aim_m}},
+            {"camera.fov_deg", framing.fov_deg}};
+}
+
 void add_framing(Preset& preset, const Framing& framing) {
-    add(preset, "camera.position_m", std::vector<double>{0.0, -60.0, framing.height_m});
-    add(preset, "camera.look_at_m", std::vector<double>{0.0, 0.0, framing.aim_m});
-    add(preset, "camera.fov_deg", framing.fov_deg);
+    for (const auto& [path, value] : values_of(framing)) add(preset, path, value);
     add(preset, "camera.glare", 0.03);  // a clean lens: a sun in the picture glows
+    preset.values.push_back({"camera.exposure_ev", framing.stops, 3});
+}
+
+// What the preset gives now it gives from edition 3 on, before it that.
+void add_before(Preset& preset, const Before& before) {
+    Values values = values_of(before.day);
+    for (auto& value : values_of(before.framing)) values.push_back(std::move(value));
+    for (const auto& [path, value] : values) {
+        const auto now = std::ranges::find(preset.values, path, &PresetValue::path);
+        if (now->value == value) continue;
+        preset.values.push_back({path, now->value, 3});
+        preset.values[static_cast<std::size_t>(now - preset.values.begin())].value = value;
+    }
 }
 
 Preset beaufort(int number) {
@@ -74,9 +129,7 @@ Preset beaufort(int number) {
                              {"sea.significant_height_m", KeyValue()},
                              {"sea.spectrum", std::string(word_of(SpectrumKind::Jonswap))}}};
     add(preset, "effects.whitecap_amount", force.foam);
-    add(preset, "light.sun_elevation_deg", force.day.sun_elevation_deg);
-    add(preset, "light.sun_azimuth_deg", force.day.sun_azimuth_deg);
-    add(preset, "light.turbidity", force.day.turbidity);
+    for (const auto& [path, value] : values_of(force.day)) add(preset, path, value);
     add_framing(preset, force.framing);
     return preset;
 }
@@ -128,10 +181,10 @@ std::vector<Preset> named_seas() {
     lagoon.sea.wind_speed_mps = 2.5;
     lagoon.sea.fetch_m = 1e3;
     lagoon.sea.depth_m = 2.5;
-    lagoon.light = {.sun_elevation_deg = 55.0, .sun_azimuth_deg = 60.0};
+    lagoon.light = {.sun_elevation_deg = 36.0, .sun_azimuth_deg = 76.0};
     lagoon.water = {.type = WaterType::JerlovIB, .floor_colour = {0.55, 0.50, 0.40}};
     out.push_back(named("lagoon", "Lagoon", "clear, shallow water over coral sand, a light wind", lagoon,
-                        {3.0, 0.6, 50.0}));
+                        {.height_m = 3.0, .aim_m = -11.0, .fov_deg = 50.0, .stops = 0.4}));
 
     Scene evening;
     evening.sea.wind_speed_mps = 5.0;
@@ -148,18 +201,18 @@ std::vector<Preset> named_seas() {
     gale.sea.spectrum = SpectrumKind::Tma;
     gale.sea.spreading = SpreadingKind::DonelanBanner;
     gale.waves.choppiness = 1.15;
-    gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 35.0};
+    gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 120.0};
     gale.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 1.0};
     out.push_back(named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam",
-                        gale, {10.0, 7.0, 36.0}));
+                        gale, {2.0, 2.6, 32.0, -187.0, 232.0, 210.0}));
 
     Scene southern;
     southern.sea.wind_speed_mps = 17.0;
     southern.sea.fetch_m = 900e3;
     southern.sea.swell = {{5.0, 15.0, 20.0}, {2.0, 12.0, 320.0}};
-    southern.light = {.sun_elevation_deg = 16.0, .sun_azimuth_deg = 60.0};
+    southern.light = {.sun_elevation_deg = 14.0, .sun_azimuth_deg = 150.0};
     out.push_back(named("southern-ocean", "Southern Ocean", "a gale over a swell as high as a house",
-                        southern, {7.0, 6.0, 34.0}));
+                        southern, {1.5, 2.2, 30.0, -334.0, 389.0, 230.0}));
     return out;
 }
 
@@ -175,6 +228,8 @@ std::span<const Preset> presets() {
         for (int force = 0; force < static_cast<int>(kForces.size()); ++force) out.push_back(beaufort(force));
         std::vector<Preset> seas = named_seas();
         std::move(seas.begin(), seas.end(), std::back_inserter(out));
+        for (const Before& before : kBefore)
+            add_before(*std::ranges::find(out, before.name, &Preset::name), before);
         return out;
     }();
     return all;

@@ -36,12 +36,13 @@ struct Preset {
     std::string label;  // for a menu: "8 Gale"
     std::string help;   // what it looks like
     PresetGroup group;
-    std::vector<PresetValue> values;  // at most one for each key
+    std::vector<PresetValue> values;  // of one key the last one that the edition has
 };
 
 // Beaufort 0 … 12, then the named seas. Each is a look: it can be told from the others at a glance. Of the sea Beaufort's set the wind
 // sea and how much foam there is, and leave swell, direction and depth as they are; the named seas set the whole of [sea], [waves],
-// [light] and [water]. Before edition 2 there were no cameras, and Beaufort's were the wind sea alone.
+// [light] and [water]. Before edition 2 there were no cameras, and Beaufort's were the wind sea alone;
+// before edition 3 storms were seen from as high as their seas.
 //
 // The winds are the middle of each force, the wave heights in the open sea those of the World Meteorological
 // Organization's table (Manual on Codes, WMO-No. 306, 1100) from force 4 up. Lighter winds alone, without an

@@ -31,8 +31,7 @@ struct MapSlot final : OutputSlot {
     // Of whitecaps: what the moments of J are compared with, one value, or by mip level and texel where gusts make it differ.
     float whitecap_threshold = 0.0f;
     std::vector<std::vector<float>> whitecap_thresholds;
-    std::vector<glm::vec3> floor_light;  // thrice the same, as pictures want it
-    std::string file;                    // encoded
+    std::string file;  // encoded
 };
 
 class MapPart final : public OutputPart {
@@ -83,7 +82,7 @@ class MapPart final : public OutputPart {
                     return has_foam_history() ? Encoded{22 * 4 / 3, 12 * 4 / 3 + 36 * 4 / 3}
                                               : Encoded{16 * 4 / 3, 12 * 4 / 3 + 12 * 4 / 3};
                 case MapKind::Floor:
-                    return {8 * 4 / 3, 12 / 3, 12};
+                    return {6 * 4 / 3, 12 * 4 / 3, 4};
             }
             throw std::logic_error("a map of no kind");
         }();
@@ -185,16 +184,13 @@ class MapPart final : public OutputPart {
     void light_floor(const Frame<T>& frame, MapSlot& slot, const BuildWatch& watch) {
         if (!below_) below_ = floor_below();
         const double texel_m = size_m_ / n_;
-        std::vector<float> light(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 1.0f);
+        slot.floor_light.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 1.0f);
+        if (!(below_->gain > 0.0)) return;
         // A texel's middle is where the map says that it lies.
-        if (below_->gain > 0.0)
-            find_caustics({glm::dvec2(-0.5 * (size_m_ + texel_m)), texel_m, n_, light}, below_->floor, frame,
-                          output_.query, below_->sun, below_->on, watch.cancel);
-        slot.floor_light.clear();
-        slot.floor_light.reserve(light.size());
-        for (const float value : light)
-            slot.floor_light.emplace_back(
-                std::max(1.0f + static_cast<float>(below_->gain) * (value - 1.0f), 0.0f));
+        find_caustics({glm::dvec2(-0.5 * (size_m_ + texel_m)), texel_m, n_, slot.floor_light}, below_->floor,
+                      frame, output_.query, below_->sun, below_->on, watch.cancel);
+        const auto gain = static_cast<float>(below_->gain);
+        for (float& light : slot.floor_light) light = std::max(1.0f + gain * (light - 1.0f), 0.0f);
     }
 
     bool has_gusts() const { return plan_.gusts && !output_.cascade && kind_ == MapKind::Whitecaps; }
@@ -324,7 +320,7 @@ class MapPart final : public OutputPart {
             case MapKind::Whitecaps:
                 return encoded_whitecaps(slot, frame);
             case MapKind::Floor: {
-                const std::vector<glm::vec3>& texels = slot.floor_light;
+                const std::vector<glm::vec3> texels(slot.floor_light.begin(), slot.floor_light.end());
                 const exr::Header header =
                     header_of(made_of, frame,
                               {"the sun's light on the floor over that below a level sea", "1", texels});

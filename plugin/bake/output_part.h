@@ -27,6 +27,7 @@ namespace pelagic {
 struct OutputSlot {
     virtual ~OutputSlot() = default;
     Values values;
+    std::vector<float> floor_light;  // of a floor's map: what values have no product for
     // Of the frame's record; absent where the output says nothing about it.
     std::optional<double> coverage, significant_height_m;
     std::optional<SprayRecord> spray;

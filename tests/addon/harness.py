@@ -4,6 +4,7 @@
     with checking("what"):      says that it was checked; a failed assert or an exception ends Blender with an error
 """
 
+import ctypes
 import os
 import sys
 import threading
@@ -126,6 +127,30 @@ def refused(call, words):
         assert words in str(error), f"{error!r} doesn't say {words!r}"
         return True
     return False
+
+
+class _XImage(ctypes.Structure):
+    """The beginning of Xlib's XImage."""
+
+    _fields_ = [(name, ctypes.c_int) for name in ("width", "height", "xoffset", "format")] + [("data", ctypes.c_void_p)] + [
+        (name, ctypes.c_int) for name in ("byte_order", "unit", "bit_order", "pad", "depth", "bytes_per_line", "bits_per_pixel")]
+
+
+def window_pixels(window):
+    """What the screen shows where Blender's window is: float32 (height, width, 3), rows from the bottom, display values. Read from the X server:
+    under Xvfb Blender's own screenshots are black from 4.x on."""
+    x11 = ctypes.CDLL("libX11.so.6")
+    for function in (x11.XOpenDisplay, x11.XDefaultRootWindow, x11.XGetImage):
+        function.restype = ctypes.c_void_p
+    display = ctypes.c_void_p(x11.XOpenDisplay(None))
+    screen_height = x11.XDisplayHeight(display, 0)
+    wide, high = window.width, window.height
+    root = ctypes.c_void_p(x11.XDefaultRootWindow(display))
+    image = x11.XGetImage(display, root, window.x, screen_height - window.y - high, wide, high, ctypes.c_ulong(2**32 - 1), 2)
+    made = ctypes.cast(image, ctypes.POINTER(_XImage)).contents
+    pixels = np.frombuffer(ctypes.string_at(made.data, made.bytes_per_line * high), np.uint8).reshape(high, -1, 4)[:, :wide]
+    x11.XCloseDisplay(display)
+    return pixels[::-1, :, 2::-1].astype(np.float32) / 255.0
 
 
 def _may_write():

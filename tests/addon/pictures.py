@@ -1,8 +1,6 @@
 """A shot as a picture of the core and of the add-on, for the tests and benches that compare them."""
 
 import math
-import subprocess
-import tempfile
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -16,34 +14,11 @@ from pelagic_ocean import ocean
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
-def core_layers(program, shot, folder, size):
-    """What `pelagic render` makes of the shot's first frame: float32 (height, width, 3) from the bottom, by layer."""
-    first = pelagic.Scene.from_file(str(shot)).shot.frames[0]
-    subprocess.run([program, "render", str(shot), "--out", str(folder), "--frames", str(first), "--size",
-                    f"{size[0]}x{size[1]}", "--samples", "2"], check=True, stdout=subprocess.DEVNULL)
-    return _split(Path(folder) / f"{Path(shot).stem}.{first:04d}.exr", ("sun", "sky", "sea", "foam", "air"))
-
-
-def _split(file, layers):
-    """Blender gives no pixels of a file with layers: its compositor writes each into a file."""
-    bpy_scene = bpy.data.scenes.new("Split")
-    image = bpy.data.images.load(str(file))
-    with tempfile.TemporaryDirectory() as folder:
-        bpy_scene.use_nodes = True
-        tree = bpy_scene.node_tree
-        tree.nodes.clear()
-        source, sink = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeOutputFile")
-        source.image, sink.base_path = image, folder
-        sink.format.file_format, sink.format.color_depth = "OPEN_EXR", "32"
-        sink.file_slots.clear()
-        for layer in layers:
-            sink.file_slots.new(layer)
-            tree.links.new(source.outputs[layer], sink.inputs[layer])
-        bpy.ops.render.render(scene=bpy_scene.name)
-        pixels = {layer: read_exr(next(Path(folder).glob(f"{layer}*")))[..., :3] for layer in layers}
-    bpy.data.images.remove(image)
-    bpy.data.scenes.remove(bpy_scene)
-    return pixels
+def core_layers(shot, size):
+    """The core's picture of the shot's first frame: float32 (height, width, 3) from the bottom, by layer."""
+    scene = pelagic.Scene.from_file(str(shot))
+    layers = pelagic.render(scene, scene.shot.frames[0], size, 2)
+    return {layer: layers[layer][::-1] for layer in ("sun", "sky", "sea", "foam", "air")}
 
 
 def read_exr(file):

@@ -78,15 +78,14 @@ def pixels_of(file):
     return numbers.reshape(height, width, channels)[:, :, :3]
 
 
-def picture(name):
+def picture():
     settle()
+    redraw()
     window, area = view3d()
-    file = FOLDER / f"{name}.png"
     with in_view():
-        bpy.ops.screen.screenshot(filepath=str(file))
         region = bpy.context.region
         x, y, width, height = region.x, region.y, region.width, region.height
-    return pixels_of(file)[y:y + height, x:x + width]
+    return window_pixels(window)[y:y + height, x:x + width]
 
 
 def look(pitch_deg, height_m, distance_m=60.0):
@@ -154,7 +153,7 @@ def steps():
     look(-4.0, 12.0)
 
     with checking("the mesh is hidden, and the picture is the program's own"):
-        shown = picture("mesh")
+        shown = picture()
         options.show_sky = True
         with in_view():
             assert bpy.ops.pelagic.viewport_preview() == {"FINISHED"}
@@ -162,7 +161,7 @@ def steps():
         here, camera = seen_from_here(obj), ocean.scene_of(obj, bpy.context.scene)
         sky = pelagic.Sky(here)
         bpy.context.scene.view_settings.exposure += math.log2(sky.exposure(here) / sky.exposure(camera))
-        drawn = picture("sea and sky")
+        drawn = picture()
         assert viewport.is_on() and not viewport._problem, viewport._problem
         assert obj.hide_get() and not obj.hide_viewport and not obj.hide_render
         assert change_of(shown, drawn).mean() > 0.1
@@ -178,7 +177,7 @@ def steps():
     with checking("foam that lives is the program's, too, and how it looks needs no other sea and no other sky"):
         wind_mps, obj.pelagic.sea.wind_speed_mps = obj.pelagic.sea.wind_speed_mps, 18.0
         obj.pelagic.effects.foam_decay_s = 3.0
-        living, here = picture("living foam"), seen_from_here(obj)
+        living, here = picture(), seen_from_here(obj)
         theirs = programs_picture(here)
         here.effects.foam_decay_s = 0.0
         without = programs_picture(here)
@@ -196,11 +195,11 @@ def steps():
     # What follows is about the window, for which a sea will do that takes half the time to draw in software.
     obj.pelagic.effects.foam_decay_s = 0.0
     obj.pelagic.waves.tiling = "periodic"
-    drawn = picture("draft")
+    drawn = picture()
 
     with checking("a turned ocean is another sea under the same sky"):
         obj.rotation_euler.z = 2.0
-        turned = picture("turned")
+        turned = picture()
         horizon = place_of((0, 1e5, 0))[0]
         assert change_of(turned, drawn)[horizon + 3:].max() <= 3 / 255
         assert change_of(turned, drawn)[:horizon].mean() > 0.01
@@ -208,20 +207,20 @@ def steps():
 
     with checking("without the sky there is the view's own background over the horizon, and the sea is the same"):
         options.show_sky = False
-        sea = picture("sea")
+        sea = picture()
         assert change_of(sea, drawn)[:horizon - 3].max() <= 2 / 255
         above = sea[horizon + 3:]
         assert above.std(axis=(0, 1)).max() < 0.02 and change_of(above, drawn[horizon + 3:]).mean() > 0.1
 
     with checking("a near clip end doesn't cut the sea off"):
         clip_end, space.clip_end = space.clip_end, 100.0
-        assert change_of(picture("clip end"), sea)[:horizon - 3].mean() < 0.005
+        assert change_of(picture(), sea)[:horizon - 3].mean() < 0.005
         space.clip_end = clip_end
 
     with checking("a cube floats in it: its top is seen, its bottom is under water"):
         bpy.ops.mesh.primitive_cube_add(size=CUBE_M)
         cube = bpy.context.object
-        with_cube = picture("cube")
+        with_cube = picture()
         changed = change_of(with_cube, sea) > 0.05
         top, left = place_of((-CUBE_M / 2, CUBE_M / 2, CUBE_M / 2))
         front, right = place_of((CUBE_M / 2, -CUBE_M / 2, CUBE_M / 2))
@@ -235,30 +234,30 @@ def steps():
         print(f"    the cube is seen from row {water} to {rows.max()}; its bottom would be at {bottom}")
         assert place_of((0, -CUBE_M / 2, -2.5))[0] < water < place_of((0, -CUBE_M / 2, 2.5))[0]
         space.shading.type = "MATERIAL"
-        in_material = change_of(picture("material"), sea) > 0.05
+        in_material = change_of(picture(), sea) > 0.05
         assert in_material[front - 1, left + 3:right - 3].all() and not in_material[:bottom + 3].any()
         space.shading.type = "SOLID"
 
     with checking("it moves with the timeline, without the mesh"):
         before = numbers(obj.data)
         bpy.context.scene.frame_set(20)
-        assert change_of(picture("frame 20"), with_cube)[:horizon].mean() > 0.01
+        assert change_of(picture(), with_cube)[:horizon].mean() > 0.01
         assert np.array_equal(numbers(obj.data), before)
         bpy.context.scene.frame_set(1)
-        assert change_of(picture("frame 1"), with_cube).max() <= 2 / 255
+        assert change_of(picture(), with_cube).max() <= 2 / 255
 
     with checking("it follows settings: another sun without another sea, another wind"):
         sea_before = viewport._preview.drawing.sea
         obj.pelagic.light.sun_elevation_deg = 60.0
-        assert change_of(picture("sun"), with_cube)[:horizon].mean() > 0.02
+        assert change_of(picture(), with_cube)[:horizon].mean() > 0.02
         assert viewport._preview.drawing.sea is sea_before
         settings = bpy.context.scene.view_settings
-        darker = picture("sun again")[:horizon].mean()
+        darker = picture()[:horizon].mean()
         settings.exposure += 1.0
-        assert picture("a stop brighter")[:horizon].mean() > 1.2 * darker
+        assert picture()[:horizon].mean() > 1.2 * darker
         settings.exposure -= 1.0
         obj.pelagic.sea.wind_speed_mps = 4.0
-        picture("wind")
+        picture()
         assert viewport._preview.drawing.sea is not sea_before
 
     with checking("orthographic views and views through the camera are drawn"):
@@ -266,13 +265,13 @@ def steps():
         region_3d.view_perspective, region_3d.view_distance = "ORTHO", 60.0
         region_3d.view_rotation = (1, 0, 0, 0)
         region_3d.view_location = (0, 0, 0)
-        top_view = picture("orthographic")
+        top_view = picture()
         assert top_view[:, :, 2].mean() > top_view[:, :, 0].mean() + 0.02, "no blue sea from above"
         camera = bpy.context.scene.camera
         camera.location, camera.rotation_euler = (0, -60, 12), (np.radians(86), 0, 0)
         camera.data.shift_y, camera.data.shift_x = -0.1, 0.2
         region_3d.view_perspective = "CAMERA"
-        through = picture("camera")
+        through = picture()
         scene = bpy.context.scene
         horizon_in_frame = world_to_camera_view(scene, camera, Vector((0, 1e6, 0))).y
         assert 0.3 < horizon_in_frame < 0.95

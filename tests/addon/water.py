@@ -1,6 +1,6 @@
 """The water's light in Blender: its panel, bubbles and crests at vertices, and an artist's lagoon, against the core.
 
-    water.py -- PELAGIC_PROGRAM
+    water.py
 """
 
 import math
@@ -19,7 +19,7 @@ from pelagic_ocean import depths, ocean, play, query, surfaces, upwelling
 from pelagic_ocean.properties import FIELDS
 from pictures import core_layers, cycles_exr, shot_in_blender
 
-PROGRAM, FOLDER = sys.argv[-1], Path(tempfile.mkdtemp())
+FOLDER = Path(tempfile.mkdtemp())
 
 
 class Layout:
@@ -101,7 +101,7 @@ def backlit(crest_light):
     scene.shot.name, scene.shot.frames = "backlit", (1, 1)
     shot = FOLDER / "backlit.toml"
     scene.save(shot)
-    core = core_layers(PROGRAM, shot, FOLDER, (64, 36))["sea"]
+    core = core_layers(shot, (64, 36))["sea"]
     obj = shot_in_blender(shot, (64, 36))
     tree = obj.data.materials[0].node_tree
     for mirror in [node for node in tree.nodes if node.type in ("BSDF_GLOSSY", "BSDF_ANISOTROPIC")]:  # whose noise would hide the water
@@ -153,7 +153,7 @@ with checking("a lagoon in three steps: added, its preset, rendered; as bright a
     scene.shot.name, scene.shot.frames = "lagoon", (1, 1)
     scene.camera.resolution = (48, 27)
     scene.save(FOLDER / "lagoon.toml")
-    core = sum(core_layers(PROGRAM, FOLDER / "lagoon.toml", FOLDER, (48, 27)).values()).mean((0, 1))
+    core = sum(core_layers(FOLDER / "lagoon.toml", (48, 27)).values()).mean((0, 1))
     ratio = cycles_exr(FOLDER / "lagoon.exr", (48, 27), 64)[..., :3].mean((0, 1)) / core
     print("  ", np.round(ratio, 3))
     assert (np.abs(ratio - 1.0) < 0.15).all(), ratio
@@ -169,7 +169,7 @@ def from_below(z_m, pitch_deg, fov_deg):
     scene = ocean.scene_of(obj, bpy_scene)
     scene.shot.name, scene.shot.frames = "below", (1, 1)
     scene.save(FOLDER / "below.toml")
-    core = sum(core_layers(PROGRAM, FOLDER / "below.toml", FOLDER, size).values())
+    core = sum(core_layers(FOLDER / "below.toml", size).values())
     x, y = np.meshgrid(*((np.arange(count) + 0.5 - 0.5 * count) * 2.0 * math.tan(math.radians(0.5 * fov_deg)) / size[0] for count in size))
     towards = np.stack([x, y, -np.ones_like(x)], axis=-1) @ np.array(camera.matrix_world.to_3x3()).T
     return cycles_exr(FOLDER / "below.exr", size, 32)[..., :3], core, towards / np.linalg.norm(towards, axis=-1, keepdims=True)

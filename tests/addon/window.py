@@ -1,6 +1,6 @@
 """In a window: an ocean is added, its settings change while it plays, it is undone, rendered, and seen.
 
-    xvfb-run blender --factory-startup --python window.py [-- PICTURE.png]
+    xvfb-run blender --factory-startup --python window.py
 """
 
 import sys
@@ -14,7 +14,7 @@ from harness import *  # noqa: F403
 enable()
 from pelagic_ocean import drops, play, sea, upwelling
 
-picture = sys.argv[-1] if sys.argv[-1].endswith(".png") else str(Path(tempfile.mkdtemp()) / "window.png")
+BESIDE = Path(tempfile.mkdtemp()) / "window"
 
 
 def height(obj):
@@ -24,13 +24,6 @@ def height(obj):
 def the_ocean():
     """Undo makes objects anew."""
     return bpy.data.objects["Ocean"]
-
-
-def pixels(path):
-    image = bpy.data.images.load(path)
-    values = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(values)
-    return values.reshape(image.size[1], image.size[0], 4)[..., :3]
 
 
 def steps():
@@ -199,7 +192,7 @@ def steps():
         render.engine, render.resolution_percentage = "CYCLES", 5
         scene.cycles.samples, scene.cycles.use_denoising = 1, False
         scene.frame_start, scene.frame_end = 3, 5
-        render.filepath, render.use_motion_blur = str(Path(picture).with_suffix("")) + ".frame", True
+        render.filepath, render.use_motion_blur = f"{BESIDE}.frame", True
         bpy.app.handlers.render_post.append(lambda *_: counts.append(len(the_ocean().data.vertices)))
         bpy.app.handlers.render_complete.append(lambda *_: ended.append(True))
         with bpy.context.temp_override(**here):
@@ -208,21 +201,19 @@ def steps():
         yield lambda: len(the_ocean().data.vertices) == 17**2
         assert counts == [65**2] * 3, counts
 
-    with checking("the sea is seen: " + picture):
+    with checking("the sea is seen"):
         obj = the_ocean()
         obj.pelagic.viewport_percentage = 100
         obj.pelagic.horizon = True
         until = time.monotonic() + 5
         yield lambda: time.monotonic() > until
-        with bpy.context.temp_override(window=window):
-            bpy.ops.screen.screenshot(filepath=picture)
-        shown = pixels(picture)
+        shown = window_pixels(window)
         high, wide = shown.shape[:2]
         lower = shown[high // 3:high // 2, wide // 4:wide // 2]
         assert lower.std() > 0.01, lower.std()
 
     with checking("a file that can't be written leaves the mesh; saved and opened in a window, the sea is there"):
-        held, mesh, file = numbers(obj.data), obj.data, str(Path(picture).with_suffix(".blend"))
+        held, mesh, file = numbers(obj.data), obj.data, f"{BESIDE}.blend"
         assert refused(lambda: bpy.ops.wm.save_as_mainfile(filepath=str(Path(file) / "no.blend")), "no.blend")
         yield lambda: obj.data == mesh
         bpy.ops.wm.save_as_mainfile(filepath=file)

@@ -297,13 +297,13 @@ void write_materialx_surface(Page& page, const Stage& stage, const std::string& 
         inputs.push_back({"float3", "tangent", "Tangent", true});
     }
     // What is left after transmission_depth, 1 m; the part of the rest that is scattered, over that depth.
-    if (const glm::vec3 extinction = material.absorption_per_m + material.scattering_per_m;
-        extinction != glm::vec3(0.0f)) {
-        inputs.push_back(
-            {"color3f", "transmission_color", color("what water lets through", glm::exp(-extinction))});
+    const glm::vec3 extinction = material.absorption_per_m + material.scattering_per_m;
+    const std::string left = color("what water lets through", glm::exp(-extinction));
+    const std::string scattering = color("the water's scattering", material.scattering_per_m);
+    if (extinction != glm::vec3(0.0f)) {
+        inputs.push_back({"color3f", "transmission_color", left});
         inputs.push_back({"float", "transmission_depth", "1"});
-        inputs.push_back(
-            {"color3f", "transmission_scatter", color("the water's scattering", material.scattering_per_m)});
+        inputs.push_back({"color3f", "transmission_scatter", scattering});
     }
     network.node("Surface", "ND_standard_surface_surfaceshader", "token", inputs);
 

@@ -328,6 +328,7 @@ void add_arrays(py::dict& arrays, OutputSlot& slot) {
         const auto n = static_cast<py::ssize_t>(std::llround(std::sqrt(static_cast<double>(values.size()))));
         arrays[name] = array_of<float>(std::move(values), {n, n});
     };
+    add("floor_light", slot.floor_light);
     for (const ProductRow& row : kProductTable)
         if (row.components == 1)
             add(row.identifier, slot.values.numbers(NumberProduct::checked(row.product)));
@@ -399,7 +400,7 @@ void add_bake(py::module_& module) {
             py::arg("cancel") = py::none(),
             "(patch, tiles) at a time [s]: the patch's arrays, and a list of each cascade's, the largest first. "
             "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance (of tiles slope_variance_at_rest: what carries it is the whole "
-            "sea), jacobian, and (n, n): coverage; where foam lives the patch's is all foam, with what of it breaks now and its "
+            "sea), jacobian, and (n, n): coverage, floor_light; where foam lives the patch's is all foam, with what of it breaks now and its "
             "age [s] under evaluate()'s names, and a tile's is what breaks now. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
             "thread may call; calls wait for each other. progress, cancel: as Frame.evaluate()'s.");
 }

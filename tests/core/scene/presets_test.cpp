@@ -71,6 +71,23 @@ TEST(Presets, TheBeaufortScaleHasTheWorldsWindsAndWaves) {
     }
 }
 
+// What an edition gave it gives for good: from edition 3 on storms are seen from a trough.
+TEST(Presets, StayAsTheirEditionsHadThem) {
+    const auto framed = [](int edition) {
+        Scene scene;
+        scene.shot.edition = edition;
+        apply(*find_preset("beaufort-10"), scene);
+        return scene;
+    };
+    const Scene bare, second = framed(2), third = framed(3);
+    EXPECT_EQ(framed(1).camera.position_m, bare.camera.position_m);
+    EXPECT_EQ(second.camera.position_m, glm::dvec3(0.0, -60.0, 9.0));
+    EXPECT_EQ(second.camera.look_at_m, glm::dvec3(0.0, 0.0, 7.5));
+    EXPECT_EQ(second.light.sun_azimuth_deg, 195.0);
+    EXPECT_LT(third.camera.position_m.z, 3.0);
+    EXPECT_EQ(third.light.sun_azimuth_deg, 70.0);
+}
+
 TEST(Presets, ABuoysHourGivesWayToAPreset) {
     Scene scene;
     scene.sea.spectrum = SpectrumKind::File;

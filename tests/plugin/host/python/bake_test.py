@@ -229,6 +229,14 @@ class Maps(unittest.TestCase):
             np.testing.assert_allclose(patch[name].reshape(array.shape), array, atol=2e-5, err_msg=name)
         self.assertGreater(patch["displacement"][..., 2].std(), 0.1)
 
+    def test_the_floors_light(self):
+        scene = shot()
+        scene.sea.depth_m = 3.0
+        light = pelagic.Maps(scene, ("floor",)).at(1.5)[0]["floor_light"]
+        self.assertEqual(light.shape, (32, 32))
+        self.assertGreater(light.std(), 0.05)
+        self.assertAlmostEqual(light.mean(), 1.0, delta=0.05)
+
     def test_tiles_are_the_cascades_own(self):
         patch, tiles = pelagic.Maps(shot(), ["displacement"], tiles=True).at(0.5)
         self.assertEqual([tile["displacement"].shape for tile in tiles], [(96, 96, 3), (32, 32, 3)])

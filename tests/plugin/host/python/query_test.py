@@ -155,5 +155,25 @@ class Drops(unittest.TestCase):
                 wrong()
 
 
+class StormCameras(unittest.TestCase):
+    """Those of presets from force 6 on: in a trough that the water leaves for no ten seconds, with a sea before it that stands over the horizon."""
+
+    def test_stand_in_a_trough(self):
+        for name in [f"beaufort-{force}" for force in range(6, 13)] + ["north-sea-storm", "southern-ocean"]:
+            with self.subTest(name):
+                scene = pelagic.Scene()
+                scene.apply_preset(name)
+                frame = pelagic.Frame(pelagic.Sea(scene))
+                eye, aim = np.array(scene.camera.position_m), np.array(scene.camera.look_at_m)
+                ahead = (aim - eye)[:2] / np.hypot(*(aim - eye)[:2])
+                for t in np.arange(0.0, 10.01, 0.5):
+                    frame.set(t)
+                    self.assertLess(frame.heights([eye[:2]])["height_m"][0], eye[2] - 0.3, t)
+                frame.set(0.5)
+                away_m = np.arange(10.0, 200.0, 2.0)
+                crest_m = frame.heights(eye[:2] + away_m[:, None] * ahead)["height_m"] - eye[2]
+                self.assertGreater(np.degrees(np.arctan2(crest_m, away_m)).max(), 1.3)
+
+
 if __name__ == "__main__":
     unittest.main()

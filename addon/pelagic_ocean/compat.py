@@ -93,6 +93,12 @@ def eevee_mirrors_in_facets():
     return bpy.app.version < (4, 2)
 
 
+def preview_shadings():
+    """The kinds of a view's shading over which add-ons can draw behind objects. The EEVEE since 4.2 leaves them no depths: all 0 without
+    overlays, all 1 with them (measured in 4.3.2)."""
+    return {"SOLID", "MATERIAL"} if bpy.app.version < (4, 2) else {"SOLID"}
+
+
 def dont_light_with(material):
     """Cycles doesn't look for a mesh of this material as for a lamp, though it glows a little."""
     if hasattr(material.cycles, "emission_sampling"):  # since 3.5

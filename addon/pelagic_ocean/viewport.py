@@ -20,7 +20,7 @@ from .panels import draw_words
 from .presets import PELAGIC_MT_presets
 from .sea import Job
 
-SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need the mesh
+SHADINGS = compat.preview_shadings()  # views that draw the preview; the others need the mesh
 # How fine a view's pixels count as: waves that only finer ones could show roughen the surface, so that a frame is cheap
 # to make and to upload. How coarse: there, hardly anything is left to save.
 FINEST_M, COARSEST_M = 1 / 32, 2.0

@@ -17,6 +17,7 @@ std::span<const EditionChange> edition_changes() {
         {2, "effects.whitecap_law", std::string(word_of(WhitecapLaw::Monahan1980))},
         {2, "effects.spray_law", std::string(word_of(SpraySource::Monahan1986))},
         {3, "water.body", false},
+        {3, "camera.white_balance_k", 6500.0},
     };
     return all;
 }

@@ -536,7 +536,7 @@ void add_camera(Built& out) {
             {.name = "white_balance_k",
              .help =
                  "of pictures on a screen: light of this colour temperature is shown as white; less makes a "
-                 "picture bluer. 6500 leaves colours as they are. EXRs hold the light itself",
+                 "picture bluer. 5500 is that of film for daylight, 6500 leaves colours as they are. EXRs hold the light itself",
              .unit = "K",
              .range = limits::kWhiteBalance_k,
              .soft = SoftRange{2000.0, 12000.0, true},

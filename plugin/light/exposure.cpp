@@ -34,7 +34,7 @@ constexpr double kDarkest = 1e-5;  // [kcd/m²]
 constexpr double kRange = 1024.0;
 // Light times exposure of dense foam, which the exposure approaches from below: the film curve's 0.83, so that foam in the sun
 // keeps its shades. Over a dark sea seen from above the mean alone would burn it out.
-constexpr double kBrightestFoam = 2.2;
+constexpr double kBrightestFoam = 1.25;
 // Heights that differ by less than this, as a logarithm, share one table of air, which takes tens of milliseconds.
 constexpr double kSameHeight = 0.1;
 

@@ -196,8 +196,9 @@ struct Camera {
     double exposure_ev = 0.0;             // stops brighter than metered, or than ev100
     std::optional<double>
         ev100{};  // the exposure, as a photographer's meter gives it at ISO 100; without: metered
-    double white_balance_k = 6500.0;  // the light's colour temperature that is shown as neutral
-    double glare = 0.0;               // share of the light that the lens scatters
+    double white_balance_k =
+        5500.0;          // the light's colour temperature that is shown as neutral: daylight film's
+    double glare = 0.0;  // share of the light that the lens scatters
 };
 
 // [light]

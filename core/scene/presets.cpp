@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/scene/editions.h"
@@ -113,8 +114,8 @@ void add_before(Preset& preset, const Before& before) {
     for (const auto& [path, value] : values) {
         const auto now = std::ranges::find(preset.values, path, &PresetValue::path);
         if (now->value == value) continue;
-        preset.values.push_back({path, now->value, 3});
-        preset.values[static_cast<std::size_t>(now - preset.values.begin())].value = value;
+        PresetValue from_then_on{path, std::exchange(now->value, value), 3};
+        preset.values.push_back(std::move(from_then_on));
     }
 }
 

@@ -88,8 +88,7 @@ inline BaseShot trains_shot() {
     base.scene.waves.trains = 12;
     base.scene.waves.cascades = {{.size_m = 20.0, .resolution = 32}};
     base.scene.output.mesh = MeshFormat::Usda;
-    base.scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps, MapKind::Floor};
-    base.scene.sea.depth_m = 6.0;
+    base.scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
     base.scene.output.cascade_tiles = true;
     return base;
 }
@@ -107,7 +106,8 @@ inline BaseShot grid_shot() {
     BaseShot base{.name = "projected grid of a camera that descends", .scene = small_shot()};
     descend(base.scene);
     base.scene.surface.kind = SurfaceKind::ProjectedGrid;
-    base.scene.output.maps = {MapKind::Displacement, MapKind::SlopeVariance};
+    base.scene.output.maps = {MapKind::Displacement, MapKind::SlopeVariance, MapKind::Floor};
+    base.scene.sea.depth_m = 6.0;
     base.scene.output.cascade_tiles = true;
     return base;
 }

@@ -142,13 +142,7 @@ float foam_weight(float size_m, float footprint_m) {
 struct FoamNoise {
     float shown;
     float variance;  // of what is resolved
-    float relief_m;  // how high dense foam stands there, of what is resolved
 };
-
-// Dense foam stands as high over a layer's patches as this times their size, for a deviation of the layer: a breaker's lumps are alike at all scales.
-const float kFoamLumps = 0.3f;
-// Of an artist's picture, for a deviation.
-const float kFoamRelief_m = 0.02f;
 
 // A level of the artist's picture at a place in its tile, between its texels.
 float foam_image_at(int side, vec2 place, int level) {
@@ -183,8 +177,7 @@ FoamNoise foam_image_noise(FoamPattern pattern, float along, float across, float
         mix(foam_image_texel(level + 1, 2 * side - 1), foam_image_texel(level, 2 * side - 1), (1.0f - t) * (1.0f - t));
     float through = foam_weight(float(kFoamCell_m), footprint_m);
     float picture = 1.0f - kFoamGrain - kClouds;
-    return FoamNoise(sqrt(picture) * shown + sqrt(kClouds) * through * clouds, picture * variance + kClouds * through * through,
-                     kFoamRelief_m * shown);
+    return FoamNoise(sqrt(picture) * shown + sqrt(kClouds) * through * clouds, picture * variance + kClouds * through * through);
 }
 
 // rest_m: relative to the origin that the pattern was made for. footprint_m: on the water at rest.
@@ -204,12 +197,12 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
-    float streaks = pattern.look.y * (0.1f + 0.4f * old);
+    float streaks = pattern.look.y * (0.1f + 0.3f * old);
     float bubbles = 0.05f;
     float lace = (0.6f - 0.3f * young) * (1.0f - 0.4f * streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
-    FoamNoise noise = FoamNoise(0.0f, 0.0f, 0.0f);
+    FoamNoise noise = FoamNoise(0.0f, 0.0f);
     // What turbulence bends, in metres.
     vec2 bent = vec2(0.0f);
     if (foam_weight(4.0f, footprint_m) > 0.0f) {
@@ -243,10 +236,8 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 
     float fine = foam_weight(1.0f / 16.0f, footprint_m);
     if (fine > 0.0f) {
-        float shown = sqrt(bubbles) * fine * foam_holes(foam_cell(cells, rest, 9, 8.0f * bent, true), 60u);
-        noise.shown += shown;
+        noise.shown += sqrt(bubbles) * fine * foam_holes(foam_cell(cells, rest, 9, 8.0f * bent, true), 60u);
         noise.variance += bubbles * fine * fine;
-        noise.relief_m += kFoamLumps / 16.0f * shown;
     }
     // Patches down to the roller's own roughness.
     ivec4 halvings = ivec4(3, 5, 6, 8);  // 4, 1, 1/2 and 1/8 m
@@ -256,20 +247,17 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
         float part = parts[k];
         float through = foam_weight(size_m, footprint_m);
         if (part * through > 0.0f) {
-            float shown = sqrt(part) * through * foam_clouds(foam_cell(cells, rest, halvings[k], bent / size_m, false), uint(54 + k));
-            noise.shown += shown;
+            noise.shown += sqrt(part) * through * foam_clouds(foam_cell(cells, rest, halvings[k], bent / size_m, false), uint(54 + k));
             noise.variance += part * through * through;
-            noise.relief_m += kFoamLumps * size_m * shown;
         }
     }
-    vec3 streaked = streaks * vec3(0.35f, 0.4f, 0.25f);
-    for (int k = 0; k < 3; ++k) {
-        float size_m = float(kFoamCell_m) / float(2 << (2 * k));  // 16, 4 and 1 m
-        float part = streaked[k];
+    for (int k = 0; k < 2; ++k) {
+        float size_m = k == 0 ? 4.0f : 1.0f;
+        float part = streaks * (k == 0 ? 0.6f : 0.4f);
         float through = foam_weight(size_m, footprint_m);
         if (part * through > 0.0f) {
-            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 1 + 2 * k, vec2(0.0f, bent.y / size_m), false);
-            noise.shown += sqrt(part) * through * foam_clouds(at, uint(49 + k));
+            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 3 + 2 * k, vec2(0.0f, bent.y / size_m), false);
+            noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
             noise.variance += part * through * through;
         }
     }
@@ -285,7 +273,7 @@ float foam_above(FoamNoise noise, float coverage) {
 // the share u of the foam is higher than, the opacity is (1 − u)^(1/d − 1), whose mean is d, and which ends without an edge.
 // It is a sum of steps at the middles of equal parts of 0 … 1, so that its mean is d for whatever a pixel resolves.
 float foam_opacity_in(FoamNoise noise, float coverage, float mean) {
-    const int kSteps = 6;
+    const int kSteps = 4;
     float power = mean / max(1.0f - mean, 1.0e-3f);
     float sum = 0.0f;
     float parts = 0.0f;
@@ -297,7 +285,10 @@ float foam_opacity_in(FoamNoise noise, float coverage, float mean) {
     return parts > 0.0f ? clamp(mean * sum / parts, 0.0f, 1.0f) : 0.0f;
 }
 
-const float kSteepestRelief = 0.6f;  // twice as steep as the roughness of facets has it (kFoamSlopeVariance)
+// Dense foam is as thick as its pattern is high: this much for a deviation. Its facets are as steep as their own roughness has it
+// (kFoamSlopeVariance), no steeper.
+const float kFoamRelief_m = 0.02f;
+const float kSteepestRelief = 0.6f;
 
 // pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;
 // age_s: since the rest broke, on average. sun: its direction, in the axes of rest_m.
@@ -314,15 +305,14 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     float since_s = (1.0f - fresh) * age_s;
     FoamNoise noise = foam_noise(pattern, rest_m, footprint_m, since_s);
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
-    SeenFoam seen =
-        SeenFoam(foam_opacity_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance, 0.0f), c, mean), white, 0.0f);
-    // What is left of a breaker lies flat soon.
-    float dense = strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.5f, 1.5f, footprint_m));
-    if (dense * seen.opacity > 0.01f) {
+    SeenFoam seen = SeenFoam(foam_opacity_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, mean), white, 0.0f);
+    // Where pixels are too large for the smaller half of the pattern its slopes are lost.
+    float relief_m = kFoamRelief_m * strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.03f, 0.12f, footprint_m));
+    if (relief_m * seen.opacity > 1.0e-4f) {
         float step_m = max(footprint_m, 0.02f);
         vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);
         FoamNoise ahead = foam_noise(pattern, rest_m + step_m * to_sun, footprint_m, since_s);
-        float slope = dense * (ahead.relief_m - noise.relief_m) / step_m;
+        float slope = relief_m * (ahead.shown - noise.shown) / step_m;
         seen.slope = kSteepestRelief * slope / sqrt(kSteepestRelief * kSteepestRelief + slope * slope);
     }
     return seen;

@@ -469,9 +469,7 @@ FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture,
         fresh = old == 0.0   ? kMean / (active + left * kOldOverFresh)
                 : active > 0 ? (kMean - left * old) / active
                              : kMean;
-    // Denser than that it would have no thin edges, and look cut out.
-    constexpr double kMostFresh = 0.8;
-    fresh = effects.foam_new_opaque == 0.0 ? std::clamp(fresh, 0.0, kMostFresh) : fresh;
+    fresh = std::clamp(fresh, 0.0, 1.0);
     if (old == 0.0) old = left > 0.0 ? std::clamp((kMean - active * fresh) / left, 0.0, 1.0) : fresh;
     look.fresh_opacity = static_cast<float>(fresh);
     look.old_opacity = static_cast<float>(old);

@@ -22,11 +22,11 @@ TEST(FoamOfAllAges, HasKoepkesMean) {
                     0.4, 1e-6)
             << active;
         EXPECT_GE(look.fresh_opacity, look.old_opacity) << active;
-        EXPECT_LE(look.fresh_opacity, 0.8f) << active;  // its edges are thin
+        EXPECT_LE(look.fresh_opacity, 1.0f) << active;
         EXPECT_GE(look.old_opacity, 0.0f) << active;
     }
     // Fresh foam is white where most of the foam is old.
-    EXPECT_GT(make_foam(Scene{}, nullptr, 0.1).fresh_opacity, 0.79f);
+    EXPECT_GT(make_foam(Scene{}, nullptr, 0.1).fresh_opacity, 0.8f);
 }
 
 // What an artist says of one age leaves the mean, as far as the other age can make up for it; of both, it is what is seen.

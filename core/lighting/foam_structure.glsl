@@ -197,7 +197,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
-    float streaks = pattern.look.y * (0.1f + 0.8f * old);
+    float streaks = min(pattern.look.y * (0.1f + 0.85f * old), 0.65f);
     float bubbles = 0.05f;
     float lace = (0.6f - 0.3f * young) * (1.0f - kFoamGrain - bubbles - streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
@@ -253,7 +253,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     }
     for (int k = 0; k < 2; ++k) {
         float size_m = k == 0 ? 8.0f : 2.0f;
-        float part = streaks * (k == 0 ? 0.5f : 0.5f);
+        float part = 0.5f * streaks;
         float through = foam_weight(size_m, footprint_m);
         if (part * through > 0.0f) {
             FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 + 2 * k, vec2(0.0f, bent.y / size_m), false);
@@ -281,7 +281,7 @@ float foam_opacity_in(FoamNoise noise, float mean, float softness) {
 
 // Bubbles lie in heaps: thin foam, and hollows, reflect that much less than the mean. So much light the upper part of the pattern has
 // in addition that the mean over the sea of what foam reflects is `white`. No foam reflects more than 0.95.
-const float kHollows = 0.6f;
+const float kHollows = 0.75f;
 const float kHeaps = 0.7f;  // the part of what is hidden that heaps hide
 
 SeenFoam foam_in(FoamNoise noise, float mean, float white, float softness) {
@@ -295,7 +295,7 @@ SeenFoam foam_in(FoamNoise noise, float mean, float white, float softness) {
 // Foam's relief: this high for a deviation of its finest bubbles, and as much of a lump's breadth, since lumps of all sizes are as
 // steep. Its facets are as steep as their own roughness has it (kFoamSlopeVariance), no steeper.
 const float kFoamRelief_m = 0.02f;
-const float kLumpRelief = 0.3f;
+const float kLumpRelief = 0.45f;
 const float kSteepestRelief = 0.6f;
 
 // pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;

@@ -2,7 +2,8 @@
 """Where foam is in a material: the places where a pattern has its largest values, so many that they are the coverage. The
 pattern stands at rest positions, so foam moves with the water. With distance it fades to its mean.
 The core's own pattern (foam_structure.glsl) is another one, of the same kind and with the same means. As there, foam hides the water
-where waves break now, and is thin in what they left."""
+where waves break now, and is thin in what they left. What this has not: the core's heaps and hollows, whiter and darker than the mean,
+with the slopes of their relief, and films that grow softer with age."""
 
 from .facets import along_wind
 

@@ -37,7 +37,7 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _set(material, "Water Color", (*map(float, upwelling.albedo(scene)[0]), 1.0))
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
         _set(material, "Foam Structure", scene.effects.foam_structure)
-        _set(material, "Foam Streaks", scene.effects.foam_streaks)
+        _set(material, "Foam Streaks", min(scene.effects.foam_streaks * min(max(scene.sea.wind_speed_mps / 10.0 - 0.5, 0.0), 2.0), 1.0))  # make_foam()
         _set(material, "Foam Color", (scene.effects.foam_new_albedo,) * 3 + (1.0,))
         _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
         if material[MARK] >= 6 and (scene.water.body or f"{MARK} {THIN}" in material):

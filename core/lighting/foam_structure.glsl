@@ -197,15 +197,15 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
-    float streaks = pattern.look.y * (0.1f + 0.3f * old);
+    float streaks = min(pattern.look.y * (0.1f + 0.85f * old), 0.65f);
     float bubbles = 0.05f;
-    float lace = (0.6f - 0.3f * young) * (1.0f - 0.4f * streaks);
+    float lace = (0.6f - 0.3f * young) * (1.0f - kFoamGrain - bubbles - streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
     FoamNoise noise = FoamNoise(0.0f, 0.0f);
     // What turbulence bends, in metres.
     vec2 bent = vec2(0.0f);
-    if (foam_weight(4.0f, footprint_m) > 0.0f) {
+    if (foam_weight(8.0f, footprint_m) > 0.0f) {
         ivec3 halvings = ivec3(4, 6, 7);  // 2, 1/2 and 1/4 m
         vec3 reach_m = vec3(0.34f, 0.1f, 0.045f);
         for (int k = 0; k < 3; ++k) {
@@ -252,11 +252,11 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
         }
     }
     for (int k = 0; k < 2; ++k) {
-        float size_m = k == 0 ? 4.0f : 1.0f;
-        float part = streaks * (k == 0 ? 0.6f : 0.4f);
+        float size_m = k == 0 ? 8.0f : 2.0f;
+        float part = 0.5f * streaks;
         float through = foam_weight(size_m, footprint_m);
         if (part * through > 0.0f) {
-            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 3 + 2 * k, vec2(0.0f, bent.y / size_m), false);
+            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 + 2 * k, vec2(0.0f, bent.y / size_m), false);
             noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
             noise.variance += part * through * through;
         }
@@ -264,30 +264,38 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     return noise;
 }
 
-// The share of a pixel where the pattern is above the quantile of the coverage.
-float foam_above(FoamNoise noise, float coverage) {
-    return normal_below((noise.shown - foam_quantile(coverage)) * inversesqrt(1.0f - noise.variance));
+// How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
+// beyond its bubbles.
+float foam_softness(float age_s) {
+    return 0.6f + 0.5f * age_s / (age_s + 4.0f);
 }
 
-// What a pixel shows of a pattern whose foam has that mean opacity d. It is thickest where the pattern is highest: of the place that
-// the share u of the foam is higher than, the opacity is (1 − u)^(1/d − 1), whose mean is d, and which ends without an edge.
-// It is a sum of steps at the middles of equal parts of 0 … 1, so that its mean is d for whatever a pixel resolves.
-float foam_opacity_in(FoamNoise noise, float coverage, float mean) {
-    const int kSteps = 4;
-    float power = mean / max(1.0f - mean, 1.0e-3f);
-    float sum = 0.0f;
-    float parts = 0.0f;
-    for (int i = 0; i < kSteps; ++i) {
-        float part = 1.0f - pow((float(i) + 0.5f) / float(kSteps), power);
-        sum += foam_above(noise, part * coverage);
-        parts += part;
-    }
-    return parts > 0.0f ? clamp(mean * sum / parts, 0.0f, 1.0f) : 0.0f;
+// What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place
+// has an edge. Thickness is spread by `softness`, as by a normal variable of its own, so that the mean over the sea is Φ(−q),
+// whatever a pixel resolves.
+float foam_opacity_in(FoamNoise noise, float mean, float softness) {
+    float soft = softness * softness;
+    float level = foam_quantile(mean) * sqrt(1.0f + soft);
+    return normal_below((noise.shown - level) * inversesqrt(1.0f - noise.variance + soft));
 }
 
-// Dense foam is as thick as its pattern is high: this much for a deviation. Its facets are as steep as their own roughness has it
-// (kFoamSlopeVariance), no steeper.
+// Bubbles lie in heaps: thin foam, and hollows, reflect that much less than the mean. So much light the upper part of the pattern has
+// in addition that the mean over the sea of what foam reflects is `white`. No foam reflects more than 0.95.
+const float kHollows = 0.75f;
+const float kHeaps = 0.7f;  // the part of what is hidden that heaps hide
+
+SeenFoam foam_in(FoamNoise noise, float mean, float white, float softness) {
+    if (!(mean > 0.0f)) return SeenFoam(0.0f, white, 0.0f);
+    float opacity = foam_opacity_in(noise, mean, softness);
+    float hollows = clamp((0.95f / max(white, 1.0e-3f) - 1.0f) * (kHeaps / (1.0f - kHeaps)), 0.0f, kHollows);
+    float heaps = foam_opacity_in(noise, kHeaps * mean, softness) / (kHeaps * max(opacity, 1.0e-12f));
+    return SeenFoam(opacity, white * (1.0f + hollows * (min(heaps, 1.0f / kHeaps) - 1.0f)), 0.0f);
+}
+
+// Foam's relief: this high for a deviation of its finest bubbles, and as much of a lump's breadth, since lumps of all sizes are as
+// steep. Its facets are as steep as their own roughness has it (kFoamSlopeVariance), no steeper.
 const float kFoamRelief_m = 0.02f;
+const float kLumpRelief = 0.45f;
 const float kSteepestRelief = 0.6f;
 
 // pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;
@@ -305,14 +313,15 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     float since_s = (1.0f - fresh) * age_s;
     FoamNoise noise = foam_noise(pattern, rest_m, footprint_m, since_s);
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
-    SeenFoam seen = SeenFoam(foam_opacity_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, mean), white, 0.0f);
-    // Where pixels are too large for the smaller half of the pattern its slopes are lost.
-    float relief_m = kFoamRelief_m * strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.03f, 0.12f, footprint_m));
-    if (relief_m * seen.opacity > 1.0e-4f) {
+    noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
+    SeenFoam seen = foam_in(noise, c * mean, white, foam_softness(since_s));
+    // Where pixels are too large for lumps their slopes are lost.
+    float relief_m = strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
+    if (relief_m * seen.opacity > 1.0e-3f) {
         float step_m = max(footprint_m, 0.02f);
         vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);
         FoamNoise ahead = foam_noise(pattern, rest_m + step_m * to_sun, footprint_m, since_s);
-        float slope = relief_m * (ahead.shown - noise.shown) / step_m;
+        float slope = relief_m * (kFoamRelief_m + kLumpRelief * step_m) * (strength * ahead.shown - noise.shown) / step_m;
         seen.slope = kSteepestRelief * slope / sqrt(kSteepestRelief * kSteepestRelief + slope * slope);
     }
     return seen;

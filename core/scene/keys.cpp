@@ -715,7 +715,7 @@ void add_effects_and_quality(Built& out) {
              .range = limits::kFoamStructure,
              .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_streaks>({.name = "foam_streaks",
-                                     .help = "how far that lace is drawn out along the wind",
+                                     .help = "how far a wind of 15 m/s draws that lace out along it; less blows less, a storm twice as far",
                                      .range = limits::kFoamStreaks,
                                      .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_pattern>(

@@ -450,12 +450,23 @@ std::shared_ptr<const FoamImage> kept_foam_picture(const Scene& scene) {
     return picture;
 }
 
+namespace {
+
+// The wind draws foam into rows: from force 4 on a little, from a near gale's (15 m/s, "foam begins to be blown in streaks") as the key
+// says, and in a storm up to twice as much.
+double foam_streaks(const Scene& scene) {
+    const double wind = std::clamp((scene.sea.wind_speed_mps - 5.0) / 10.0, 0.0, 2.0);
+    return std::min(scene.effects.foam_streaks * wind, 1.0);
+}
+
+}  // namespace
+
 FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {
     const Effects& effects = scene.effects;
     FoamLook look{.image = std::move(picture),
                   .image_m = effects.foam_pattern_m,
                   .structure = effects.foam_structure,
-                  .streaks = effects.foam_streaks,
+                  .streaks = foam_streaks(scene),
                   .wind_direction_deg = scene.sea.wind_direction_deg,
                   .fresh_albedo = static_cast<float>(effects.foam_new_albedo),
                   .old_albedo = static_cast<float>(effects.foam_old_albedo)};

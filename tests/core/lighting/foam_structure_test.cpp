@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,11 +29,12 @@ Optics::FoamPattern pattern_of(double structure, double streaks, double wind_deg
 
 const glm::vec3 kSun(0.36f, 0.48f, 0.8f);
 constexpr std::array kCoverages{0.01f, 0.03f, 0.1f, 0.3f, 0.5f, 0.7f, 0.9f};
+constexpr float kWhite = 0.55f;
 constexpr std::array kOpacities{0.2f, 0.7f};
 constexpr std::array kFootprints_m{1e-3f, 0.02f, 0.06f, 0.15f, 0.4f, 1.0f, 2.5f, 8.0f, 1e3f};
 constexpr std::array kAges_s{0.0f, 0.7f, 2.0f, 5.0f, 20.0f};
 
-// Over independent places, for any opacity.
+// Over independent places, for any opacity: of what it hides, and of the light that it reflects.
 TEST(FoamStructure, HasTheCoverageAsItsMean) {
     constexpr int kPlaces = 4000;
     std::mt19937 random(5);
@@ -41,16 +43,20 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
         for (const float age_s : kAges_s) {
             const auto pattern = pattern_of(1.0, static_cast<double>(streaks));
             for (const float footprint_m : kFootprints_m) {
-                std::array<std::array<double, kOpacities.size()>, kCoverages.size()> sums{};
+                std::array<std::array<double, kOpacities.size()>, kCoverages.size()> sums{}, light{};
                 for (int i = 0; i < kPlaces; ++i) {
                     const auto noise =
                         shading.foam_noise(pattern, {place(random), place(random)}, footprint_m, age_s);
                     for (std::size_t c = 0; c < kCoverages.size(); ++c)
                         for (std::size_t d = 0; d < kOpacities.size(); ++d) {
-                            const float seen = shading.foam_opacity_in(noise, kCoverages[c], kOpacities[d]);
-                            ASSERT_GE(seen, 0.0f);
-                            ASSERT_LE(seen, 1.0f);
-                            sums[c][d] += static_cast<double>(seen);
+                            const auto seen =
+                                shading.foam_in(noise, kCoverages[c] * kOpacities[d], kWhite, shading.foam_softness(age_s));
+                            ASSERT_GE(seen.opacity, 0.0f);
+                            ASSERT_LE(seen.opacity, 1.0f);
+                            ASSERT_GT(seen.white, 0.0f);
+                            ASSERT_LE(seen.white, 0.96f);
+                            sums[c][d] += static_cast<double>(seen.opacity);
+                            light[c][d] += static_cast<double>(seen.opacity * seen.white);
                         }
                 }
                 for (std::size_t c = 0; c < kCoverages.size(); ++c)
@@ -61,6 +67,10 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
                         const double noise = std::sqrt(expected * (1.0 - expected) / kPlaces);
                         EXPECT_NEAR(sums[c][d] / kPlaces, expected, 4.5 * noise + 0.01 * expected)
                             << "footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks
+                            << ", opacity " << kOpacities[d];
+                        EXPECT_NEAR(light[c][d] / kPlaces / static_cast<double>(kWhite), expected,
+                                    1.35 * 4.5 * noise + 0.01 * expected)
+                            << "light, footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks
                             << ", opacity " << kOpacities[d];
                     }
             }
@@ -107,22 +117,62 @@ TEST(FoamStructure, MixesFreshAndOldByWhatTheyHide) {
               0.0f);
 }
 
-// Near, the pattern is there: neighbouring places differ, most are foam or none, and coverage is exceeded by what it should be.
-TEST(FoamStructure, IsThere) {
+// The opacity and the white of foam at places of a fine footprint.
+std::vector<Optics::SeenFoam> seen_near(float coverage, float breaking, float age_s) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> place(-500.0f, 500.0f);
     const auto pattern = glsl(foam_pattern(
-        {.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0, .fresh_opacity = 1.0f}, {}));
-    int decided = 0;
-    constexpr int kPlaces = 2000;
-    for (int i = 0; i < kPlaces; ++i) {
-        const float share = shading
-                                .seen_foam(pattern, {place(random), place(random)},
-                                           glm::vec3(0.01f, 0.0f, 0.0f), 0.4f, 1.0f, 0.0f, kSun)
-                                .opacity;
-        decided += share < 0.1f || share > 0.9f;
+        {.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0, .fresh_opacity = 0.9f}, {}));
+    std::vector<Optics::SeenFoam> all;
+    for (int i = 0; i < 4000; ++i)
+        all.push_back(shading.seen_foam(pattern, {place(random), place(random)}, glm::vec3(0.01f, 0.0f, 0.0f),
+                                        coverage, breaking, age_s, kSun));
+    return all;
+}
+
+// Near, the pattern is there, and has no cut edge: opacities are spread from none to all, with much of the sea's between.
+TEST(FoamStructure, IsThereAndSoft) {
+    for (const float age_s : {0.0f, 5.0f}) {
+        int open = 0, thin = 0, thick = 0;
+        for (const auto& seen : seen_near(0.4f, age_s > 0.0f ? 0.0f : 0.4f, age_s)) {
+            open += seen.opacity < 0.05f;
+            thin += seen.opacity > 0.1f && seen.opacity < 0.6f;
+            thick += seen.opacity > 0.8f;
+        }
+        EXPECT_GT(open, 1000) << age_s;
+        EXPECT_GT(thin, 800) << age_s;
+        EXPECT_GT(thick, age_s > 0.0f ? 40 : 400) << age_s;
     }
-    EXPECT_GT(decided, kPlaces * 6 / 10);
+}
+
+// A roller that hides all of the water has heaps and hollows: its tone is not one.
+TEST(FoamStructure, HasHeapsAndHollows) {
+    std::vector<float> white;
+    for (const auto& seen : seen_near(1.0f, 1.0f, 0.0f)) white.push_back(seen.white);
+    std::sort(white.begin(), white.end());
+    const float low = white[white.size() / 20], high = white[white.size() - white.size() / 20];
+    EXPECT_LT(low, 0.8f * kWhite);
+    EXPECT_GT(high, 1.1f * kWhite);
+}
+
+// Old foam lies in streaks along the wind: along it the pattern of a footprint of metres changes less than across it.
+TEST(FoamStructure, LiesInStreaksWhereOld) {
+    std::mt19937 random(12);
+    std::uniform_real_distribution<float> place(-3000.0f, 3000.0f);
+    const auto pattern = pattern_of(1.0, 0.8, 0.0);
+    const auto change = [&](glm::vec2 step_m, float age_s) {
+        double squares = 0.0;
+        for (int i = 0; i < 4000; ++i) {
+            const glm::vec2 at(place(random), place(random));
+            const double d = static_cast<double>(shading.foam_noise(pattern, at, 0.5f, age_s).shown -
+                                                 shading.foam_noise(pattern, at + step_m, 0.5f, age_s).shown);
+            squares += d * d / 4000.0;
+        }
+        return squares;
+    };
+    const glm::vec2 along(8.0f, 0.0f), across(0.0f, 8.0f);
+    EXPECT_LT(change(along, 8.0f), 0.4 * change(across, 8.0f));
+    EXPECT_GT(change(along, 0.0f), 0.6 * change(across, 0.0f));
 }
 
 // The same place of the sea, seen from any origin near it, also a million metres away from the world's; also beyond where

@@ -41,9 +41,9 @@ struct SeenBody {
     vec3 from_eye;  // [m]
     float pixel_m;  // as wide as a pixel there
     vec3 crest;   // of the long waves: slopes and height [m]
-    float fresh;  // coverage of what breaks now, and of what earlier breaking has left
-    float old;
-    float age_s;  // of the latter
+    float fresh;  // coverage of what breaks now, with that of which bubbles of earlier breaking are a part; or without that sum
+    float old;    // what earlier breaking has left of foam
+    float age_s;  // and how old that is
 };
 
 SeenBody no_crest_nor_bubbles() {
@@ -209,12 +209,10 @@ CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec
     return CrestLight(lit, 1.25f * (1.0f - fresnel_exact(there, kWaterIndex)) * there, share, 2.0f * phase / per_m);
 }
 
-// Bubbles of clean air, larger ones first gone: ¾ of their cross-section over the volume at the surface [1/m], by the age of the foam
-// above them. Deane and Stokes' sizes (2002), by the speeds at which they rise. Clouds begin with a void fraction of 3e-3, which is known to
-// an order of magnitude (1e-3 … 1e-2): more makes storms milk. The decay at the end is a guess.
+// ¾ of the bubbles' cross-section over the volume at the surface [1/m], by the age of the foam above them. Clouds begin with a void fraction
+// of 3e-3, which is known to an order of magnitude (1e-3 … 1e-2): more makes storms milk.
 float bubbles_per_m(float age_s, float depth_m) {
-    float risen = age_s / (4.0f * max(depth_m, 1.0e-3f));
-    return 3.75f * (0.82f * exp(-risen) + 0.18f * pow(1.0f + risen, -0.75f)) * exp(-0.01f * age_s);
+    return 3.75f * bubbles_left(age_s, depth_m);
 }
 
 // The radiance just above the surface, before the factor (1 − F̄) of transmission outwards: level axes, the normal facing the eye.

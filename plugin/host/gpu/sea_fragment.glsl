@@ -11,7 +11,7 @@ void main() {
     }
     vec3 pixel = pixel_on_mesh();
     PixelAnswer answer = query_pixel(rest_m, pixel);
-    AllFoam all = AllFoam(0.0, 0.0, 0.0);
+    AllFoam all = AllFoam(0.0, 0.0, 0.0, -1.0);
     if (kCoverage) all = all_foam(rest_m, pixel, answer.coverage);
     answer.coverage = all.coverage;
     if (kFalseColour != 0) {
@@ -38,7 +38,9 @@ void main() {
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);
         float fresh = min(covered, max(all.breaking, 0.0));
-        body = SeenBody(body.from_eye, body.pixel_m, body.crest, fresh, covered - fresh, all.age_s);
+        bool is_sum = all.bubbles >= 0.0;
+        body = SeenBody(body.from_eye, body.pixel_m, body.crest, is_sum ? fresh + all.bubbles : fresh, is_sum ? 0.0 : covered - fresh,
+                        all.age_s);
     }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),

@@ -266,9 +266,10 @@ void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const Wa
         const glm::vec3 down(-p.normal.x, -p.normal.y, p.normal.z);
         const glm::vec3 seen = shading.visible_normal(down, shading.upside_down(to_eye),
                                                       p.slope_variance_at_rest, p.mesh_variance);
-        const typename Variant::SeaTerms terms = shading.sea_from_below(
-            to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
-            sea_shading::foam_at(shading, choice, pattern, p, sky), height_m, distance_m[i], light);
+        const typename Variant::SeaTerms terms =
+            shading.sea_from_below(to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
+                                   sea_shading::foam_at(shading, choice, pattern, p, sky),
+                                   sea_shading::seen_body(shading, water, p), height_m, distance_m[i], light);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }

@@ -215,6 +215,12 @@ float bubbles_per_m(float age_s, float depth_m) {
     return 3.75f * bubbles_left(age_s, depth_m);
 }
 
+// Below such a place: WaterWay::bubbles.
+float bubbles_below(WaterLook look, SeenBody seen) {
+    return look.bubbles * look.bubbles_m *
+           (seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) + seen.old * bubbles_per_m(seen.age_s, look.bubbles_m));
+}
+
 // The radiance just above the surface, before the factor (1 − F̄) of transmission outwards: level axes, the normal facing the eye.
 // sun_beam: the sun's irradiance across its beam. hidden: slope variances of unresolved waves.
 vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, vec3 sun_beam, vec3 sky_irradiance, WaterLook look,
@@ -246,8 +252,7 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
         }
     }
     way.bubbles_m = look.bubbles_m;
-    way.bubbles = look.bubbles * look.bubbles_m *
-                  (seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) + seen.old * bubbles_per_m(seen.age_s, look.bubbles_m));
+    way.bubbles = bubbles_below(look, seen);
     bool has_crests = look.crest_light > 0.0f && look.crest_per_m > 0.0f && to_sun.z > 0.0f;
     CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f, 0.0f);
     if (has_crests) crest = light_at_crest(to_eye, to_sun, seen.crest, look.crest_per_m, look.waves);

@@ -26,14 +26,6 @@ void main() {
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white,
                                      foam_pattern_image),
                          rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
-    if (kFromBelow) {
-        vec3 normal = visible_normal(vec3(-answer.normal.x, -answer.normal.y, answer.normal.z), upside_down(to_eye),
-                                     answer.slope_variance_at_rest, mesh_variance_along());
-        SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, view_height_m,
-                                        point_distance_m(), sea_light());
-        write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
-        return;
-    }
     SeenBody body = SeenBody(pixel_ray() * point_distance_m(), pixel_over(pixel), point_crest(), 0.0, 0.0, 0.0);
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);
@@ -41,6 +33,14 @@ void main() {
         bool is_sum = all.bubbles >= 0.0;
         body = SeenBody(body.from_eye, body.pixel_m, body.crest, is_sum ? fresh + all.bubbles : fresh, is_sum ? 0.0 : covered - fresh,
                         all.age_s);
+    }
+    if (kFromBelow) {
+        vec3 normal = visible_normal(vec3(-answer.normal.x, -answer.normal.y, answer.normal.z), upside_down(to_eye),
+                                     answer.slope_variance_at_rest, mesh_variance_along());
+        SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, body,
+                                        view_height_m, point_distance_m(), sea_light());
+        write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
+        return;
     }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),

@@ -166,7 +166,9 @@ struct Functions {
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(below,
                  SeaTerms t = sea_from_below(
-                     vec3(vv.x, vv.y, -vv.z), nn, ss, SeenFoam(ww, bb, 0.0f), -10.0f * bb, 20.0f * cc,
+                     vec3(vv.x, vv.y, -vv.z), nn, ss, SeenFoam(ww, bb, 0.0f),
+                     SeenBody(vec3(0.0f), 0.0f, vec3(0.0f), 0.3f * aa, 0.2f * ww, 9.0f * cc), -10.0f * bb,
+                     20.0f * cc,
                      SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f, vec3(80.0f, 70.0f, 60.0f),
                               vec3(10.0f, 12.0f, 15.0f),
                               WaterLook(vec3(0.01f, 0.03f, 0.05f), true,

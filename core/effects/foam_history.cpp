@@ -220,8 +220,8 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
     mean_ = static_cast<float>(std::min(sea_->left_coverage(), 1.0));
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
-    mean_bubbles_ = static_cast<float>(sea_->left_coverage() / all.foam_s *
-                                       foam_.bubbles_weight_s(0.0, foam_.window_s));
+    mean_bubbles_ =
+        static_cast<float>(sea_->left_coverage() / all.foam_s * foam_.bubbles_weight_s(0.0, foam_.window_s));
 }
 
 template <class T>
@@ -271,8 +271,9 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
         if (found != tiles_.end()) found->second->was_read(round_, time_s_);
         if (found == tiles_.end() || !found->second->is_of(time_s_)) return missing.push_back(place);
         const float* values = found->second->foam.data();
-        kernels_.between({values + sums.first * kStride, values + sums.second * kStride}, part.x, part.y, begin, end,
-                         which == 0 ? foam.data() : next.data(), which == 0 ? aged.data() : next_age.data());
+        kernels_.between({values + sums.first * kStride, values + sums.second * kStride}, part.x, part.y,
+                         begin, end, which == 0 ? foam.data() : next.data(),
+                         which == 0 ? aged.data() : next_age.data());
     });
     const bool blends = !Locator::is_on_level(part, foam.size());
     for (std::size_t i = 0; blends && i < foam.size(); ++i) {
@@ -467,7 +468,8 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     for (const Place& place : places) {
         auto tile = tiles_.find(place);  // made before it is entered: memory may be refused
-        if (tile == tiles_.end()) tile = tiles_.emplace(place, std::make_unique<Tile>(place, kept, foam_.sums())).first;
+        if (tile == tiles_.end())
+            tile = tiles_.emplace(place, std::make_unique<Tile>(place, kept, foam_.sums())).first;
         if (!tile->second->is_of(time_s_)) old.push_back(tile->second.get());
     }
     if (old.empty()) return;
@@ -484,7 +486,8 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
         if (foam_.sums() > 2) {
             shares.clear();
             for (std::int64_t n = first_; n <= last_; ++n)
-                if (const float bubbles = weights_[static_cast<std::size_t>(n - first_)].bubbles; bubbles > 0.0f)
+                if (const float bubbles = weights_[static_cast<std::size_t>(n - first_)].bubbles;
+                    bubbles > 0.0f)
                     shares.push_back({tile.shares.data() + modulo(n, kept) * kStride, bubbles, 0.0f});
             std::array<float, kStride> nothing;
             kernels_.sum(shares, tile.bubbles(), {nothing.data(), kNodes});

@@ -93,7 +93,8 @@ class FoamHistory {
     void add(const Points<T>& points, int query, const FoamResults<T>& results, const BuildWatch& watch = {});
 
     // The bubbles that earlier breaking has left, of 1 where all breaks: the same sum with their own decay, not limited. Of a plan that has them.
-    void add_bubbles(const Points<T>& points, int query, std::span<float> bubbles, const BuildWatch& watch = {});
+    void add_bubbles(const Points<T>& points, int query, std::span<float> bubbles,
+                     const BuildWatch& watch = {});
 
     // Bytes of all tiles, and of the seas that they are sampled from. The plan's foam_history_bytes() expects as many: for squares
     // and views all round a camera no more are needed, in a picture's frame waves may show more tiles than a plan can know.
@@ -115,7 +116,8 @@ class FoamHistory {
         float mean_of_first, mean_of_second;
     };
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const Sums& sums, const BuildWatch& watch, const Use& use);
+    void for_parts(const Points<T>& points, int query, const Sums& sums, const BuildWatch& watch,
+                   const Use& use);
     bool read(const Locator& locate, std::size_t first, const Sums& sums, std::span<float> of_first,
               std::span<float> of_second, std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);

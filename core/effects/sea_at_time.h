@@ -53,7 +53,8 @@ class SeaAtTime {
 
     // The bubbles that earlier breaking has left, of 1 where all breaks (FoamHistory), of a plan that has them and a query with a past.
     bool has_bubbles(int query) const { return has_past(query) && sea().plan().foam->bubbles_m > 0.0; }
-    void bubbles(int query, const Points<T>& points, std::span<float> left, const BuildWatch& watch = {}) const;
+    void bubbles(int query, const Points<T>& points, std::span<float> left,
+                 const BuildWatch& watch = {}) const;
 
   private:
     FoamHistory<T>& history() const;  // at the frame's time; of a caller that has the lock

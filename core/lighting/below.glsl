@@ -300,6 +300,9 @@ vec3 sun_from_below(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, fl
     return sun_radiance * (min(part, most) * square(kWaterIndex) * (1.0f - fresnel_exact(cosine, 1.0f / kWaterIndex)));
 }
 
+// 1 − exp(−x), with all digits where that is little.
+float lost_by(float x) { return x < 0.1f ? x * (1.0f - 0.5f * x * (1.0f - x / 3.0f * (1.0f - 0.25f * x))) : 1.0f - exp(-x); }
+
 // What a cloud of bubbles makes of light that falls on it at that cosine: it sends a part back, lets a part through as it was, and spreads the
 // rest about the way on. No bubble absorbs. bubbles: b_g L.
 struct BubbleVeil {
@@ -310,8 +313,8 @@ struct BubbleVeil {
 
 BubbleVeil bubble_veil(float bubbles, float cosine) {
     float back = bubbles_add(bubbles, vec3(0.0f)).x;
-    float sharp = min(exp(-bubbles / max(cosine, 0.05f)), 1.0f - back);
-    return BubbleVeil(back, sharp, 1.0f - back - sharp);
+    float lost = max(lost_by(bubbles / max(cosine, 0.05f)), back);
+    return BubbleVeil(back, 1.0f - lost, lost - back);
 }
 
 // Clean bubbles' phase function [1/sr], by the cosine to the way on: Henyey and Greenstein's of g = 0.655 (geometric half alone), of g^n after n scatterings.
@@ -354,7 +357,7 @@ SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam 
         float bubbles = bubbles_below(light.water, body);
         if (bubbles > 0.0f) {
             // Those between the surface and the eye.
-            bubbles *= 1.0f - exp(-distance_m * max(-to_eye.z, 0.0f) / light.water.bubbles_m);
+            bubbles *= lost_by(distance_m * max(-to_eye.z, 0.0f) / light.water.bubbles_m);
             BubbleVeil veil = bubble_veil(bubbles, max(-to_eye.z, 0.0f));
             float in_sky = entering_from_sky(light.water.waves);
             float of_sun = refracted_cosine(light.sun_direction.z);

@@ -168,8 +168,12 @@ typename Variant::SeenBody seen_body(Variant& shading, const WaterBody& water, c
     const float covered = water.bubbles > 0.0f ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
                 fresh = std::min(covered, std::max(p.active, 0.0f));
     const bool is_sum = water.bubbles > 0.0f && p.bubbles >= 0.0f;
-    return {p.from_eye_m, shading.pixel_over(p.pixel_m), p.crest, is_sum ? fresh + p.bubbles : fresh,
-            is_sum ? 0.0f : covered - fresh, p.age_s};
+    return {p.from_eye_m,
+            shading.pixel_over(p.pixel_m),
+            p.crest,
+            is_sum ? fresh + p.bubbles : fresh,
+            is_sum ? 0.0f : covered - fresh,
+            p.age_s};
 }
 
 void albedo_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,

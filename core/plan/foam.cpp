@@ -80,7 +80,8 @@ double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) 
     return 0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0);
 }
 
-FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m, double steps_a_period) {
+FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m,
+                   double steps_a_period) {
     const Effects& effects = scene.effects;
     constexpr double kFinestCell_m = 0.25;
     constexpr double kCell =

@@ -22,9 +22,9 @@ struct FoamPlan {
     glm::dvec2 drift_mps{0.0};  // of the foam over the water at rest
     double step_s =
         0.0;  // of the lattice of times; a whole number of steps makes a loop, or of very short loops a step
-    double window_s = 0.0;  // nothing older counts
-    double cell_m = 0.0;    // of the finest level; each further one has cells twice as large
-    double loop_s = 0.0;    // of the sea; 0: none
+    double window_s = 0.0;   // nothing older counts
+    double cell_m = 0.0;     // of the finest level; each further one has cells twice as large
+    double loop_s = 0.0;     // of the sea; 0: none
     double bubbles_m = 0.0;  // e-folding depth of the bubbles that breaking leaves; 0: nobody sees them
 
     // Levels with cells; beyond the last, foam is the sea's mean.
@@ -61,7 +61,8 @@ double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum);
 
 // Of a scene that has persistent foam. steps_a_period: Knobs::foam_steps_a_period. `finest_m`: no breaking is resolved
 // below it.
-FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m, double steps_a_period);
+FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m,
+                   double steps_a_period);
 
 // Which level's cells serve a footprint, two cells a footprint: (1 − t) of `level` and t of the next.
 struct FoamLevelBlend {

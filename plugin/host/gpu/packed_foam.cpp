@@ -64,7 +64,8 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x) {
                 float* const node =
-                    &nodes_[channels_ * (static_cast<std::size_t>(first.y + y) * nodes_size_.x + first.x + x)];
+                    &nodes_[channels_ *
+                            (static_cast<std::size_t>(first.y + y) * nodes_size_.x + first.x + x)];
                 node[0] = tile.foam[y * kSide + x];
                 node[1] = tile.aged[y * kSide + x];
                 if (channels_ > 2) node[2] = tile.bubbles[y * kSide + x];

@@ -121,9 +121,10 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
     for (int i = 0; i < steps; ++i) {
         const double age_s = (i + 0.5) * step_s;
         const FoamPlan::Weight weight = foam.weight(i * step_s, (i + 1) * step_s);
-        const double faded = std::clamp(3.0 * age_s / foam.window_s - 2.0, 0.0, 1.0), risen = age_s / (4.0 * foam.bubbles_m);
-        const double left = (0.82 * std::exp(-risen) + 0.18 * std::pow(1.0 + risen, -0.75)) * std::exp(-age_s / 100.0) *
-                            (1.0 - faded * faded * (3.0 - 2.0 * faded));
+        const double faded = std::clamp(3.0 * age_s / foam.window_s - 2.0, 0.0, 1.0),
+                     risen = age_s / (4.0 * foam.bubbles_m);
+        const double left = (0.82 * std::exp(-risen) + 0.18 * std::pow(1.0 + risen, -0.75)) *
+                            std::exp(-age_s / 100.0) * (1.0 - faded * faded * (3.0 - 2.0 * faded));
         frame.set(kTime_s - age_s);
         evaluate(frame, 0,
                  Points<double>{.origin_m = origin - foam.drift_mps * age_s,
@@ -158,7 +159,8 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
     SeaAtTime<double> state(sea);
     state.set(kTime_s);
     ASSERT_TRUE(state.has_bubbles(0));
-    state.bubbles(0, Points<double>{.origin_m = origin, .count = points.size(), .rest_m = {points.data()}}, left);
+    state.bubbles(0, Points<double>{.origin_m = origin, .count = points.size(), .rest_m = {points.data()}},
+                  left);
     const std::vector<double> bubbles_got(left.begin(), left.end());
     EXPECT_GT(correlation(bubbles_got, bubbles), 0.98);
     EXPECT_NEAR(std::accumulate(bubbles_got.begin(), bubbles_got.end(), 0.0) /
@@ -218,7 +220,8 @@ TEST(LivingFoam, HasBubblesOfTheirOwnDecay) {
     };
     const double fine = mean_of(4.0), coarse = mean_of(16.0);
     const FoamHistory<float> history(with);
-    std::printf("bubbles: mean %.5f at 4 m, %.5f at 16 m, %.5f of the sea\n", fine, coarse, history.mean_bubbles());
+    std::printf("bubbles: mean %.5f at 4 m, %.5f at 16 m, %.5f of the sea\n", fine, coarse,
+                history.mean_bubbles());
     EXPECT_NEAR(coarse / fine, 1.0, 0.03);
     EXPECT_NEAR(history.mean_bubbles() / fine, 1.0, 0.05);
 }

@@ -229,10 +229,13 @@ TEST(Below, BubblesKeepTheLight) {
                 const double cosine = (i + 0.5) / kSteps;
                 for (int k = 0; k < kSteps; ++k) {
                     const double azimuth = 2.0 * oracle::kPi * (k + 0.5) / kSteps;
-                    const double between = cosine * of_sun + std::sqrt((1.0 - cosine * cosine) * (1.0 - of_sun * of_sun)) * std::cos(azimuth);
+                    const double between =
+                        cosine * of_sun +
+                        std::sqrt((1.0 - cosine * cosine) * (1.0 - of_sun * of_sun)) * std::cos(azimuth);
                     spread += cosine / of_sun * 2.0 * oracle::kPi / (kSteps * kSteps) *
                               optics.bubble_veil(bubbles, static_cast<float>(cosine)).spread *
-                              optics.ahead_of_bubbles(static_cast<float>(between), bubbles, static_cast<float>(of_sun));
+                              optics.ahead_of_bubbles(static_cast<float>(between), bubbles,
+                                                      static_cast<float>(of_sun));
                 }
             }
             const Optics::BubbleVeil veil = optics.bubble_veil(bubbles, static_cast<float>(of_sun));
@@ -249,7 +252,8 @@ TEST(Below, BubblesVeilTheWindow) {
         WaterBody water = deep_body(0.1, 1e9, 0.0, 0.003f);
         water.bubbles = gain;
         water.bubbles_m = 0.5f;
-        SeaPoint point{.to_eye = -tilted(degrees * kOneDegree, 0.7), .slope_variance = vec3(0.003f, 0.003f, 0.0f)};
+        SeaPoint point{.to_eye = -tilted(degrees * kOneDegree, 0.7),
+                       .slope_variance = vec3(0.003f, 0.003f, 0.0f)};
         point.bubbles = bubbles;
         SeaRadiance lit;
         shade_sea_from_below({}, sky, water, -5.0f, {&point, 1}, {&distance_m, 1}, {&lit, 1});
@@ -265,7 +269,8 @@ TEST(Below, BubblesVeilTheWindow) {
         EXPECT_EQ(none.sky, off.sky);
         EXPECT_EQ(none.sea, off.sea);
         EXPECT_EQ(none.sun, off.sun);
-        EXPECT_NEAR(seen(degrees, 0.9f, 1.0f, 1e-5f).sky.y / seen(degrees, 0.0f, 1.0f, 1e-5f).sky.y, 1.0f, 1e-3f);
+        EXPECT_NEAR(seen(degrees, 0.9f, 1.0f, 1e-5f).sky.y / seen(degrees, 0.0f, 1.0f, 1e-5f).sky.y, 1.0f,
+                    1e-3f);
     }
 }
 

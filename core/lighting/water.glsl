@@ -41,9 +41,9 @@ struct SeenBody {
     vec3 from_eye;  // [m]
     float pixel_m;  // as wide as a pixel there
     vec3 crest;   // of the long waves: slopes and height [m]
-    float fresh;  // coverage of what breaks now, with that of which bubbles of earlier breaking are a part; or without that sum
-    float old;    // what earlier breaking has left of foam
-    float age_s;  // and how old that is
+    float fresh;  // coverage of what breaks now; where one knows the bubbles that earlier breaking has left, with these, of 1 where all breaks
+    float old;    // where one doesn't: coverage of what it has left of foam
+    float age_s;  // of the latter
 };
 
 SeenBody no_crest_nor_bubbles() {

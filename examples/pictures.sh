@@ -23,7 +23,7 @@ sheet() {  # COLUMNS JPEG PICTURE…
 render() {  # SHOT FRAMES
     "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$1.toml" --frames "$2" --samples 2 --out "$scratch"
 }
-for shot in noon low-sun overcast storm storm-trough spray from-8-km patch lagoon tiles atoll half-under from-below; do
+for shot in noon low-sun overcast storm storm-trough spray from-8-km patch lagoon tiles atoll glassy-backlit half-under from-below; do
     render $shot 12
     sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
@@ -42,4 +42,4 @@ sheet 1 presets.jpg "$scratch/presets.png"
 mapfile -t presets < <("$PELAGIC_ROOT/build/release/pelagic" presets | cut -d ' ' -f 1)
 blender -b --factory-startup --python-exit-code 1 --python "$here/preset-thumbnails.py" -- \
     "$scratch/presets.png" "$PELAGIC_ROOT/addon/pelagic_ocean/thumbnails" "${presets[@]}" >/dev/null
-ls -l "$out"/{presets,noon,low-sun,overcast,storm,storm-trough,spray,from-8-km,patch,lagoon,tiles,atoll,half-under,from-below,water-types,foam,foam-strip}.jpg
+ls -l "$out"/{presets,noon,low-sun,overcast,storm,storm-trough,spray,from-8-km,patch,lagoon,tiles,atoll,glassy-backlit,half-under,from-below,water-types,foam,foam-strip}.jpg

@@ -71,11 +71,12 @@ struct FoamHistory<T>::Level {
 
 template <class T>
 struct FoamHistory<T>::Tile {
-    Tile(const Place& at, std::size_t kept)
-        : place(at), shares(kept * kStride), deviates(kSamples * kStride), foam(2 * kStride) {}
+    Tile(const Place& at, std::size_t kept, std::size_t sums)
+        : place(at), shares(kept * kStride), deviates(kSamples * kStride), foam(sums * kStride) {}
 
     std::span<float> residual() { return {foam.data(), kNodes}; }
     std::span<float> age() { return {foam.data() + kStride, kNodes}; }
+    std::span<float> bubbles() { return {foam.data() + 2 * kStride, kNodes}; }
     std::size_t bytes() const {
         return shares.size() * sizeof(std::uint16_t) + (deviates.size() + foam.size()) * sizeof(float);
     }
@@ -219,6 +220,8 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
     mean_ = static_cast<float>(std::min(sea_->left_coverage(), 1.0));
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
+    mean_bubbles_ =
+        static_cast<float>(sea_->left_coverage() / all.foam_s * foam_.bubbles_weight_s(0.0, foam_.window_s));
 }
 
 template <class T>
@@ -239,7 +242,9 @@ void FoamHistory<T>::set(double t_s) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
         const FoamPlan::Weight weight = foam_.weight(since_s - foam_.step_s, since_s);
         weights_.push_back({static_cast<float>(sea_->foam_left_per_s() * weight.foam_s),
-                            static_cast<float>(sea_->foam_left_per_s() * weight.age_s2)});
+                            static_cast<float>(sea_->foam_left_per_s() * weight.age_s2),
+                            static_cast<float>(sea_->foam_left_per_s() *
+                                               foam_.bubbles_weight_s(since_s - foam_.step_s, since_s))});
     }
 }
 
@@ -250,23 +255,25 @@ typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atom
     return *level;
 }
 
-// The residual foam at points from `first` on, and foam times its age; false where a tile is missing, which is noted.
+// Two sums at points from `first` on; false where a tile is missing, which is noted.
 template <class T>
-bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<float> foam,
+bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& sums, std::span<float> foam,
                           std::span<float> aged, std::vector<Place>& missing) const {
     const std::size_t missed = missing.size();
     typename Locator::Part part;
     alignas(64) std::array<float, kPart> next, next_age;
-    for (const std::span<float> of : {foam, std::span<float>(next)}) std::fill(of.begin(), of.end(), mean_);
+    for (const std::span<float> of : {foam, std::span<float>(next)})
+        std::fill(of.begin(), of.end(), sums.mean_of_first);
     for (const std::span<float> of : {aged, std::span<float>(next_age)})
-        std::fill(of.begin(), of.end(), mean_ * mean_age_s_);
+        std::fill(of.begin(), of.end(), sums.mean_of_second);
     locate(first, foam.size(), part, [&](int which, const Place& place, std::size_t begin, std::size_t end) {
         const auto found = tiles_.find(place);
         if (found != tiles_.end()) found->second->was_read(round_, time_s_);
         if (found == tiles_.end() || !found->second->is_of(time_s_)) return missing.push_back(place);
         const float* values = found->second->foam.data();
-        kernels_.between({values, values + kStride}, part.x, part.y, begin, end,
-                         which == 0 ? foam.data() : next.data(), which == 0 ? aged.data() : next_age.data());
+        kernels_.between({values + sums.first * kStride, values + sums.second * kStride}, part.x, part.y,
+                         begin, end, which == 0 ? foam.data() : next.data(),
+                         which == 0 ? aged.data() : next_age.data());
     });
     const bool blends = !Locator::is_on_level(part, foam.size());
     for (std::size_t i = 0; blends && i < foam.size(); ++i) {
@@ -276,11 +283,12 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
     return missing.size() == missed;
 }
 
-// Calls use(first, foam, aged) for parts of the points. Most tiles are there from the time before; parts that lack
+// Calls use(first, of the first sum, of the second) for parts of the points. Most tiles are there from the time before; parts that lack
 // some are read again when those are made.
 template <class T>
 template <class Use>
-void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use) {
+void FoamHistory<T>::for_parts(const Points<T>& points, int query, const Sums& sums, const BuildWatch& watch,
+                               const Use& use) {
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
     renew(watch);
     const Locator locate(*this, points, query);
@@ -293,7 +301,7 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
             alignas(64) std::array<float, kPart> foam, aged;
             for (std::size_t p = range.begin(); p < range.end(); ++p) {
                 const std::size_t first = parts[p], count = std::min(kPart, points.count - first);
-                if (read(locate, first, {foam.data(), count}, {aged.data(), count}, missing.local()))
+                if (read(locate, first, sums, {foam.data(), count}, {aged.data(), count}, missing.local()))
                     use(first, std::span<const float>(foam.data(), count),
                         std::span<const float>(aged.data(), count));
                 else
@@ -423,7 +431,8 @@ std::vector<FoamNodes> FoamHistory<T>::nodes() const {
     std::vector<FoamNodes> nodes;
     for (const auto& [place, tile] : tiles_)
         if (tile->used.load() == round_ && tile->is_of(time_s_))
-            nodes.push_back({place, tile->foam.data(), tile->foam.data() + kStride});
+            nodes.push_back({place, tile->foam.data(), tile->foam.data() + kStride,
+                             foam_.sums() > 2 ? tile->foam.data() + 2 * kStride : nullptr});
     std::sort(nodes.begin(), nodes.end(),
               [](const FoamNodes& a, const FoamNodes& b) { return order_of(a.place) < order_of(b.place); });
     return nodes;
@@ -459,7 +468,8 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     for (const Place& place : places) {
         auto tile = tiles_.find(place);  // made before it is entered: memory may be refused
-        if (tile == tiles_.end()) tile = tiles_.emplace(place, std::make_unique<Tile>(place, kept)).first;
+        if (tile == tiles_.end())
+            tile = tiles_.emplace(place, std::make_unique<Tile>(place, kept, foam_.sums())).first;
         if (!tile->second->is_of(time_s_)) old.push_back(tile->second.get());
     }
     if (old.empty()) return;
@@ -473,6 +483,15 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
                 shares.push_back({tile.shares.data() + modulo(n, kept) * kStride, weight.foam, weight.age});
         }
         kernels_.sum(shares, tile.residual(), tile.age());
+        if (foam_.sums() > 2) {
+            shares.clear();
+            for (std::int64_t n = first_; n <= last_; ++n)
+                if (const float bubbles = weights_[static_cast<std::size_t>(n - first_)].bubbles;
+                    bubbles > 0.0f)
+                    shares.push_back({tile.shares.data() + modulo(n, kept) * kStride, bubbles, 0.0f});
+            std::array<float, kStride> nothing;
+            kernels_.sum(shares, tile.bubbles(), {nothing.data(), kNodes});
+        }
         tile.made_at = time_s_;
         tile.is_made = true;
     });
@@ -574,7 +593,7 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults<T
         }
         return;
     }
-    for_parts(points, query, watch,
+    for_parts(points, query, {0, 1, mean_, mean_ * mean_age_s_}, watch,
               [&](std::size_t first, std::span<const float> foam, std::span<const float> aged) {
                   const std::size_t count = foam.size();
                   alignas(64) std::array<float, kPart> breaking, all, age_s;
@@ -586,6 +605,16 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults<T
                       results.coverage[first + i] = static_cast<T>(all[i]);
                   for (std::size_t i = 0; results.age_s && i < count; ++i)
                       results.age_s[first + i] = static_cast<T>(age_s[i]);
+              });
+}
+
+template <class T>
+void FoamHistory<T>::add_bubbles(const Points<T>& points, int query, std::span<float> bubbles,
+                                 const BuildWatch& watch) {
+    if (leaves_nothing() || foam_.sums() < 3) return std::fill(bubbles.begin(), bubbles.end(), 0.0f);
+    for_parts(points, query, {2, 2, mean_bubbles_, mean_bubbles_}, watch,
+              [&](std::size_t first, std::span<const float> left, std::span<const float>) {
+                  std::copy(left.begin(), left.end(), bubbles.begin() + static_cast<std::ptrdiff_t>(first));
               });
 }
 

@@ -49,6 +49,7 @@ void keep_each_once(std::vector<FoamPlace>& places);
 struct FoamNodes {
     FoamPlace place;
     const float *foam, *aged;  // residual foam, not limited to 1, and that times its age [s]
+    const float* bubbles;      // that are left, of 1 where all breaks; null where the plan has none
 };
 
 template <class T>
@@ -84,11 +85,16 @@ class FoamHistory {
     // Beyond the last level: residual foam, and that times its age [s].
     float mean() const { return mean_; }
     float mean_times_age_s() const { return mean_ * mean_age_s_; }
+    float mean_bubbles() const { return mean_bubbles_; }
 
     // Adds to what breaks now what earlier breaking has left. Tiles that were read at the time before and haven't been
     // made for this one are made first, all at once. On all threads of the calling arena, one call at a time.
     // `watch`: as prepare()'s; of a call that was cancelled the results are worthless.
     void add(const Points<T>& points, int query, const FoamResults<T>& results, const BuildWatch& watch = {});
+
+    // The bubbles that earlier breaking has left, of 1 where all breaks: the same sum with their own decay, not limited. Of a plan that has them.
+    void add_bubbles(const Points<T>& points, int query, std::span<float> bubbles,
+                     const BuildWatch& watch = {});
 
     // Bytes of all tiles, and of the seas that they are sampled from. The plan's foam_history_bytes() expects as many: for squares
     // and views all round a camera no more are needed, in a picture's frame waves may show more tiles than a plan can know.
@@ -104,10 +110,16 @@ class FoamHistory {
     class Locator;  // of points among the nodes
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
+    // Two of a tile's sums, with what they are beyond all tiles.
+    struct Sums {
+        std::size_t first, second;
+        float mean_of_first, mean_of_second;
+    };
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
-    bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> aged,
-              std::vector<Place>& missing) const;
+    void for_parts(const Points<T>& points, int query, const Sums& sums, const BuildWatch& watch,
+                   const Use& use);
+    bool read(const Locator& locate, std::size_t first, const Sums& sums, std::span<float> of_first,
+              std::span<float> of_second, std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);
     void renew(const BuildWatch& watch);
     std::vector<Place> surroundings_of(const std::vector<Place>& places) const;
@@ -124,10 +136,11 @@ class FoamHistory {
     std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
+    float mean_bubbles_ = 0.0f;
     double time_s_ = 0.0;
     std::int64_t first_ = 0, last_ = -1;  // the intervals that count now
     struct IntervalWeight {
-        float foam, age;
+        float foam, age, bubbles;
     };
     std::vector<IntervalWeight> weights_;
     long round_ = 0;  // calls of set()

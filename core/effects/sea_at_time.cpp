@@ -142,6 +142,14 @@ void SeaAtTime<T>::evaluate(const PreparedQuery<T>& query, const Points<T>& poin
                 query.query(), points, results, watch);
 }
 
+template <class T>
+void SeaAtTime<T>::bubbles(int query, const Points<T>& points, std::span<float> left,
+                           const BuildWatch& watch) const {
+    if (left.size() != points.count) throw std::invalid_argument("bubbles: give a number for each point");
+    const std::lock_guard lock(lock_);
+    tbb::this_task_arena::isolate([&] { history().add_bubbles(points, query, left, watch); });
+}
+
 template class SeaAtTime<float>;
 template class SeaAtTime<double>;
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/effects/foam_history.h"
@@ -49,6 +50,11 @@ class SeaAtTime {
     // `alone`: by the calling thread.
     void evaluate(const PreparedQuery<T>& query, const Points<T>& points, const Results<T>& results,
                   const BuildWatch& watch = {}, bool alone = false) const;
+
+    // The bubbles that earlier breaking has left, of 1 where all breaks (FoamHistory), of a plan that has them and a query with a past.
+    bool has_bubbles(int query) const { return has_past(query) && sea().plan().foam->bubbles_m > 0.0; }
+    void bubbles(int query, const Points<T>& points, std::span<float> left,
+                 const BuildWatch& watch = {}) const;
 
   private:
     FoamHistory<T>& history() const;  // at the frame's time; of a caller that has the lock

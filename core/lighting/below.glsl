@@ -300,12 +300,37 @@ vec3 sun_from_below(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, fl
     return sun_radiance * (min(part, most) * square(kWaterIndex) * (1.0f - fresnel_exact(cosine, 1.0f / kWaterIndex)));
 }
 
+// 1 − exp(−x), with all digits where that is little.
+float lost_by(float x) { return x < 0.1f ? x * (1.0f - 0.5f * x * (1.0f - x / 3.0f * (1.0f - 0.25f * x))) : 1.0f - exp(-x); }
+
+// What a cloud of bubbles makes of light that falls on it at that cosine: it sends a part back, lets a part through as it was, and spreads the
+// rest about the way on. No bubble absorbs. bubbles: b_g L.
+struct BubbleVeil {
+    float back;
+    float sharp;
+    float spread;
+};
+
+BubbleVeil bubble_veil(float bubbles, float cosine) {
+    float back = bubbles_add(bubbles, vec3(0.0f)).x;
+    float lost = max(lost_by(bubbles / max(cosine, 0.05f)), back);
+    return BubbleVeil(back, 1.0f - lost, lost - back);
+}
+
+// Clean bubbles' phase function [1/sr], by the cosine to the way on: Henyey and Greenstein's of g = 0.655 (geometric half alone), of g^n after n scatterings.
+float ahead_of_bubbles(float cosine, float bubbles, float of_sun) {
+    float g = pow(0.655f, max(bubbles / of_sun, 1.0f));
+    float sum = max(1.0f + g * g - 2.0f * g * cosine, 1.0e-4f);
+    return (1.0f - g * g) / (4.0f * kPi) * inversesqrt(sum * sum * sum);
+}
+
 // Of the light on foam the part that comes out below: half of what it doesn't reflect, since bubbles hang under it; by eye.
 const float kFoamLetsThrough = 0.5f;
 
 // All that a pixel of the surface sends to an eye below it. As sea_radiance(), with the world's axes; distance_m: of the eye, which is
-// at height_m above the sea at rest. Foam hides sky, sun and mirrored water, and is lit from both sides.
-SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, float height_m, float distance_m,
+// at height_m above the sea at rest. Foam hides sky, sun and mirrored water, and is lit from both sides. Bubbles hang under it all as one
+// thin layer, lit by what comes through the surface there.
+SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeenBody body, float height_m, float distance_m,
                         SeaLight light) {
     vec3 eye = upside_down(to_eye);
     SlopeFrame frame = slope_frame(facing_normal(vec3(-normal.x, -normal.y, normal.z), eye), slope_variance);
@@ -329,6 +354,25 @@ SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam 
         vec3 above = (light.sun_irradiance + light.sky_irradiance) / kPi;
         vec3 below = water_between(-distance_m * to_eye, vec3(0.0f, 0.0f, -1.0f), 0.0f, -1.0f, 1.0f, light).light;
         terms.foam = seen.opacity * (kFoamLetsThrough * (1.0f - seen.white) * above + seen.white * below);
+        float bubbles = bubbles_below(light.water, body);
+        if (bubbles > 0.0f) {
+            // Those between the surface and the eye.
+            bubbles *= lost_by(distance_m * max(-to_eye.z, 0.0f) / light.water.bubbles_m);
+            BubbleVeil veil = bubble_veil(bubbles, max(-to_eye.z, 0.0f));
+            float in_sky = entering_from_sky(light.water.waves);
+            float of_sun = refracted_cosine(light.sun_direction.z);
+            float to_sun = water_sight(-to_eye, height_m, distance_m, light.sun_direction, light.water).to_sun;
+            vec3 sun = light.sun_irradiance *
+                       (entering(vec3(light.sun_direction.x, light.sun_direction.y, max(light.sun_direction.z, 0.0f)), light.water.waves) *
+                        ahead_of_bubbles(to_sun, bubbles, of_sun) / of_sun);
+            vec3 sky_light = light.sky_irradiance * (in_sky / kPi) + (1.0f - in_sky / square(kWaterIndex)) * below;
+            vec3 hung = veil.spread * (clear * (sun + sky_light) + terms.foam) + veil.back * below;
+            terms.sun *= veil.sharp;
+            terms.sky *= veil.sharp;
+            terms.sea *= veil.sharp;
+            terms.foam *= veil.sharp;
+            if (kWater) terms.sea += hung;
+        }
     }
     terms.sun *= between.left;
     terms.sky *= between.left;

@@ -67,6 +67,7 @@ struct Shading {
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
 #include "core/lighting/floor.glsl"
+#include "core/base/bubbles.inl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
@@ -166,7 +167,13 @@ template <class Variant>
 typename Variant::SeenBody seen_body(Variant& shading, const WaterBody& water, const SeaPoint& p) {
     const float covered = water.bubbles > 0.0f ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
                 fresh = std::min(covered, std::max(p.active, 0.0f));
-    return {p.from_eye_m, shading.pixel_over(p.pixel_m), p.crest, fresh, covered - fresh, p.age_s};
+    const bool is_sum = water.bubbles > 0.0f && p.bubbles >= 0.0f;
+    return {p.from_eye_m,
+            shading.pixel_over(p.pixel_m),
+            p.crest,
+            is_sum ? fresh + p.bubbles : fresh,
+            is_sum ? 0.0f : covered - fresh,
+            p.age_s};
 }
 
 void albedo_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
@@ -263,9 +270,10 @@ void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const Wa
         const glm::vec3 down(-p.normal.x, -p.normal.y, p.normal.z);
         const glm::vec3 seen = shading.visible_normal(down, shading.upside_down(to_eye),
                                                       p.slope_variance_at_rest, p.mesh_variance);
-        const typename Variant::SeaTerms terms = shading.sea_from_below(
-            to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
-            sea_shading::foam_at(shading, choice, pattern, p, sky), height_m, distance_m[i], light);
+        const typename Variant::SeaTerms terms =
+            shading.sea_from_below(to_eye, {-seen.x, -seen.y, seen.z}, p.slope_variance,
+                                   sea_shading::foam_at(shading, choice, pattern, p, sky),
+                                   sea_shading::seen_body(shading, water, p), height_m, distance_m[i], light);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }

@@ -68,6 +68,8 @@ struct SeaPoint {
     glm::vec3 from_eye_m{0.0f};  // in the eye's axes, for the floor below
     // Of the waves longer than kCrestFootprint_m's, for light through crests: slopes and height above the sea at rest [m].
     glm::vec3 crest{0.0f};
+    // What earlier breaking has left of the bubbles, of 1 where all breaks; negative where nobody knows: then by what is left of the foam and its age.
+    float bubbles = -1.0f;
 };
 // The footprint at which SeaPoint::crest is asked for [m]: ripples don't bend the light's way through a crest.
 inline constexpr double kCrestFootprint_m = 1.0;

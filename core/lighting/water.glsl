@@ -41,8 +41,8 @@ struct SeenBody {
     vec3 from_eye;  // [m]
     float pixel_m;  // as wide as a pixel there
     vec3 crest;   // of the long waves: slopes and height [m]
-    float fresh;  // coverage of what breaks now, and of what earlier breaking has left
-    float old;
+    float fresh;  // coverage of what breaks now; where one knows the bubbles that earlier breaking has left, with these, of 1 where all breaks
+    float old;    // where one doesn't: coverage of what it has left of foam
     float age_s;  // of the latter
 };
 
@@ -209,12 +209,16 @@ CrestLight light_at_crest(vec3 to_eye, vec3 to_sun, vec3 crest, float per_m, vec
     return CrestLight(lit, 1.25f * (1.0f - fresnel_exact(there, kWaterIndex)) * there, share, 2.0f * phase / per_m);
 }
 
-// Bubbles of clean air, larger ones first gone: ¾ of their cross-section over the volume at the surface [1/m], by the age of the foam
-// above them. Deane and Stokes' sizes (2002), by the speeds at which they rise. Clouds begin with a void fraction of 3e-3, which is known to
-// an order of magnitude (1e-3 … 1e-2): more makes storms milk. The decay at the end is a guess.
+// ¾ of the bubbles' cross-section over the volume at the surface [1/m], by the age of the foam above them. Clouds begin with a void fraction
+// of 3e-3, which is known to an order of magnitude (1e-3 … 1e-2): more makes storms milk.
 float bubbles_per_m(float age_s, float depth_m) {
-    float risen = age_s / (4.0f * max(depth_m, 1.0e-3f));
-    return 3.75f * (0.82f * exp(-risen) + 0.18f * pow(1.0f + risen, -0.75f)) * exp(-0.01f * age_s);
+    return 3.75f * bubbles_left(age_s, depth_m);
+}
+
+// Below such a place: WaterWay::bubbles.
+float bubbles_below(WaterLook look, SeenBody seen) {
+    return look.bubbles * look.bubbles_m *
+           (seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) + seen.old * bubbles_per_m(seen.age_s, look.bubbles_m));
 }
 
 // The radiance just above the surface, before the factor (1 − F̄) of transmission outwards: level axes, the normal facing the eye.
@@ -248,8 +252,7 @@ vec3 body_radiance(vec3 to_eye, vec3 normal, vec3 to_sun, vec3 sun_irradiance, v
         }
     }
     way.bubbles_m = look.bubbles_m;
-    way.bubbles = look.bubbles * look.bubbles_m *
-                  (seen.fresh * bubbles_per_m(0.0f, look.bubbles_m) + seen.old * bubbles_per_m(seen.age_s, look.bubbles_m));
+    way.bubbles = bubbles_below(look, seen);
     bool has_crests = look.crest_light > 0.0f && look.crest_per_m > 0.0f && to_sun.z > 0.0f;
     CrestLight crest = CrestLight(0.0f, 0.0f, 0.0f, 0.0f);
     if (has_crests) crest = light_at_crest(to_eye, to_sun, seen.crest, look.crest_per_m, look.waves);

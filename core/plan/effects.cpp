@@ -103,8 +103,8 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .plan =
          [](Plan& plan) {
              if (asks_for(plan, foam_products()))
-                 plan.foam =
-                     plan_foam(plan.from->scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
+                 plan.foam = plan_foam(plan.from->scene, plan.from->spectrum, plan.breaking.footprint_m,
+                                       plan.knobs.foam_steps_a_period);
          },
      .state = {"the foam's history", [](const Plan& plan) { return plan.foam_history_bytes(); },
                "lower effects.foam_decay_s"},

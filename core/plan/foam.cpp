@@ -30,7 +30,7 @@ int FoamPlan::intervals() const {
 
 std::size_t FoamPlan::tile_bytes() const {
     const auto kept = static_cast<std::size_t>(intervals() + kSpareIntervals);
-    return kTileStride * (kept * sizeof(std::uint16_t) + 8 * sizeof(float));
+    return kTileStride * (kept * sizeof(std::uint16_t) + (6 + sums()) * sizeof(float));
 }
 
 FoamPlan::Weight FoamPlan::weight(double from_s, double to_s) const {
@@ -40,7 +40,48 @@ FoamPlan::Weight FoamPlan::weight(double from_s, double to_s) const {
     return {decay_s * (at_a - at_b), decay_s * ((a + decay_s) * at_a - (b + decay_s) * at_b)};
 }
 
-FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
+namespace {
+
+namespace bubbles {
+using std::exp, std::max, std::pow;
+#include "core/base/bubbles.inl"
+}  // namespace bubbles
+
+// ∫ f from a to b, by Simpson's rule.
+template <class F>
+double integral(double a, double b, int pairs, const F& f) {
+    const double h = 0.5 * (b - a) / pairs;
+    double sum = f(a) - f(b);
+    for (int i = 0; i < pairs; ++i) sum += 4.0 * f(a + (2 * i + 1) * h) + 2.0 * f(a + (2 * i + 2) * h);
+    return sum * h / 3.0;
+}
+
+}  // namespace
+
+double FoamPlan::bubbles_weight_s(double from_s, double to_s) const {
+    const double a = std::max(from_s, 0.0), b = std::min(to_s, window_s);
+    if (!(a < b && bubbles_m > 0.0)) return 0.0;
+    const int pairs = 2 + static_cast<int>(std::min((b - a) / std::min(bubbles_m, 1.0), 100.0));
+    return integral(a, b, pairs, [&](double age_s) {
+        const double late = std::clamp(3.0 * age_s / window_s - 2.0, 0.0, 1.0);
+        return (1.0 - late * late * (3.0 - 2.0 * late)) *
+               bubbles::bubbles_left(static_cast<float>(age_s), static_cast<float>(bubbles_m));
+    });
+}
+
+double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003); most whitecaps are those of waves much shorter than the
+    // peak's, some 0.4 of its speed and 0.3 of its height.
+    constexpr double kBreakerOverHs = 0.3;
+    SeaState wind = scene.sea;  // swell doesn't break in the open sea
+    wind.swell.clear();
+    const double m0 =
+        scene.sea.swell.empty() ? spectrum.m0() : DirectionalSpectrum(wind, scene.waves.band_gains).m0();
+    return 0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0);
+}
+
+FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m,
+                   double steps_a_period) {
     const Effects& effects = scene.effects;
     constexpr double kFinestCell_m = 0.25;
     constexpr double kCell =
@@ -54,6 +95,8 @@ FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
     const double towards = scene.sea.wind_direction_deg * kPi / 180.0;
     foam.drift_mps =
         effects.foam_drift * scene.sea.wind_speed_mps * glm::dvec2(std::cos(towards), std::sin(towards));
+    if (scene.water.body && scene.water.bubbles > 0.0)
+        foam.bubbles_m = static_cast<float>(bubbles_depth_m(scene, spectrum));
     foam.loop_s = scene.shot.sea_loop_s();
     if (foam.loop_s > foam.step_s)
         foam.step_s = foam.loop_s / std::ceil(foam.loop_s / foam.step_s);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/plan/query.h"
+#include "core/spectrum/directional_spectrum.h"
 #include "pelagic/scene.h"
 
 namespace pelagic {
@@ -21,9 +22,10 @@ struct FoamPlan {
     glm::dvec2 drift_mps{0.0};  // of the foam over the water at rest
     double step_s =
         0.0;  // of the lattice of times; a whole number of steps makes a loop, or of very short loops a step
-    double window_s = 0.0;  // nothing older counts
-    double cell_m = 0.0;    // of the finest level; each further one has cells twice as large
-    double loop_s = 0.0;    // of the sea; 0: none
+    double window_s = 0.0;   // nothing older counts
+    double cell_m = 0.0;     // of the finest level; each further one has cells twice as large
+    double loop_s = 0.0;     // of the sea; 0: none
+    double bubbles_m = 0.0;  // e-folding depth of the bubbles that breaking leaves; 0: nobody sees them
 
     // Levels with cells; beyond the last, foam is the sea's mean.
     static constexpr int kLevels = 8;
@@ -38,8 +40,9 @@ struct FoamPlan {
     // Intervals that a frame reads.
     int intervals() const;
     // Bytes of a tile's history: half a float for each interval and a few more, for a picture that begins before the one before it ends, six deviates, and
-    // what a frame adds up.
+    // what a frame adds up: two sums, and a third of bubbles.
     static constexpr int kSpareIntervals = 3;
+    std::size_t sums() const { return bubbles_m > 0.0 ? 3 : 2; }
     std::size_t tile_bytes() const;
 
     // ∫ e^{−a/decay} da [s] and ∫ a e^{−a/decay} da [s²] over ages a within [from_s, to_s] and the window.
@@ -47,11 +50,19 @@ struct FoamPlan {
         double foam_s = 0.0, age_s2 = 0.0;
     };
     Weight weight(double from_s, double to_s) const;
+
+    // ∫ of the bubbles that are left [s], of 1 at age 0, over ages within [from_s, to_s] and the window. A storm's stay longer than foam: they
+    // fade over the last third of the window, since what is older, the waves have spread so far that it is the water's own colour.
+    double bubbles_weight_s(double from_s, double to_s) const;
 };
+
+// How deep bubbles are under foam, e-folding [m]: `spectrum` is the scene's.
+double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum);
 
 // Of a scene that has persistent foam. steps_a_period: Knobs::foam_steps_a_period. `finest_m`: no breaking is resolved
 // below it.
-FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period);
+FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m,
+                   double steps_a_period);
 
 // Which level's cells serve a footprint, two cells a footprint: (1 − t) of `level` and t of the next.
 struct FoamLevelBlend {

@@ -456,6 +456,7 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
     }
     Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);
+    if (plan.foam) plan.foam->bubbles_m = 0.0;  // what looks at them are pictures
     plan.surface = surface;
     plan.surface_needs = needs;
     return plan;

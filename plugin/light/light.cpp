@@ -22,6 +22,7 @@
 #include "core/lighting/lighting.h"
 #include "core/lighting/primaries.h"
 #include "core/plan/fingerprint.h"
+#include "core/plan/foam.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
@@ -276,14 +277,7 @@ WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
     // Of a sine of the crests' height and slope.
     if (crests.m0 > 0.0) water.crest_per_m = static_cast<float>(std::sqrt(crests.mss() / crests.m0));
     water.bubbles = static_cast<float>(scene.water.bubbles);
-    // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003); most whitecaps are those of waves much shorter than the
-    // peak's, some 0.4 of its speed and 0.3 of its height.
-    constexpr double kBreakerOverHs = 0.3;
-    SeaState wind = scene.sea;  // swell doesn't break in the open sea
-    wind.swell.clear();
-    const double m0 =
-        scene.sea.swell.empty() ? spectrum.m0() : DirectionalSpectrum(wind, scene.waves.band_gains).m0();
-    water.bubbles_m = static_cast<float>(0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0));
+    water.bubbles_m = static_cast<float>(bubbles_depth_m(scene, spectrum));
     return water;
 }
 

@@ -109,6 +109,8 @@ void SeaLight<T>::answer(const SeenSea<T>& seen) {
                         Product::Velocity);  // whoever found the places has them
     const Points<T> points = seen.points();
     runner_.run(state_, kQuery, points, wanted, answers_);
+    bubbles_.resize(state_.has_bubbles(kQuery) && choice_.whitecaps ? seen.size() : 0);
+    if (!bubbles_.empty()) state_.bubbles(kQuery, points, bubbles_);
 }
 
 template <class T>
@@ -141,6 +143,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                 for (std::size_t i = range.begin(); i < range.end(); ++i) {
                     points_[i].active = answers_.numbers(Product::Breaking)[i];
                     points_[i].age_s = residual_age_s(i);
+                    if (!bubbles_.empty()) points_[i].bubbles = bubbles_[i];
                 }
             const auto is_below = [&](std::size_t i) {
                 return !seen.from_below.empty() && seen.from_below[i] != 0;

@@ -142,6 +142,7 @@ class SeaLight {
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;
     Values answers_;
+    std::vector<float> bubbles_;  // by the same points, of a sea that has them
     std::vector<SeaPoint> points_;
 };
 

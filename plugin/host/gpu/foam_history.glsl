@@ -1,15 +1,15 @@
 // What earlier breaking has left: FoamHistory::add() (core/effects/foam_history.h), read from the textures that PackedFoam
 // describes. Needs the constants kFoamLevels, kFoamTileCells and kFoamTilesAcross.
 
-uniform sampler2D foam_nodes;  // residual foam, and that times its age [s]
+uniform sampler2D foam_nodes;  // residual foam, that times its age [s], and bubbles that are left
 uniform sampler2D foam_pages;  // which tile of foam_nodes; -1: none
 // A row for each level. First column: .xy: the origin in the level's cells from its first tile's first node; .z: cells per metre.
 // Second: .xy: its tiles across and along; .z: their first row in foam_pages. After the last level, (foam, foam times its age)
-// beyond it, and the finest level's cells per metre.
+// beyond it, the finest level's cells per metre, and bubbles beyond it; negative: there are none.
 uniform sampler2D foam_levels;
 
 // Changes nothing and returns false where the tile isn't there.
-bool foam_of_level(int level, vec2 rest_m, inout vec2 foam) {
+bool foam_of_level(int level, vec2 rest_m, inout vec3 foam) {
     vec4 at = texelFetch(foam_levels, ivec2(0, level), 0);
     vec4 box = texelFetch(foam_levels, ivec2(1, level), 0);
     vec2 place = at.xy + at.z * rest_m;
@@ -21,14 +21,14 @@ bool foam_of_level(int level, vec2 rest_m, inout vec2 foam) {
     ivec2 texel = ivec2(page % kFoamTilesAcross, page / kFoamTilesAcross) * (kFoamTileCells + 1) +
                   ivec2(node - float(kFoamTileCells) * tile);
     vec2 to = place - node;
-    vec2 low = mix(texelFetch(foam_nodes, texel, 0).xy, texelFetch(foam_nodes, texel + ivec2(1, 0), 0).xy, to.x);
-    vec2 high = mix(texelFetch(foam_nodes, texel + ivec2(0, 1), 0).xy, texelFetch(foam_nodes, texel + ivec2(1, 1), 0).xy, to.x);
+    vec3 low = mix(texelFetch(foam_nodes, texel, 0).xyz, texelFetch(foam_nodes, texel + ivec2(1, 0), 0).xyz, to.x);
+    vec3 high = mix(texelFetch(foam_nodes, texel + ivec2(0, 1), 0).xyz, texelFetch(foam_nodes, texel + ivec2(1, 1), 0).xyz, to.x);
     foam = mix(low, high, to.y);
     return true;
 }
 
-// Residual foam, and that times its age, by the rule of foam_level_blend().
-vec2 foam_left(vec2 rest_m, vec3 pixel) {
+// Residual foam, that times its age, and bubbles, by the rule of foam_level_blend().
+vec3 foam_left(vec2 rest_m, vec3 pixel) {
     vec4 sea = texelFetch(foam_levels, ivec2(0, kFoamLevels), 0);
     float along = length(pixel.yz);
     float footprint = along > pixel.x ? sqrt(pixel.x * along) : pixel.x;
@@ -36,11 +36,11 @@ vec2 foam_left(vec2 rest_m, vec3 pixel) {
     int level = 0;
     for (; level < kFoamLevels && cells >= 2.0; ++level) cells *= 0.5;
     float t = level < kFoamLevels ? max(cells - 1.0, 0.0) : 0.0;
-    vec2 sum = vec2(0.0);
+    vec3 sum = vec3(0.0);
     for (int k = 0; k < 2; ++k) {
         float share = k == 0 ? 1.0 - t : t;
         if (!(share > 0.0)) continue;
-        vec2 foam = sea.xy;
+        vec3 foam = sea.xyw;
         // Where a tile isn't there yet, coarser ones may be.
         for (int i = level + k; i < kFoamLevels; ++i)
             if (foam_of_level(i, rest_m, foam)) break;
@@ -50,6 +50,8 @@ vec2 foam_left(vec2 rest_m, vec3 pixel) {
 }
 
 AllFoam all_foam(vec2 rest_m, vec3 pixel, float breaking) {
-    vec2 left = foam_left(rest_m, pixel);
-    return AllFoam(breaking + residual_foam(left.x, breaking), breaking, left.x > 0.0 ? left.y / left.x : 0.0);
+    vec3 left = foam_left(rest_m, pixel);
+    bool has_bubbles = texelFetch(foam_levels, ivec2(0, kFoamLevels), 0).w >= 0.0;
+    return AllFoam(breaking + residual_foam(left.x, breaking), breaking, left.x > 0.0 ? left.y / left.x : 0.0,
+                   has_bubbles ? left.z : -1.0);
 }

@@ -49,7 +49,11 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
     const auto count = static_cast<int>(tiles.size());
     const int rows = (count + kTilesAcross - 1) / kTilesAcross;
     if (count > 0) nodes_size_ = kSide * glm::ivec2(std::min(count, kTilesAcross), rows);
-    nodes_.assign(static_cast<std::size_t>(nodes_size_.x) * nodes_size_.y, glm::vec2(0.0f));
+    if (history.plan().sums() > 2) {
+        channels_ = 4;
+        mean_bubbles_ = history.mean_bubbles();
+    }
+    nodes_.assign(static_cast<std::size_t>(channels_) * nodes_size_.x * nodes_size_.y, 0.0f);
     for (int i = 0; i < count; ++i) {
         const FoamNodes& tile = tiles[static_cast<std::size_t>(i)];
         const Box& box = boxes_[static_cast<std::size_t>(tile.place.level)];
@@ -58,9 +62,14 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
             static_cast<float>(i);
         const glm::ivec2 first = kSide * glm::ivec2(i % kTilesAcross, i / kTilesAcross);
         for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; ++x)
-                nodes_[static_cast<std::size_t>(first.y + y) * nodes_size_.x + first.x + x] = {
-                    tile.foam[y * kSide + x], tile.aged[y * kSide + x]};
+            for (int x = 0; x < kSide; ++x) {
+                float* const node =
+                    &nodes_[channels_ *
+                            (static_cast<std::size_t>(first.y + y) * nodes_size_.x + first.x + x)];
+                node[0] = tile.foam[y * kSide + x];
+                node[1] = tile.aged[y * kSide + x];
+                if (channels_ > 2) node[2] = tile.bubbles[y * kSide + x];
+            }
     }
 }
 
@@ -72,14 +81,14 @@ std::vector<glm::vec4> PackedFoam::level_texels(glm::dvec2 origin_m) const {
         texels.emplace_back(glm::vec2(first), static_cast<float>(box.cells_per_m), 0.0f);
         texels.emplace_back(glm::vec2(box.size), static_cast<float>(box.row), 0.0f);
     }
-    texels.emplace_back(mean_, mean_times_age_s_, cells_per_m_, 0.0f);
+    texels.emplace_back(mean_, mean_times_age_s_, cells_per_m_, mean_bubbles_);
     texels.emplace_back(0.0f);
     return texels;
 }
 
 std::size_t PackedFoam::bytes_for(const FoamPlan& foam, std::size_t history_bytes) {
     const std::size_t tiles = history_bytes / foam.tile_bytes();
-    return (tiles + kTilesAcross) * FoamPlan::kTileNodes * sizeof(glm::vec2);
+    return (tiles + kTilesAcross) * FoamPlan::kTileNodes * (foam.sums() > 2 ? 4 : 2) * sizeof(float);
 }
 
 std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid,

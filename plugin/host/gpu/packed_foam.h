@@ -24,8 +24,10 @@ class PackedFoam {
     static constexpr int kFarthestTile = 1024;  // of a level, from the centre's: so far out coarser ones do
     static constexpr int kLevelTexels = 2;      // a level's columns in level_texels()
 
-    // Nodes of tiles, kTilesAcross of them side by side: foam, and foam times its age. One texel without tiles.
-    const std::vector<glm::vec2>& nodes() const { return nodes_; }
+    // Nodes of tiles, kTilesAcross of them side by side: foam, and foam times its age; with bubbles these as well, and nothing. One texel
+    // without tiles.
+    const std::vector<float>& nodes() const { return nodes_; }
+    int channels() const { return channels_; }
     glm::ivec2 nodes_size() const { return nodes_size_; }
     // Level by level a box of tiles, as many rows as it is high: which tile of nodes() is there, −1 for none.
     const std::vector<float>& pages() const { return pages_; }
@@ -35,7 +37,7 @@ class PackedFoam {
 
     // What the history held when this was made.
     std::size_t history_bytes() const { return history_bytes_; }
-    std::size_t bytes() const { return nodes_.size() * sizeof(glm::vec2) + pages_.size() * sizeof(float); }
+    std::size_t bytes() const { return nodes_.size() * sizeof(float) + pages_.size() * sizeof(float); }
     // The bytes of foam that takes this much in a history, at most.
     static std::size_t bytes_for(const FoamPlan& foam, std::size_t history_bytes);
 
@@ -49,11 +51,12 @@ class PackedFoam {
     };
     std::array<Box, FoamPlan::kLevels> boxes_{};
     std::size_t history_bytes_ = 0;
-    std::vector<glm::vec2> nodes_{glm::vec2(0.0f)};
+    int channels_ = 2;
+    std::vector<float> nodes_ = std::vector<float>(2);
     glm::ivec2 nodes_size_{1};
     std::vector<float> pages_{-1.0f};
     glm::ivec2 pages_size_{1};
-    float mean_ = 0.0f, mean_times_age_s_ = 0.0f, cells_per_m_ = 1.0f;
+    float mean_ = 0.0f, mean_times_age_s_ = 0.0f, cells_per_m_ = 1.0f, mean_bubbles_ = -1.0f;
 };
 
 // The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which are

@@ -34,6 +34,7 @@ struct AllFoam {
     float coverage;  // of all foam
     float breaking;  // of what breaks now
     float age_s;     // of what earlier breaking has left, on average
+    float bubbles;   // what it has left of them, of 1 where all breaks; negative: nobody knows
 };
 
 struct PixelAnswer {

@@ -11,7 +11,7 @@ void main() {
     }
     vec3 pixel = pixel_on_mesh();
     PixelAnswer answer = query_pixel(rest_m, pixel);
-    AllFoam all = AllFoam(0.0, 0.0, 0.0);
+    AllFoam all = AllFoam(0.0, 0.0, 0.0, -1.0);
     if (kCoverage) all = all_foam(rest_m, pixel, answer.coverage);
     answer.coverage = all.coverage;
     if (kFalseColour != 0) {
@@ -26,19 +26,21 @@ void main() {
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look, foam_pattern_white,
                                      foam_pattern_image),
                          rest_m, pixel, all.coverage, all.breaking, all.age_s, sun_direction);
-    if (kFromBelow) {
-        vec3 normal = visible_normal(vec3(-answer.normal.x, -answer.normal.y, answer.normal.z), upside_down(to_eye),
-                                     answer.slope_variance_at_rest, mesh_variance_along());
-        SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, view_height_m,
-                                        point_distance_m(), sea_light());
-        write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
-        return;
-    }
     SeenBody body = SeenBody(pixel_ray() * point_distance_m(), pixel_over(pixel), point_crest(), 0.0, 0.0, 0.0);
     if (kWhitecaps && water_bubbles.x > 0.0) {
         float covered = clamp(all.coverage, 0.0, 1.0);
         float fresh = min(covered, max(all.breaking, 0.0));
-        body = SeenBody(body.from_eye, body.pixel_m, body.crest, fresh, covered - fresh, all.age_s);
+        bool is_sum = all.bubbles >= 0.0;
+        body = SeenBody(body.from_eye, body.pixel_m, body.crest, is_sum ? fresh + all.bubbles : fresh, is_sum ? 0.0 : covered - fresh,
+                        all.age_s);
+    }
+    if (kFromBelow) {
+        vec3 normal = visible_normal(vec3(-answer.normal.x, -answer.normal.y, answer.normal.z), upside_down(to_eye),
+                                     answer.slope_variance_at_rest, mesh_variance_along());
+        SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, body,
+                                        view_height_m, point_distance_m(), sea_light());
+        write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
+        return;
     }
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),

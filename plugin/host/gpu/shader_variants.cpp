@@ -77,6 +77,7 @@ const std::vector<std::string_view>& lighting_files() {
                                                      "core/lighting/sky.glsl",
                                                      "plugin/host/gpu/floor_uniforms.glsl",
                                                      "core/lighting/floor.glsl",
+                                                     "core/base/bubbles.inl",
                                                      "core/lighting/water.glsl",
                                                      "core/lighting/foam.glsl",
                                                      "plugin/host/gpu/foam_uniforms.glsl",

@@ -108,7 +108,7 @@ void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
         glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0, format.format,
                      GL_FLOAT, texels);
     };
-    upload(foam_textures_->nodes, foam_->nodes_size(), 2, foam_->nodes().data());
+    upload(foam_textures_->nodes, foam_->nodes_size(), foam_->channels(), foam_->nodes().data());
     upload(foam_textures_->pages, foam_->pages_size(), 1, foam_->pages().data());
 }
 

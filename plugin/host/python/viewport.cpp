@@ -344,7 +344,7 @@ class GpuSea {
             py::array_t<float> all = array_of<float>(std::move(values));
             return all.reshape({py::ssize_t{size.y}, py::ssize_t{size.x}, channels});
         };
-        made["foam_nodes"] = picture(std::vector(foam_->nodes()), foam_->nodes_size(), 2);
+        made["foam_nodes"] = picture(std::vector(foam_->nodes()), foam_->nodes_size(), foam_->channels());
         made["foam_pages"] = picture(std::vector(foam_->pages()), foam_->pages_size(), 1);
         return made;
     }
@@ -552,7 +552,7 @@ void add_viewport(py::module_& module) {
                                "Whether that thread has something to do.")
         .def(
             "take_foam", &GpuSea::take_foam,
-            "The textures foam_nodes and foam_pages, float32 (height, width, 2 or 1), of the latest request that is done: "
+            "The textures foam_nodes and foam_pages, float32 (height, width, 2, or 4 with bubbles, and 1), of the latest request that is done: "
             "once, {} otherwise. The first call has textures of a sea without such foam.")
         .def(
             "foam_levels", &GpuSea::foam_levels, py::arg("origin_m"),

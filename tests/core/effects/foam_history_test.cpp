@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <optional>
 #include <thread>
@@ -95,7 +96,8 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 
 // The definition, at the finest level's own nodes: (r/d) ∫ Φ(y(t − a)) e^{−a/τ} da, in steps eight times as fine.
 TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
-    const Scene scene = scene_of(1.0);
+    Scene scene = scene_of(1.0);
+    scene.water.body = true;
     const auto sea = sea_of<double>(scene, 0.2);
     const FoamPlan& foam = *sea->plan().foam;
     constexpr double kTime_s = 40.3;
@@ -111,7 +113,7 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
 
     const auto source = frame_of<double>(scene, {filtered(products(Product::JacobianMoments), foam.cell_m)});
     Frame<double> frame(std::make_shared<const Sea<double>>(source.sea().plan()));
-    std::vector<double> sum(points.size()), of_age(points.size());
+    std::vector<double> sum(points.size()), of_age(points.size()), bubbles(points.size());
     const double step_s = foam.step_s / 8.0;
     const auto steps = static_cast<int>(std::ceil(foam.window_s / step_s));
     ProductArrays<double> at;
@@ -119,6 +121,10 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
     for (int i = 0; i < steps; ++i) {
         const double age_s = (i + 0.5) * step_s;
         const FoamPlan::Weight weight = foam.weight(i * step_s, (i + 1) * step_s);
+        const double faded = std::clamp(3.0 * age_s / foam.window_s - 2.0, 0.0, 1.0),
+                     risen = age_s / (4.0 * foam.bubbles_m);
+        const double left = (0.82 * std::exp(-risen) + 0.18 * std::pow(1.0 + risen, -0.75)) *
+                            std::exp(-age_s / 100.0) * (1.0 - faded * faded * (3.0 - 2.0 * faded));
         frame.set(kTime_s - age_s);
         evaluate(frame, 0,
                  Points<double>{.origin_m = origin - foam.drift_mps * age_s,
@@ -131,6 +137,7 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
             const double share = 0.5 * std::erfc(-y / std::sqrt(2.0));
             sum[p] += sea->foam_left_per_s() * weight.foam_s * share;
             of_age[p] += sea->foam_left_per_s() * weight.age_s2 * share;
+            bubbles[p] += sea->foam_left_per_s() * step_s * left * share;
         }
     }
     std::vector<double> got, wanted;
@@ -147,6 +154,76 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
     // A part of it lies under what breaks now, more or less with chance.
     EXPECT_NEAR(mean_got / mean_wanted, 1.0, 0.06);
     EXPECT_NEAR(age_got / age_wanted, 1.0, 0.05);
+
+    std::vector<float> left(points.size());
+    SeaAtTime<double> state(sea);
+    state.set(kTime_s);
+    ASSERT_TRUE(state.has_bubbles(0));
+    state.bubbles(0, Points<double>{.origin_m = origin, .count = points.size(), .rest_m = {points.data()}},
+                  left);
+    const std::vector<double> bubbles_got(left.begin(), left.end());
+    EXPECT_GT(correlation(bubbles_got, bubbles), 0.98);
+    EXPECT_NEAR(std::accumulate(bubbles_got.begin(), bubbles_got.end(), 0.0) /
+                    std::accumulate(bubbles.begin(), bubbles.end(), 0.0),
+                1.0, 0.06);
+}
+
+// Bubbles of a storm stay as long as its foam, those of a breeze are gone before it; on all levels there are as many; alone as in a run; and who
+// doesn't look at them pays nothing.
+TEST(LivingFoam, HasBubblesOfTheirOwnDecay) {
+    const auto scene_with = [](double wind_mps, bool body) {
+        Scene scene = scene_of(4.0, wind_mps);
+        scene.water.body = body;
+        return scene;
+    };
+    // What a place that broke for a moment has of them after some seconds, over what it has of foam.
+    const auto over_foam = [&](double wind_mps, double age_s) {
+        const auto sea = sea_of(scene_with(wind_mps, true), 0.5);
+        const FoamPlan& foam = *sea->plan().foam;
+        return foam.bubbles_weight_s(age_s, age_s + 0.1) / foam.weight(age_s, age_s + 0.1).foam_s;
+    };
+    EXPECT_GT(over_foam(25.0, 6.0), 0.5);
+    EXPECT_LT(over_foam(8.0, 6.0), 0.15);
+
+    const auto plain = sea_of(scene_with(16.0, false), 0.5), with = sea_of(scene_with(16.0, true), 0.5);
+    EXPECT_EQ(plain->plan().foam->bubbles_m, 0.0);
+    EXPECT_EQ(with->plan().foam->tile_bytes(),
+              plain->plan().foam->tile_bytes() + FoamPlan::kTileStride * sizeof(float));
+    Scene off = scene_with(16.0, true);
+    off.water.bubbles = 0.0;
+    EXPECT_EQ(sea_of(off, 0.5)->plan().foam->tile_bytes(), plain->plan().foam->tile_bytes());
+
+    const auto rest = square(64, 2.0);
+    const auto bubbles_at = [&](SeaAtTime<float>& sea, double t_s) {
+        std::vector<float> left(rest.size());
+        sea.set(t_s);
+        sea.bubbles(0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, left);
+        return left;
+    };
+    SeaAtTime<float> alone(with), run(with);
+    for (const double t_s : {37.0, 38.0, 39.5}) bubbles_at(run, t_s);
+    EXPECT_EQ(bubbles_at(alone, 40.0), bubbles_at(run, 40.0));
+
+    // The mean over many times and places, fine and coarse, and beyond all levels. The latter is the sea's own.
+    const auto mean_of = [&](double pixel_m) {
+        const auto sea = sea_of(scene_with(16.0, true), pixel_m);
+        SeaAtTime<float> state(sea);
+        double sum = 0.0;
+        const auto wide = square(96, 16.0);
+        std::vector<float> left(wide.size());
+        for (const double t_s : {10.0, 60.0, 110.0}) {
+            state.set(t_s);
+            state.bubbles(0, Points<float>{.count = wide.size(), .rest_m = {wide.data()}}, left);
+            sum += std::accumulate(left.begin(), left.end(), 0.0) / (3.0 * static_cast<double>(left.size()));
+        }
+        return sum;
+    };
+    const double fine = mean_of(4.0), coarse = mean_of(16.0);
+    const FoamHistory<float> history(with);
+    std::printf("bubbles: mean %.5f at 4 m, %.5f at 16 m, %.5f of the sea\n", fine, coarse,
+                history.mean_bubbles());
+    EXPECT_NEAR(coarse / fine, 1.0, 0.03);
+    EXPECT_NEAR(history.mean_bubbles() / fine, 1.0, 0.05);
 }
 
 // Points of the water where nothing breaks after a time lose their foam as e^{−t/τ}.

@@ -166,7 +166,9 @@ TEST(Below, HostileCasesAreFinite) {
                         const FloorSeen seen = floor.seen_from({.position_m = {0.0, 0.0, -depth_m}});
                         for (const double theta :
                              {0.0, 1e-4, 48.27, 60.0, 89.999, 90.0, 90.001, 130.0, 180.0}) {
-                            const WaterBody water = deep_body(chlorophyll, floor_m, 1.0, waves);
+                            WaterBody water = deep_body(chlorophyll, floor_m, 1.0, waves);
+                            water.bubbles = 10.0f;
+                            water.bubbles_m = theta < 50.0 ? 1e-6f : 10.0f;
                             const Sky sky = lit_by(sun_deg, 0.1f);
                             const vec3 direction = tilted(theta * kOneDegree, 0.7);
                             SeaRadiance lit[2];
@@ -196,9 +198,12 @@ TEST(Below, NothingOutshinesTheSky) {
         for (const float waves : {kMirror, 0.01f, 0.05f})
             for (const float depth_m : {0.01f, 1.0f, 10.0f, 50.0f})
                 for (int degrees = 0; degrees < 90; degrees += 3) {
-                    const WaterBody water = deep_body(chlorophyll, 1e9, 0.0, waves);
+                    WaterBody water = deep_body(chlorophyll, 1e9, 0.0, waves);
+                    water.bubbles = 1.0f;
+                    water.bubbles_m = 0.5f;
                     const vec3 direction = tilted(degrees * kOneDegree);
-                    const SeaPoint point{.to_eye = -direction, .slope_variance = vec3(waves, waves, 0.0f)};
+                    SeaPoint point{.to_eye = -direction, .slope_variance = vec3(waves, waves, 0.0f)};
+                    point.bubbles = degrees % 2 == 0 ? 0.0f : 0.7f;
                     const float distance_m = depth_m / direction.z;
                     SeaRadiance lit;
                     shade_sea_from_below({}, sky, water, -depth_m, {&point, 1}, {&distance_m, 1}, {&lit, 1});
@@ -206,6 +211,67 @@ TEST(Below, NothingOutshinesTheSky) {
                         EXPECT_LT(lit.sky[c] + lit.sea[c], kIndex * kIndex)
                             << chlorophyll << ' ' << waves << ' ' << depth_m << ' ' << degrees;
                 }
+}
+
+// A veil of bubbles: what it sends back, lets through and spreads is all that falls on it, and of a beam no more comes out than went in.
+TEST(Below, BubblesKeepTheLight) {
+    Optics optics;
+    for (const float bubbles : {0.01f, 0.1f, 0.5f, 1.0f, 3.0f, 10.0f}) {
+        for (const float cosine : {0.0f, 0.1f, 0.7f, 1.0f}) {
+            const Optics::BubbleVeil veil = optics.bubble_veil(bubbles, cosine);
+            EXPECT_NEAR(veil.back + veil.sharp + veil.spread, 1.0f, 1e-6f);
+            EXPECT_TRUE(veil.back >= 0.0f && veil.sharp >= 0.0f && veil.spread >= 0.0f) << bubbles;
+        }
+        for (const double of_sun : {0.666, 0.8, 1.0}) {
+            double spread = 0.0;
+            constexpr int kSteps = 400;
+            for (int i = 0; i < kSteps; ++i) {
+                const double cosine = (i + 0.5) / kSteps;
+                for (int k = 0; k < kSteps; ++k) {
+                    const double azimuth = 2.0 * oracle::kPi * (k + 0.5) / kSteps;
+                    const double between =
+                        cosine * of_sun +
+                        std::sqrt((1.0 - cosine * cosine) * (1.0 - of_sun * of_sun)) * std::cos(azimuth);
+                    spread += cosine / of_sun * 2.0 * oracle::kPi / (kSteps * kSteps) *
+                              optics.bubble_veil(bubbles, static_cast<float>(cosine)).spread *
+                              optics.ahead_of_bubbles(static_cast<float>(between), bubbles,
+                                                      static_cast<float>(of_sun));
+                }
+            }
+            const Optics::BubbleVeil veil = optics.bubble_veil(bubbles, static_cast<float>(of_sun));
+            EXPECT_LE(veil.back + veil.sharp + spread, 1.001) << bubbles << ' ' << of_sun;
+            EXPECT_GT(spread, 0.25 * veil.spread) << bubbles << ' ' << of_sun;
+        }
+    }
+}
+
+// Bubbles hang under the surface: less of the window's edge, light round the sun, and none of it without them or above the eye.
+TEST(Below, BubblesVeilTheWindow) {
+    const Sky sky = lit_by(50.0, 1.0f);
+    const auto seen = [&](double degrees, float bubbles, float gain, float distance_m) {
+        WaterBody water = deep_body(0.1, 1e9, 0.0, 0.003f);
+        water.bubbles = gain;
+        water.bubbles_m = 0.5f;
+        SeaPoint point{.to_eye = -tilted(degrees * kOneDegree, 0.7),
+                       .slope_variance = vec3(0.003f, 0.003f, 0.0f)};
+        point.bubbles = bubbles;
+        SeaRadiance lit;
+        shade_sea_from_below({}, sky, water, -5.0f, {&point, 1}, {&distance_m, 1}, {&lit, 1});
+        return lit;
+    };
+    const SeaRadiance clear = seen(0.0, 0.0f, 1.0f, 5.0f), veiled = seen(0.0, 0.5f, 1.0f, 5.0f);
+    EXPECT_NEAR(veiled.sky.y / clear.sky.y, std::exp(-0.5f * 3.75f * 0.5f), 1e-3f);
+    EXPECT_GT(veiled.sea.y, clear.sea.y);
+    // Round the sun, which lies at asin(cos(50°)/n) = 28.7°, more of its light than opposite it.
+    EXPECT_GT(seen(20.0, 0.5f, 1.0f, 5.0f).sea.y, 1.3f * seen(-20.0, 0.5f, 1.0f, 5.0f).sea.y);
+    for (const double degrees : {0.0, 30.0, 60.0}) {
+        const SeaRadiance none = seen(degrees, 0.0f, 1.0f, 5.0f), off = seen(degrees, 0.9f, 0.0f, 5.0f);
+        EXPECT_EQ(none.sky, off.sky);
+        EXPECT_EQ(none.sea, off.sea);
+        EXPECT_EQ(none.sun, off.sun);
+        EXPECT_NEAR(seen(degrees, 0.9f, 1.0f, 1e-5f).sky.y / seen(degrees, 0.0f, 1.0f, 1e-5f).sky.y, 1.0f,
+                    1e-3f);
+    }
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ struct Optics {
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
 #include "core/lighting/floor.glsl"
+#include "core/base/bubbles.inl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"

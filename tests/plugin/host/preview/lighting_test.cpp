@@ -97,6 +97,7 @@ struct Functions {
 #include "core/lighting/sun.glsl"
 #include "core/lighting/sky.glsl"
 #include "core/lighting/floor.glsl"
+#include "core/base/bubbles.inl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/foam_structure.glsl"
@@ -163,21 +164,22 @@ struct Functions {
                               FloorView(aa > 0.1f, -4.0f, 1.0e-7f, 1.0e-3f, -4.0f, vec4(0.0f), vec4(0.0f),
                                         vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f), vec4(0.0f), vec3(0.0f))));
                  return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
-    PELAGIC_BOTH(below,
-                 SeaTerms t = sea_from_below(
-                     vec3(vv.x, vv.y, -vv.z), nn, ss, SeenFoam(ww, bb, 0.0f), -10.0f * bb, 20.0f * cc,
-                     SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f, vec3(80.0f, 70.0f, 60.0f),
-                              vec3(10.0f, 12.0f, 15.0f),
-                              WaterLook(vec3(0.01f, 0.03f, 0.05f), true,
-                                        WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
-                                        WaterBands(vec3(0.004f), vec3(0.003f)),
-                                        WaterBands(vec3(0.1f), vec3(0.07f)),
-                                        WaterBands(vec3(0.2f), vec3(0.3f)), cc > 0.3f ? 12.0f : 1.0e9f,
-                                        vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
-                              FloorView(aa > 0.1f, 15.0f * bb - 14.0f, 1.0e-7f, 1.0e-3f, -20.0f, vec4(0.0f),
-                                        vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f), vec4(0.0f),
-                                        vec3(0.0f))));
-                 return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
+    PELAGIC_BOTH(
+        below,
+        SeaTerms t = sea_from_below(
+            vec3(vv.x, vv.y, -vv.z), nn, ss, SeenFoam(ww, bb, 0.0f),
+            SeenBody(vec3(0.0f), 0.0f, vec3(0.0f), 0.3f * ww, 0.2f * bb, 9.0f * cc), -10.0f * bb, 20.0f * cc,
+            SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f, vec3(80.0f, 70.0f, 60.0f),
+                     vec3(10.0f, 12.0f, 15.0f),
+                     WaterLook(vec3(0.01f, 0.03f, 0.05f), true,
+                               WaterBands(vec3(0.01f, 0.02f, 0.05f), vec3(0.06f, 0.14f, 0.3f)),
+                               WaterBands(vec3(0.004f), vec3(0.003f)), WaterBands(vec3(0.1f), vec3(0.07f)),
+                               WaterBands(vec3(0.2f), vec3(0.3f)), cc > 0.3f ? 12.0f : 1.0e9f,
+                               vec3(0.02f, 0.015f, 0.002f), 1.0f, 0.3f, 1.0f, 0.6f),
+                     FloorView(aa > 0.1f, 15.0f * bb - 14.0f, 1.0e-7f, 1.0e-3f, -20.0f, vec4(0.0f),
+                               vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f), vec4(0.0f),
+                               vec3(0.0f))));
+        return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
     PELAGIC_BOTH(screen, return vec4(display_colour(vec3(aa, bb, ww), 2.0f), 0.0f);)
     PELAGIC_BOTH(disc,
                  return vec4(sun_disc(vv, normalize(vv + 0.01f * (ww - 0.5f) * nn), 0.00465f, 0.002f + cc),

@@ -173,7 +173,7 @@ class LivingFoam(unittest.TestCase):
         self.wait(sea)
         foam = sea.take_foam()
         nodes, pages, levels = foam["foam_nodes"], foam["foam_pages"], sea.foam_levels(grid.origin_m)
-        self.assertEqual((nodes.dtype, nodes.shape[0] % 17, nodes.shape[1] % 17, nodes.shape[2]), (np.float32, 0, 0, 2))
+        self.assertEqual((nodes.dtype, nodes.shape[0] % 17, nodes.shape[1] % 17, nodes.shape[2]), (np.float32, 0, 0, 4))  # with bubbles
         self.assertEqual((pages.dtype, pages.shape[2], levels.shape[1:]), (np.float32, 1, (2, 4)))
         self.assertTrue((nodes >= 0.0).all() and nodes.max() > 0.05)
         numbers = np.sort(pages[pages >= 0.0])

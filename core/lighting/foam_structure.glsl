@@ -267,7 +267,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 // How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
 // beyond its bubbles.
 float foam_softness(float age_s) {
-    return 0.6f + 0.5f * age_s / (age_s + 4.0f);
+    return 0.55f + 0.3f * age_s / (age_s + 4.0f);
 }
 
 // What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place

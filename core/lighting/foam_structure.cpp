@@ -7,7 +7,7 @@
 namespace pelagic {
 namespace {
 
-constexpr double kRepeat = 65536.0;                        // cells
+constexpr double kRepeat = 65536.0;                         // cells
 constexpr double kNetStretch = 1.0, kStreakStretch = 16.0;  // along the wind, at the strongest
 
 }  // namespace

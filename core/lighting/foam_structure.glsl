@@ -2,11 +2,11 @@
 // that grow as bubbles burst, then a faint film, drawn out along the wind. Pixels that don't resolve the pattern show the coverage.
 //
 // The pattern is a sum of layers. Each has the normal distribution with variance 1 at a random place, and they are
-// independent, so that the sum with weights whose squares add up to 1 has it too. Foam lies where the sum is above
-// the quantile q of the coverage c. Of each layer a pixel resolves the weight w that its footprint lets through,
-// together a sum s of variance v. The rest is normal with variance 1 − v, so that the pixel's share of foam is Φ((s −
-// q)/√(1 − v)). Its mean over the sea is Φ(−q) = c: at any distance, for any age, and for any strength of the
-// pattern, which only scales w.
+// independent, so that the sum with weights whose squares add up to 1 has it too. Foam is thick where the sum is high: it hides the part
+// Φ((s − q √(1 + σ²))/σ) of a place, of softness σ, where q is the quantile of what foam hides of the sea. Of each layer a pixel
+// resolves the weight w that its footprint lets through, together a sum s of variance v. The rest is normal with variance 1 − v, and
+// adds that to σ². The mean over the sea is Φ(−q): at any distance, for any age, and for any strength of the pattern, which
+// only scales w.
 //
 // Layers are fixed to the water at rest, on grids of integer cells whose sizes are halves of one another. Age moves weight
 // from one to the next. kFoamCell_m (foam_structure.h) is the largest cell's size across the wind.
@@ -267,7 +267,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 // How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
 // beyond its bubbles.
 float foam_softness(float age_s) {
-    return 0.6f + 0.5f * age_s / (age_s + 4.0f);
+    return 0.55f + 0.3f * age_s / (age_s + 4.0f);
 }
 
 // What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place
@@ -316,12 +316,12 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
     SeenFoam seen = foam_in(noise, c * mean, white, foam_softness(since_s));
     // Where pixels are too large for lumps their slopes are lost.
-    float relief_m = strength * exp(-since_s / 3.0f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
-    if (relief_m * seen.opacity > 1.0e-3f) {
+    float relief = exp(-since_s / 3.0f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
+    if (relief * seen.opacity > 1.0e-3f) {
         float step_m = max(footprint_m, 0.02f);
         vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);
         FoamNoise ahead = foam_noise(pattern, rest_m + step_m * to_sun, footprint_m, since_s);
-        float slope = relief_m * (kFoamRelief_m + kLumpRelief * step_m) * (strength * ahead.shown - noise.shown) / step_m;
+        float slope = relief * (kFoamRelief_m + kLumpRelief * step_m) * (strength * ahead.shown - noise.shown) / step_m;
         seen.slope = kSteepestRelief * slope / sqrt(kSteepestRelief * kSteepestRelief + slope * slope);
     }
     return seen;

@@ -714,10 +714,12 @@ void add_effects_and_quality(Built& out) {
                  "in pictures: 0 shows foam as smooth coverage, 1 as holes and lace; its mean is the same",
              .range = limits::kFoamStructure,
              .key_parts = key_parts(KeyPart::Water)}),
-        row<&Effects::foam_streaks>({.name = "foam_streaks",
-                                     .help = "how far a wind of 15 m/s draws that lace out along it; less blows less, a storm twice as far",
-                                     .range = limits::kFoamStreaks,
-                                     .key_parts = key_parts(KeyPart::Water)}),
+        row<&Effects::foam_streaks>(
+            {.name = "foam_streaks",
+             .help =
+                 "how far a wind of 15 m/s draws that lace out along it; less blows less, a storm twice as far",
+             .range = limits::kFoamStreaks,
+             .key_parts = key_parts(KeyPart::Water)}),
         row<&Effects::foam_pattern>(
             {.name = "foam_pattern",
              .help =

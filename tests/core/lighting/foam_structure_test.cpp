@@ -49,8 +49,8 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
                         shading.foam_noise(pattern, {place(random), place(random)}, footprint_m, age_s);
                     for (std::size_t c = 0; c < kCoverages.size(); ++c)
                         for (std::size_t d = 0; d < kOpacities.size(); ++d) {
-                            const auto seen =
-                                shading.foam_in(noise, kCoverages[c] * kOpacities[d], kWhite, shading.foam_softness(age_s));
+                            const auto seen = shading.foam_in(noise, kCoverages[c] * kOpacities[d], kWhite,
+                                                              shading.foam_softness(age_s));
                             ASSERT_GE(seen.opacity, 0.0f);
                             ASSERT_LE(seen.opacity, 1.0f);
                             ASSERT_GT(seen.white, 0.0f);
@@ -70,8 +70,8 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
                             << ", opacity " << kOpacities[d];
                         EXPECT_NEAR(light[c][d] / kPlaces / static_cast<double>(kWhite), expected,
                                     1.35 * 4.5 * noise + 0.01 * expected)
-                            << "light, footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks
-                            << ", opacity " << kOpacities[d];
+                            << "light, footprint " << footprint_m << " m, " << age_s << " s, streaks "
+                            << streaks << ", opacity " << kOpacities[d];
                     }
             }
         }

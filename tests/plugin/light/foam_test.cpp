@@ -29,6 +29,19 @@ TEST(FoamOfAllAges, HasKoepkesMean) {
     EXPECT_GT(make_foam(Scene{}, nullptr, 0.1).fresh_opacity, 0.8f);
 }
 
+// A near gale draws foam out as the key says, a storm twice as far, and a light breeze not at all.
+TEST(FoamStreaks, AreWhatTheWindBlows) {
+    Scene scene;
+    scene.effects.foam_streaks = 0.4;
+    for (const auto& [wind_mps, streaks] :
+         {std::pair{4.0, 0.0}, {10.0, 0.2}, {15.0, 0.4}, {25.0, 0.8}, {40.0, 0.8}}) {
+        scene.sea.wind_speed_mps = wind_mps;
+        EXPECT_NEAR(make_foam(scene, nullptr, 0.25).streaks, streaks, 1e-12) << wind_mps;
+    }
+    scene.effects.foam_streaks = 1.0;
+    EXPECT_EQ(make_foam(scene, nullptr, 0.25).streaks, 1.0);
+}
+
 // What an artist says of one age leaves the mean, as far as the other age can make up for it; of both, it is what is seen.
 TEST(FoamOfAllAges, IsWhatTheShotSays) {
     Scene scene;

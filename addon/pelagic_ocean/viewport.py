@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The viewport preview: the sea in solid and material views, lit in real time, with the scene's objects in it.
+"""The viewport preview: the sea in solid views (before 4.2 in material ones, too), lit in real time, with the scene's objects in it.
 
 One ocean is drawn at a time, by a handler that exists only while the preview is on. Its mesh is hidden meanwhile, and so
 isn't updated either; it is shown again for saving, and while some view needs it. Where the handler draws, and why:
@@ -304,7 +304,7 @@ HANDLERS = (("save_pre", _before_save), ("save_post", _after_save), ("undo_post"
 
 
 class PELAGIC_OT_viewport_preview(bpy.types.Operator):
-    """Draw the sea in solid and material views as it is lit, to the horizon, and hide its mesh; or stop that"""
+    """Draw the sea in solid views as it is lit, to the horizon, and hide its mesh; or stop that"""
 
     bl_idname = "pelagic.viewport_preview"
     bl_label = "Viewport Preview"

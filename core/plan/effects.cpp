@@ -103,8 +103,12 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .plan =
          [](Plan& plan) {
              if (asks_for(plan, foam_products()))
-                 plan.foam = plan_foam(plan.from->scene, plan.from->spectrum, plan.breaking.footprint_m,
-                                       plan.knobs.foam_steps_a_period);
+                 plan.foam =
+                     plan_foam(plan.from->scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
+             // Nobody but pictures looks at them.
+             const auto is_picture = [](const PlannedQuery& planned) { return planned.query.is_picture; };
+             if (plan.foam && has_bubbles(plan.from->scene) && std::ranges::any_of(plan.queries, is_picture))
+                 plan.foam->bubbles_m = bubbles_depth_m(plan.from->scene, plan.from->spectrum);
          },
      .state = {"the foam's history", [](const Plan& plan) { return plan.foam_history_bytes(); },
                "lower effects.foam_decay_s"},

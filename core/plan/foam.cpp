@@ -69,6 +69,10 @@ double FoamPlan::bubbles_weight_s(double from_s, double to_s) const {
     });
 }
 
+bool has_bubbles(const Scene& scene) {
+    return scene.water.body && scene.water.bubbles > 0.0;
+}
+
 double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) {
     // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003); most whitecaps are those of waves much shorter than the
     // peak's, some 0.4 of its speed and 0.3 of its height.
@@ -80,8 +84,7 @@ double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) 
     return 0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0);
 }
 
-FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m,
-                   double steps_a_period) {
+FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
     const Effects& effects = scene.effects;
     constexpr double kFinestCell_m = 0.25;
     constexpr double kCell =
@@ -95,8 +98,6 @@ FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, doub
     const double towards = scene.sea.wind_direction_deg * kPi / 180.0;
     foam.drift_mps =
         effects.foam_drift * scene.sea.wind_speed_mps * glm::dvec2(std::cos(towards), std::sin(towards));
-    if (scene.water.body && scene.water.bubbles > 0.0)
-        foam.bubbles_m = static_cast<float>(bubbles_depth_m(scene, spectrum));
     foam.loop_s = scene.shot.sea_loop_s();
     if (foam.loop_s > foam.step_s)
         foam.step_s = foam.loop_s / std::ceil(foam.loop_s / foam.step_s);

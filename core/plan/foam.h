@@ -56,13 +56,14 @@ struct FoamPlan {
     double bubbles_weight_s(double from_s, double to_s) const;
 };
 
+// Whether pictures of the scene show bubbles.
+bool has_bubbles(const Scene& scene);
 // How deep bubbles are under foam, e-folding [m]: `spectrum` is the scene's.
 double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum);
 
 // Of a scene that has persistent foam. steps_a_period: Knobs::foam_steps_a_period. `finest_m`: no breaking is resolved
 // below it.
-FoamPlan plan_foam(const Scene& scene, const DirectionalSpectrum& spectrum, double finest_m,
-                   double steps_a_period);
+FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period);
 
 // Which level's cells serve a footprint, two cells a footprint: (1 − t) of `level` and t of the next.
 struct FoamLevelBlend {

@@ -25,7 +25,7 @@ const std::array kMapTable = std::to_array<MapRow>({
     {MapKind::SlopeVariance, [] { return products(Product::SlopeVariance); }, true},
     {MapKind::Whitecaps, [] { return products(Product::JacobianMoments, Product::Coverage); }, false},
     {MapKind::Floor, [] { return products(Product::Position, Product::Normal, Product::SlopeVariance); },
-     false, key_parts(KeyPart::Light, KeyPart::Water), true},
+     false, true},
 });
 
 void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {

@@ -63,9 +63,8 @@ std::span<const AttributeRow> attribute_table();
 struct MapRow {
     MapKind map;
     ProductSet (*needs)();
-    bool asks_each_level;    // each level of its mip pyramid has a footprint of its own
-    KeyPartSet key_parts{};  // besides those of all maps
-    bool is_below = false;   // of what lies below the sea: there is none of a cascade alone
+    bool asks_each_level;   // each level of its mip pyramid has a footprint of its own
+    bool is_below = false;  // of what lies below the sea: there is none of a cascade alone
 };
 std::span<const MapRow> map_table();
 

@@ -447,8 +447,6 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         }
         for (const VolumeRow& row : volume_table())
             if (output.volume == row.volume) output.key_parts |= row.key_parts;
-        for (const MapRow& row : map_table())
-            if (output.map == row.map) output.key_parts |= row.key_parts;
         for (const EffectRow& row : effect_table())
             if (row.shapes && row.shapes(query)) output.key_parts |= row.key_parts;
         outputs.push_back(std::move(output));
@@ -456,7 +454,6 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
     }
     Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);
-    if (plan.foam) plan.foam->bubbles_m = 0.0;  // what looks at them are pictures
     plan.surface = surface;
     plan.surface_needs = needs;
     return plan;

@@ -13,7 +13,9 @@
 #include <utility>
 
 #include "core/evaluate/gusts.h"
+#include "core/plan/fingerprint.h"
 #include "core/plan/random_tiling.h"
+#include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "pelagic/version.h"
@@ -44,7 +46,13 @@ class MapPart final : public OutputPart {
                              : scene().output.map_resolution),
           size_m_(query().lattice ? query().lattice->spacing_m * n_ : scene().surface.size_m),
           periodic_(output.cascade ? true : patch_is_periodic()) {
-        if (kind_ == MapKind::Floor) base_ = Fingerprint().add(base_).add(picture_content(scene())).text();
+        if (kind_ != MapKind::Floor) return;
+        periodic_ = periodic_ && scene().sea.depth_file == SeaState{}.depth_file;
+        base_ = Fingerprint()
+                    .add(base_)
+                    .add(canonical(portable(scene()), key_parts(KeyPart::Light, KeyPart::Water)))
+                    .add(picture_content(scene()))
+                    .text();
     }
 
     FilePattern pattern() const override {
@@ -87,7 +95,7 @@ class MapPart final : public OutputPart {
             throw std::logic_error("a map of no kind");
         }();
         const std::size_t points = texels * 2 * scalar;
-        return {.once = kind_ == MapKind::Floor ? floor_bytes() : points,
+        return {.once = kind_ == MapKind::Floor ? light_bytes() : points,
                 .slot = texels * (file + levels + (has_gusts() ? sizeof(float) * 4 / 3 : 0)),
                 .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
@@ -147,8 +155,8 @@ class MapPart final : public OutputPart {
         CausticsOn on;
         double gain = 1.0;
     };
-    // The floor of the shot. Of an uneven one as sharp as where it is least deep, the pattern's best place; where it is several times deeper,
-    // which only shows as a faint glow, the light may fall somewhat aside.
+    // The floor of the shot. Of an uneven one the pattern is as sharp everywhere as where it is least deep, but for the shore. Where light comes
+    // from much farther than the patch is wide, nothing of the pattern is left to see: it goes.
     FloorBelow floor_below() const {
         const Sky sky = make_sky(scene());
         FloorBelow below{.floor = make_floor(scene()),
@@ -159,25 +167,31 @@ class MapPart final : public OutputPart {
         below.gain = scene().water.caustics * caustics_share(below.sun);
         if (sky.sun_irradiance == glm::vec3(0.0f)) below.gain = 0.0;
         constexpr int kPlaces = 64;  // a side
+        constexpr double kShore_m = 0.5;
         double least_m = std::numeric_limits<double>::infinity(), most_m = 0.0;
         for (int i = 0; i < kPlaces * kPlaces; ++i) {
             const glm::dvec2 place(i % kPlaces, i / kPlaces);
             const double depth_m = below.floor.depth_m(size_m_ * ((place + 0.5) / double(kPlaces) - 0.5));
-            least_m = std::min(least_m, depth_m);
+            if (depth_m > kShore_m) least_m = std::min(least_m, depth_m);
             most_m = std::max(most_m, depth_m);
         }
-        constexpr double kUneven = 4.0;
+        least_m = std::min(least_m, most_m);  // all of it is shore
         below.on = {.depth_m = least_m,
-                    .uneven_m = std::min(most_m - least_m, kUneven * least_m),
-                    .most_margin_m = size_m_};
+                    .uneven_m = most_m - std::min(least_m, kShore_m),
+                    .most_margin_m = std::numeric_limits<double>::infinity()};
+        constexpr double kMost = 2.0;  // of the patch's sides
+        const double reach =
+            caustics_margin_m(below.sun, Floor(), plan_.from->spectrum.m0(), below.on) / size_m_;
+        below.gain *= 1.0 - glm::smoothstep(kMost, 2.0 * kMost, reach);
+        below.on.most_margin_m = std::clamp(reach, 1.0, kMost) * size_m_;
         return below;
     }
 
-    std::size_t floor_bytes() const {
+    std::size_t light_bytes() const {
         const FloorBelow below = floor_below();
         const double margin_m =
             caustics_margin_m(below.sun, below.floor, plan_.from->spectrum.m0(), below.on);
-        return caustics_bytes(n_, margin_m / size_m_) + pelagic::floor_bytes(scene());
+        return caustics_bytes(n_, margin_m / size_m_) + floor_bytes(scene());
     }
 
     template <class T>
@@ -187,8 +201,8 @@ class MapPart final : public OutputPart {
         slot.floor_light.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 1.0f);
         if (!(below_->gain > 0.0)) return;
         // A texel's middle is where the map says that it lies.
-        find_caustics({glm::dvec2(-0.5 * (size_m_ + texel_m)), texel_m, n_, slot.floor_light}, below_->floor,
-                      frame, output_.query, below_->sun, below_->on, watch.cancel);
+        find_caustics({glm::dvec2(-0.5 * (size_m_ + texel_m)), texel_m, n_, slot.floor_light, periodic_},
+                      below_->floor, frame, output_.query, below_->sun, below_->on, watch.cancel);
         const auto gain = static_cast<float>(below_->gain);
         for (float& light : slot.floor_light) light = std::max(1.0f + gain * (light - 1.0f), 0.0f);
     }
@@ -476,7 +490,9 @@ class MapPart final : public OutputPart {
                 {"copiesKey", static_cast<int>(tiling_key(scene().shot.seed, *output_.cascade))});
         }
         if (scene().shot.loop_s > 0.0) header.attributes.push_back({"loop", scene().shot.exact_loop_s()});
-        describe(scene(), output_.key_parts, header.attributes);
+        KeyPartSet described = output_.key_parts;
+        if (kind_ == MapKind::Floor) described |= key_parts(KeyPart::Light, KeyPart::Water);
+        describe(portable(scene()), described, header.attributes);
         return header;
     }
 

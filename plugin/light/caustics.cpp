@@ -223,7 +223,7 @@ glm::dmat2 hidden_slopes(const Frame<T>& frame, int query, const CausticsMap& ma
 
 // A normal distribution of that deviation [texels], along one axis; beyond the map light is even.
 void blur(const CausticsMap& map, int axis, double deviation) {
-    const int reach = std::min(static_cast<int>(std::ceil(3.0 * deviation)), map.side / 2);
+    const int reach = static_cast<int>(std::min(std::ceil(3.0 * deviation), 0.5 * map.side));
     if (deviation < 0.05 || reach < 1) return;
     std::vector<float> weight(static_cast<std::size_t>(2 * reach) + 1);
     float sum = 0.0f;
@@ -237,6 +237,10 @@ void blur(const CausticsMap& map, int axis, double deviation) {
         float* const first = map.texels.data() + line * across;
         for (std::ptrdiff_t i = 0; i < side; ++i)
             before[static_cast<std::size_t>(i + reach)] = first[i * step];
+        for (std::ptrdiff_t i = 0; map.is_periodic && i < reach; ++i) {
+            before[static_cast<std::size_t>(i)] = first[(side - reach + i) * step];
+            before[static_cast<std::size_t>(side + reach + i)] = first[i * step];
+        }
         for (std::ptrdiff_t i = 0; i < side; ++i) {
             float value = 0.0f;
             for (std::size_t k = 0; k < weight.size(); ++k)
@@ -278,9 +282,14 @@ double caustics_margin_m(const SunThroughWaves& sun, const Floor& floor, double 
 std::size_t caustics_bytes(int side, double margin) {
     const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     const double with_margins = (1.0 + 2.0 * margin) * (1.0 + 2.0 * margin);
+    // Falls, and what some rows of cells are asked for.
+    constexpr std::size_t kOfPoint = 10 * sizeof(double);
+    const std::size_t rows = static_cast<std::size_t>(kRowsAtOnce + 1) *
+                             static_cast<std::size_t>(static_cast<double>(side) * (1.0 + 2.0 * margin) + 2.0);
     return texels * kParts * sizeof(float) +
            static_cast<std::size_t>(static_cast<double>(texels) * with_margins) *
-               (sizeof(glm::vec2) + sizeof(float));
+               (sizeof(glm::vec2) + sizeof(float)) +
+           rows * kOfPoint;
 }
 
 template <class T>
@@ -289,7 +298,7 @@ void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& f
     const Beam beam = beam_of(sun);
     const double m0 = frame.sea().plan().from->spectrum.m0(),
                  margin_m = caustics_margin_m(sun, floor, m0, on);
-    // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than in the middle.
+    // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than on.depth_m.
     const double range_m =
         std::max(margin_m - waves_reach_m(sun, beam, m0, on), 0.0) / std::max(beam.tangent, kLeastTangent);
     const glm::dmat2 hidden = hidden_slopes(frame, query, map);

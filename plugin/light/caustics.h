@@ -32,11 +32,13 @@ struct CausticsMap {
     double texel_m = 1.0;
     int side = 0;
     std::span<float> texels;
+    bool is_periodic =
+        false;  // what its blur misses beyond an edge is at the other one; otherwise it is even light
 };
 
 // On what it falls, and from how far.
 struct CausticsOn {
-    double depth_m = 1.0;  // of the plane, or of the floor in the map's middle
+    double depth_m = 1.0;  // of the plane, or of the floor where its pattern is to be sharp
     // How much the floor's depth differs from that, where it isn't level.
     double uneven_m = std::numeric_limits<double>::infinity();
     double most_margin_m = 0.0;  // light from further round the map isn't looked for

@@ -109,7 +109,7 @@ template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) +
                                      sizeof(std::size_t) + 2 * sizeof(std::uint8_t) + 5 * sizeof(T) +
                                      2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(glm::vec3) +
-                                     sizeof(SeaPoint) + 12 * sizeof(float) +
+                                     sizeof(SeaPoint) + 13 * sizeof(float) +
                                      (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
 }  // namespace

@@ -93,7 +93,6 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
 bool same_sea(const Scene& a, const Scene& b) {
     const KeyPartSet sea = key_parts(KeyPart::Waves, KeyPart::Clock, KeyPart::Foam, KeyPart::Gusts,
                                      KeyPart::Quality, KeyPart::Spray);
-    const auto has_bubbles = [](const Scene& scene) { return scene.water.body && scene.water.bubbles > 0.0; };
     return canonical(a, sea) == canonical(b, sea) && has_bubbles(a) == has_bubbles(b);
 }
 

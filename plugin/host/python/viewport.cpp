@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/lighting/air.h"
+#include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
 #include "core/scene/canonical.h"
@@ -69,6 +70,11 @@ struct GpuLight {
         sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky);
+        const glm::mat3 balance = white_balance(scene.camera.white_balance_k);
+        for (int i = 0; i < 3; ++i)
+            uniforms.push_back(
+                {std::array{"white_balance_red", "white_balance_green", "white_balance_blue"}[i], 3,
+                 glm::vec4(balance[i], 0.0f)});
         atlas = sky_atlas(sky.map);
         foam_picture = kept_foam_picture(scene);
     }
@@ -372,7 +378,8 @@ class GpuSea {
 
     // The clock only by the loop that it makes: set() is given the sea's time.
     static std::string what_counts(const Scene& scene) {
-        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s());
+        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s()) +
+               (has_bubbles(scene) ? " bubbles" : "");
     }
 
     // A cell is several pixels wide.

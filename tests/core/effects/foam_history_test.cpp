@@ -35,9 +35,10 @@ Scene scene_of(double decay_s, double wind_mps = 14.0) {
 }
 
 template <class T = float>
-std::shared_ptr<const Sea<T>> sea_of(const Scene& scene, double footprint_m) {
+std::shared_ptr<const Sea<T>> sea_of(const Scene& scene, double footprint_m, bool is_picture = true) {
     for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
-    const Query query = filtered(foam_products() | products(Product::JacobianMoments), footprint_m);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), footprint_m);
+    query.is_picture = is_picture;
     return std::make_shared<const Sea<T>>(
         make_plan(scene, {query}, {.double_precision = sizeof(T) == sizeof(double)}));
 }
@@ -192,6 +193,7 @@ TEST(LivingFoam, HasBubblesOfTheirOwnDecay) {
     Scene off = scene_with(16.0, true);
     off.water.bubbles = 0.0;
     EXPECT_EQ(sea_of(off, 0.5)->plan().foam->tile_bytes(), plain->plan().foam->tile_bytes());
+    EXPECT_EQ(sea_of(scene_with(16.0, true), 0.5, false)->plan().foam->bubbles_m, 0.0);
 
     const auto rest = square(64, 2.0);
     const auto bubbles_at = [&](SeaAtTime<float>& sea, double t_s) {

@@ -212,6 +212,12 @@ TEST(Golden, BitsChangeOnlyWithTheRevisionOfTheirOutput) {
         scene.output.maps.clear();
         scene.output.cascade_tiles = false;
         add_bake(scene, folder, made);
+        if (Scene lit = scene; lit.water.body) {
+            lit.sea.depth_m = 3.0;
+            lit.output.mesh = MeshFormat::None;
+            lit.output.maps = {MapKind::Floor};
+            add_bake(lit, folder, made);
+        }
         scene.camera.position_m = {0.0, -30.0, 5.0};
         add_picture(scene, folder, made);
         fs::remove_all(folder);

@@ -142,14 +142,16 @@ class Seas(unittest.TestCase):
         sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)
         before = sea.water(scene)
         self.assertEqual(sea.water(scene), before)
-        scene.water.type, scene.water.bubbles = "jerlov-3C", 0.0
+        scene.water.type, scene.water.bubbles = "jerlov-3C", 2.0
         self.assertTrue(sea.serves(scene) and light.serves(scene))
         after = sea.water(scene)
         self.assertEqual(after.keys(), before.keys())
         self.assertNotEqual(after["water_absorption_shorter"], before["water_absorption_shorter"])
-        self.assertEqual(after["water_bubbles"][0], 0.0)
+        self.assertEqual(after["water_bubbles"][0], 2.0)
         fragment = sea.shaders(light)["sea"][1]
         self.assertTrue(all(name in fragment for name in after), after.keys())
+        scene.water.bubbles = 0.0  # a sea has sums of them, or has none
+        self.assertFalse(sea.serves(scene))
 
 
 class LivingFoam(unittest.TestCase):

@@ -31,7 +31,7 @@ name = "maps"
 frames = [3, 3]
 [sea]
 wind_speed_mps = 16.0
-depth_m = 8.0
+depth_m = 60.0
 [waves]
 cascades = [ {{ size_m = 120.0, resolution = {SIZE} }}, {{ size_m = 41.0, resolution = {SIZE} }} ]
 [effects]

@@ -37,7 +37,7 @@ void print_all() {
     std::cout << std::flush;
 }
 
-// Its keys, as a shot file has them.
+// Its keys in the newest edition, as a shot file has them.
 int print_one(const std::string& name) {
     const Preset* preset = find_preset(name);
     if (!preset) {
@@ -47,15 +47,16 @@ int print_one(const std::string& name) {
     std::cout << "# " << preset->label << ": " << preset->help << '\n';
     const KeyTable* last = nullptr;
     for (const KeyTable& table : key_tables())
-        for (const Key& key : table.keys)
-            for (const auto& [path, value, since] : preset->values) {
-                if (path != key.path) continue;
-                const std::string text = value_text(key, value);
-                if (text.empty()) continue;
-                if (last != &table) std::cout << '[' << table.name << "]\n";
-                last = &table;
-                std::cout << key.name << " = " << text << '\n';
-            }
+        for (const Key& key : table.keys) {
+            const auto given = std::ranges::find(preset->values.rbegin(), preset->values.rend(), key.path,
+                                                 &PresetValue::path);
+            if (given == preset->values.rend()) continue;
+            const std::string text = value_text(key, given->value);
+            if (text.empty()) continue;
+            if (last != &table) std::cout << '[' << table.name << "]\n";
+            last = &table;
+            std::cout << key.name << " = " << text << '\n';
+        }
     std::cout << std::flush;
     return kDone;
 }

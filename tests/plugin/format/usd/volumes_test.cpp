@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -111,7 +111,8 @@ TEST(UsdVolumes, EveryFrameHasItsFile) {
     std::string text;
     int pieces = 0;
     std::vector<int> frames(kFrames);
-    std::iota(frames.begin(), frames.end(), kLast - kFrames + 1);
+    std::ranges::generate(frames,
+                          [frame = kLast - kFrames]() mutable { return ++frame; });  // iota goes one beyond
     write_volumes_text(
         {.first_frame = frames.front(), .last_frame = kLast, .frames = frames, .volumes = {level_set()}},
         [&](std::string_view piece) {

@@ -167,11 +167,12 @@ template <class Variant>
 typename Variant::SeenBody seen_body(Variant& shading, const WaterBody& water, const SeaPoint& p) {
     const float covered = water.bubbles > 0.0f ? std::clamp(p.coverage, 0.0f, 1.0f) : 0.0f,
                 fresh = std::min(covered, std::max(p.active, 0.0f));
+    // Water that breaks has no more of them than that: clouds that overlap are one.
     const bool is_sum = water.bubbles > 0.0f && p.bubbles >= 0.0f;
     return {p.from_eye_m,
             shading.pixel_over(p.pixel_m),
             p.crest,
-            is_sum ? fresh + p.bubbles : fresh,
+            is_sum ? std::min(fresh + p.bubbles, 1.0f) : fresh,
             is_sum ? 0.0f : covered - fresh,
             p.age_s};
 }

@@ -31,7 +31,7 @@ void main() {
         float covered = clamp(all.coverage, 0.0, 1.0);
         float fresh = min(covered, max(all.breaking, 0.0));
         bool is_sum = all.bubbles >= 0.0;
-        body = SeenBody(body.from_eye, body.pixel_m, body.crest, is_sum ? fresh + all.bubbles : fresh, is_sum ? 0.0 : covered - fresh,
+        body = SeenBody(body.from_eye, body.pixel_m, body.crest, is_sum ? min(fresh + all.bubbles, 1.0) : fresh, is_sum ? 0.0 : covered - fresh,
                         all.age_s);
     }
     if (kFromBelow) {

@@ -21,8 +21,8 @@ from .nodes import Tree
 MARK = "pelagic_light"  # on the world and the lamp that are the add-on's
 EXPOSURE = "pelagic_exposure"  # on the world: the stops that were set last
 VIEW = "pelagic_view"  # on the world: the camera that they were metered by, Pinhole.numbers()
-# By how much a view transform has to be exposed more for a sea that is as bright as by the program's own: means of eight shots
-# (tests/addon/displays.py). Filmic shows a grey of 0.18 as 0.214.
+# By how much a view transform has to be exposed more for a sea that is as bright as by the program's own: of the two shots of a day's
+# tests/addon/displays.py. Filmic shows a grey of 0.18 as 0.214.
 VIEW_STOPS = {"Filmic": -0.05, "AgX": 0.25}
 SKY_WIDTH = 1024
 STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp

@@ -51,8 +51,8 @@ struct FoamPlan {
     };
     Weight weight(double from_s, double to_s) const;
 
-    // ∫ of the bubbles that are left [s], of 1 at age 0, over ages within [from_s, to_s] and the window. A storm's stay longer than foam: they
-    // fade over the last third of the window, since what is older, the waves have spread so far that it is the water's own colour.
+    // ∫ of the bubbles that are left [s], of 1 at age 0, over ages within [from_s, to_s] and the window. A storm's stay longer than foam, but no
+    // history reaches beyond its window: they fade over its last third.
     double bubbles_weight_s(double from_s, double to_s) const;
 };
 

@@ -187,23 +187,27 @@ class MapPart final : public OutputPart {
         return below;
     }
 
+    // Made once, by who asks first: the account of memory, or a frame.
+    const FloorBelow& below() const {
+        if (!below_) below_ = floor_below();
+        return *below_;
+    }
+
     std::size_t light_bytes() const {
-        const FloorBelow below = floor_below();
         const double margin_m =
-            caustics_margin_m(below.sun, below.floor, plan_.from->spectrum.m0(), below.on);
+            caustics_margin_m(below().sun, below().floor, plan_.from->spectrum.m0(), below().on);
         return caustics_bytes(n_, margin_m / size_m_) + floor_bytes(scene());
     }
 
     template <class T>
     void light_floor(const Frame<T>& frame, MapSlot& slot, const BuildWatch& watch) {
-        if (!below_) below_ = floor_below();
         const double texel_m = size_m_ / n_;
         slot.floor_light.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 1.0f);
-        if (!(below_->gain > 0.0)) return;
+        if (!(below().gain > 0.0)) return;
         // A texel's middle is where the map says that it lies.
         find_caustics({glm::dvec2(-0.5 * (size_m_ + texel_m)), texel_m, n_, slot.floor_light, periodic_},
-                      below_->floor, frame, output_.query, below_->sun, below_->on, watch.cancel);
-        const auto gain = static_cast<float>(below_->gain);
+                      below().floor, frame, output_.query, below().sun, below().on, watch.cancel);
+        const auto gain = static_cast<float>(below().gain);
         for (float& light : slot.floor_light) light = std::max(1.0f + gain * (light - 1.0f), 0.0f);
     }
 
@@ -500,8 +504,8 @@ class MapPart final : public OutputPart {
     MapKind kind_;
     int n_;
     double size_m_;
-    bool periodic_;                    // whether its square is a common period of the waves
-    std::optional<FloorBelow> below_;  // from the first frame on
+    bool periodic_;  // whether its square is a common period of the waves
+    mutable std::optional<FloorBelow> below_;
     State<float> single_;
     State<double> wide_;
 };

@@ -17,7 +17,7 @@ import math
 
 import bpy
 
-from . import compat, light, upwelling
+from . import compat, diving, light, upwelling
 from .facets import WATER_INDEX, add_fresnel
 from .module import pelagic
 from .nodes import Tree
@@ -26,8 +26,7 @@ SURFACE, VOLUME, OUTPUT = "Clear Surface", "Water Volume", "Clear Water"  # node
 ABSORPTION, SCATTERING, EXTINCTION = "Water Absorption", "Water Scattering", "Water Extinction"
 FROM_BELOW = "Camera Under Water"  # the node: 1 while it is
 
-UNDER = "pelagic_camera_under"  # on an ocean whose water the scene's camera is in
-LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
+UNDER = "pelagic_camera_under"  # on an ocean whose water the scene's camera is in: how far below its level at rest [m]
 MARK = "pelagic_floor"  # on the object under clear water
 FLOOR_M, FLOOR_DEPTH_M = 40e3, 500.0
 WALL_M = 20.0  # how high the floor's walls are above the water at rest, while the camera is under it
@@ -68,7 +67,7 @@ def add_depths(tree, part, foam, mirror, white, upwards, before_air):
                     distribution="BECKMANN"),
         1: tree.add("ShaderNodeBsdfRefraction", {"Color": tree.vector(1.0, 1.0, 1.0) * ((1.0 - kept) * WATER_INDEX**2),
                                                  "IOR": WATER_INDEX, **facet}, distribution="BECKMANN")})
-    through_foam = tree.add("ShaderNodeBsdfTranslucent", {"Color": foam["Color"] * -LETS_THROUGH + (LETS_THROUGH,) * 3})
+    through_foam = tree.add("ShaderNodeBsdfTranslucent", {"Color": foam["Color"] * -diving.LETS_THROUGH + (diving.LETS_THROUGH,) * 3})
     underside = tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: underside,
                                                  2: tree.add("ShaderNodeAddShader", {0: white, 1: through_foam})})
     seen = tree.add("ShaderNodeMixShader", {0: tree.value(geometry, "Backfacing"), 1: seen, 2: underside})
@@ -153,6 +152,8 @@ def connect(obj, material, scene):
         _add_floor(obj)
     if is_on:
         _set_floor(obj, scene)
+    floor = next((child for child in obj.children if MARK in child), None)
+    diving.connect(material, floor, scene, obj.get(UNDER) if is_on else None)
 
 
 def _set_floor(obj, scene):
@@ -181,7 +182,8 @@ def _add_floor(obj):
     tree = Tree(black.node_tree)
     # The volume is empty: the water is the sea's.
     tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeBsdfDiffuse", {"Color": (0.0, 0.0, 0.0, 1.0)}),
-                                           "Volume": tree.add("ShaderNodeVolumeAbsorption", {"Density": 0.0})})
+                                           "Volume": tree.add("ShaderNodeVolumeAbsorption", {"Density": 0.0})}, target="CYCLES")
+    diving.add_floor(tree)
     mesh.materials.append(black)
     floor = bpy.data.objects.new("Pelagic Floor", mesh)
     floor[MARK] = True

@@ -9,7 +9,7 @@ from bpy.app.handlers import persistent
 from . import depths, drops, handlers, light, material, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
-from .query import first_ocean, is_camera_under
+from .query import camera_depth_m, first_ocean
 
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
@@ -41,7 +41,7 @@ def give(obj, bpy_scene, sun_and_sky):
     """An ocean's material; if wanted, sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
     scene = ocean.scene_of(obj, bpy_scene)
     _shown.pop((obj.name_full, bpy_scene.name), None)
-    _mark_under(obj, is_camera_under(obj, bpy_scene))
+    _mark_under(obj, camera_depth_m(obj, bpy_scene))
     material.ensure_material(obj, scene)
     if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
@@ -50,11 +50,11 @@ def give(obj, bpy_scene, sun_and_sky):
 
 
 def _mark_under(obj, under):
-    """Says in an ocean's file whether the scene's camera is in its water."""
+    """Says in an ocean's file how deep the scene's camera is in its water [m], None: it isn't."""
     if obj.library is not None:
         return  # as it was saved
-    if under:
-        obj[depths.UNDER] = True
+    if under is not None:
+        obj[depths.UNDER] = under
     elif depths.UNDER in obj:
         del obj[depths.UNDER]
 
@@ -109,7 +109,7 @@ def _follow(bpy_scene, depsgraph):
         sea = play.simulation_of(obj).sea
         of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name
-        under = is_camera_under(obj, bpy_scene, depsgraph)
+        under = camera_depth_m(obj, bpy_scene, depsgraph)
         wanted = [under, of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
         is_first = first_ocean(bpy_scene) == obj
         view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None

@@ -5,7 +5,7 @@ import math
 
 import bpy
 
-from . import compat, depths, upwelling
+from . import compat, depths, diving, upwelling
 from .facets import add_facets, transformed
 from .foam import OPACITY, PICTURE, add_foam
 from .light import extinction_per_m, packed_image
@@ -166,14 +166,17 @@ def new_material():
         compat.dont_light_with(material)  # the air's glow is the camera's alone, and would take a third of all samples from sun and sky
 
     def show(mirror, **settings):
-        tree.node("ShaderNodeOutputMaterial", {"Surface": before_air(tree.add("ShaderNodeMixShader", {
-            0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white}))}, **settings)
+        seen = before_air(tree.add("ShaderNodeMixShader", {
+            0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white}))
+        tree.node("ShaderNodeOutputMaterial", {"Surface": seen}, **settings)
+        return seen
 
-    show(mirror)
+    above = show(mirror)
     if not compat.eevee_mirrors_in_facets():
-        show(tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"], "Anisotropy": 0.0},
+        above = show(tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"], "Anisotropy": 0.0},
                       distribution="BECKMANN"), target="EEVEE")
     depths.add_depths(tree, part, foam, mirror, white, upwards, before_air)
+    diving.add_surface(tree, part, foam, above)
     return material
 
 
@@ -194,10 +197,11 @@ def _add_air(tree):
 
 
 def put_air(obj, scene, sky):
-    """Brings the air before the ocean to the scene. sky: the picture of the scene's sky, None: no air."""
+    """Brings the air before the ocean to the scene, and the sky behind it. sky: the picture of the scene's sky, None: no air."""
     material = next((m for m in obj.data.materials if m and MARK in m), None)
     node = material and material.node_tree.nodes.get(AIR_SKY)
     if node is not None:
         if node.image != sky:
             node.image = sky
         _fill(material, AIR, dict(enumerate(extinction_per_m(scene) if sky else (0.0, 0.0, 0.0))))
+        diving.put_sky(material, scene, sky)

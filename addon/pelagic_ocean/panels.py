@@ -129,7 +129,7 @@ def _draw_water(layout, obj):
 
 def _why_seen_through(obj, scene, clear_m):
     if depths.UNDER in obj:
-        return "The camera is under water: for Cycles it is a volume. EEVEE can't show it from below"
+        return "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows"
     if scene.sea.depth_m >= clear_m:
         return "The floor is too deep to show: the water is opaque in Cycles"
     if not depths.reaches_far(obj):

@@ -12,18 +12,21 @@ def first_ocean(bpy_scene):
     return min((obj for obj in bpy_scene.objects if ocean.is_ocean(obj)), key=lambda obj: obj.name, default=None)
 
 
-def is_camera_under(obj, bpy_scene, depsgraph=None):
-    """Whether the scene's camera is below an ocean's surface, as that plays just now; at rest where there is no sea yet."""
+def camera_depth_m(obj, bpy_scene, depsgraph=None):
+    """How far below an ocean's level at rest the scene's camera is, to a centimetre, ≥ 0; None where it isn't below the surface, as that plays
+    just now; at rest where there is no sea yet."""
     if obj.pelagic.surface.kind == "cage" or obj.pelagic.own_mesh:  # whose water may lie anywhere
-        return False
+        return None
     pinhole = ocean.pinhole_of(obj, bpy_scene, depsgraph)
     if pinhole is None:
-        return False
+        return None
     x, y, z = pinhole.position_m
     sea = play.simulation_of(obj).sea
     if sea is None or abs(z) > 1.5 * sea.significant_height_m:
-        return z < 0.0
-    return z < Water(obj, bpy_scene).heights([(x, y)])[0]
+        surface = 0.0
+    else:
+        surface = Water(obj, bpy_scene).heights([(x, y)])[0]
+    return round(max(-z, 0.0), 2) if z < surface else None
 
 
 class Water:

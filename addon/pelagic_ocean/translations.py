@@ -98,8 +98,8 @@ GERMAN = {
     "The object's own mesh": "Das eigene Netz des Objekts",
     "Waves of {:.1f} m (significant height)": "Signifikante Wellenhöhe {:.1f} m",
     "Clear down to {:.0f} m": "Klar bis {:.0f} m Tiefe", "Clear down to {:.1f} m": "Klar bis {:.1f} m Tiefe",
-    "The camera is under water: for Cycles it is a volume. EEVEE can't show it from below":
-        "Die Kamera ist unter Wasser: Für Cycles ist es ein Volumen. EEVEE kann es von unten nicht zeigen",
+    "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows":
+        "Die Kamera ist unter Wasser: Für Cycles ist es ein Volumen. EEVEE zeigt es ohne Kaustik und Schatten",
     "The floor is too deep to show: the water is opaque in Cycles":
         "Der Grund liegt zu tief, um zu sehen zu sein: In Cycles ist das Wasser undurchsichtig",
     "The floor gives the water its colour. A patch to the horizon would show the floor itself":

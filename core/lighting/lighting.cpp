@@ -295,6 +295,15 @@ void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     }
 }
 
+glm::vec3 water_lets_through(const WaterBody& water, float distance_m) {
+    const SkyMap none;
+    sea_shading::FromBelow shading(none);
+    return shading
+        .water_between(glm::vec3(0.0f), {1.0f, 0.0f, 0.0f}, 0.0f, std::max(distance_m, 0.0f), 0.0f,
+                       sea_shading::light_of<sea_shading::FromBelow>({}, water, {}))
+        .left;
+}
+
 SeaAlbedo sea_albedo(const WaterBody& water) {
     return sea_shading::albedo(water);
 }

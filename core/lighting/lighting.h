@@ -126,4 +126,7 @@ void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& 
                  std::span<const glm::vec3> direction, std::span<SeaRadiance> radiance,
                  const FloorSeen& floor = {});
 
+// The part of the light of what is this far away [m], ≥ 0, that comes to such an eye from there: 0 … 1, linear Rec. 709.
+glm::vec3 water_lets_through(const WaterBody& water, float distance_m);
+
 }  // namespace pelagic

@@ -1,9 +1,12 @@
 """The same material and light in EEVEE, which needs a display."""
 
+import math
 import sys
 import tempfile
 import traceback
 from pathlib import Path
+
+from mathutils import Matrix
 
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
@@ -50,6 +53,27 @@ def run():
         print("   lagoon", ratio)
         # Red light is the most changed by the way up to a level eye: 1.35 in the colour for an eye at 45 degrees.
         assert (np.abs(ratio - 1.0) < (0.28, 0.1, 0.1)).all(), ratio
+
+    with checking("EEVEE shows a camera in it Snell's window, the water mirrored round it, and the floor, as bright as the core's pictures"):
+        from pictures import core_layers
+        from pelagic_ocean import diving, ocean
+        camera, ratios, lower = bpy.context.scene.camera, [], np.arange(SIZE[1])[:, None] < SIZE[1] // 2
+        camera.data.sensor_fit = "HORIZONTAL"
+        for pitch_deg, fov_deg in ((89.0, 120.0), (-10.0, 70.0)):
+            camera.data.angle = math.radians(fov_deg)
+            camera.matrix_world = Matrix.Translation((0.0, 0.0, -1.5)) @ Matrix.Rotation(math.radians(90.0 + pitch_deg), 4, "X")
+            bpy.context.view_layer.update()
+            assert diving.SHOWN in obj.data.materials[0].node_tree.nodes
+            with tempfile.TemporaryDirectory() as folder:
+                scene = ocean.scene_of(obj, bpy.context.scene)
+                scene.shot.name, scene.shot.frames = "below", (1, 1)
+                scene.save(Path(folder) / "below.toml")
+                layers = core_layers(Path(folder) / "below.toml", SIZE)
+            mine, core = picture(), sum(layers.values())
+            no_sun = layers["sun"][..., 1] == 0.0
+            ratios += [mine[part].mean(0)[1:] / core[part].mean(0)[1:] for part in (no_sun & lower, no_sun & ~lower)]
+        print("   green and blue: {} {} {} {}".format(*(np.round(each, 3) for each in ratios)))
+        assert all((np.abs(each - 1.0) < 0.2).all() for each in ratios), ratios
 
 
 def main():

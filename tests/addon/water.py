@@ -15,7 +15,7 @@ from harness import *  # noqa: F403
 enable(sky_width=None)
 import pelagic
 from mathutils import Matrix
-from pelagic_ocean import depths, ocean, play, query, surfaces, upwelling
+from pelagic_ocean import depths, diving, ocean, play, query, surfaces, upwelling
 from pelagic_ocean.properties import FIELDS
 from pictures import core_layers, cycles_exr, shot_in_blender
 
@@ -202,7 +202,12 @@ with checking("a dive: deep water is a volume while the camera is below its surf
     for frame in range(1, 6):
         bpy.context.scene.frame_set(frame)
         floor = [child for child in obj.children if depths.MARK in child and child.visible_camera]
-        found.append((depths.OUTPUT in nodes, len(floor), nodes[depths.FROM_BELOW].outputs[0].default_value))
+        found.append((depths.OUTPUT in nodes, len(floor), nodes[depths.FROM_BELOW].outputs[0].default_value, diving.SHOWN in nodes))
         if frame == 4:
             assert any(text.startswith("The camera is under water") for text in drawn(panel)), drawn(panel)
-    assert found == [(False, 0, 0.0), (True, 1, 1.0), (False, 0, 0.0), (True, 1, 1.0), (False, 0, 0.0)], (surface, found)
+            around = np.array(nodes[diving.WATER].image.pixels).reshape(diving.WIDTH // 2, diving.WIDTH, 4)[..., :3]
+            down = pelagic.water_radiance(pelagic.Sky(ocean.scene_of(obj, bpy.context.scene)), pelagic.WaterBody(ocean.scene_of(obj, bpy.context.scene)),
+                                          np.array([(0.0, 0.0, -1.0)], np.float32), 3.0)[0]
+            assert np.allclose(around[0].mean(0), down, rtol=0.03), (around[0].mean(0), down)  # rows from the bottom
+    above, below = (False, 0, 0.0, False), (True, 1, 1.0, True)
+    assert found == [above, below, above, below, above], (surface, found)

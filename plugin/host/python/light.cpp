@@ -33,7 +33,8 @@ namespace {
 namespace py = pybind11;
 using Range = tbb::blocked_range<std::size_t>;
 
-constexpr std::size_t kGrain = 256;         // points a task computes
+constexpr std::size_t kGrain = 256;  // points a task computes
+constexpr float kDeepestEye_m = 10000.0f;
 constexpr std::size_t kAlbedoGrain = 4096;  // those of water_albedo(), of which each task makes a table
 constexpr std::size_t kShaded =
     kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
@@ -228,6 +229,27 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
     return written;
 }
 
+py::object radiance_in_water(const PythonSky& sky, const WaterBody& water, const py::object& directions,
+                             float depth_m, py::object out) {
+    if (!water.has_body) throw py::value_error("water: it has no body, and nobody can be in it");
+    if (!(depth_m >= 0.0f && depth_m <= kDeepestEye_m))
+        throw py::value_error("depth_m: accepted: 0 to " + std::to_string(static_cast<int>(kDeepestEye_m)));
+    Copies copies;
+    const auto [towards, count] = readable_vectors(directions, {"directions"}, copies);
+    if (out.is_none()) out = py::array_t<float>({count, py::ssize_t{3}});
+    const Strided<glm::vec3> radiance = writable_vectors(out, {"out", count}, copies);
+    over_points(count, [&, to = towards](const Range& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const glm::vec3 direction = to[i];
+            SeaRadiance seen;
+            shade_water({}, *sky.sky, water, -depth_m, {&direction, 1}, {&seen, 1});
+            radiance[i] = seen.sea;
+        }
+    });
+    copies.give_back();
+    return out;
+}
+
 struct AlbedoArguments {
     py::object to_eye, coverage, foam_active, foam_age, normal, crest, out;
 };
@@ -302,7 +324,23 @@ void add_light(py::module_& module) {
             },
             py::arg("direction"),
             "The part of light from a direction (a unit vector) that the surface lets in: a rough surface of a body of "
-            "water, a level one without.");
+            "water, a level one without.")
+        .def(
+            "lets_through",
+            [](const WaterBody& self, float distance_m) {
+                if (!self.has_body) throw py::value_error("lets_through: this water has no body");
+                if (!(distance_m >= 0.0f)) throw py::value_error("distance_m: accepted: 0 or more");
+                return tuple_of(water_lets_through(self, distance_m));
+            },
+            py::arg("distance_m"),
+            "The part of the light of what is this far away [m] in a body of water that an eye in it sees, (r, g, b), linear "
+            "Rec. 709. ValueError for water without a body.");
+    module.def(
+        "water_radiance", &radiance_in_water, py::arg("sky"), py::arg("water"), py::arg("directions"),
+        py::arg("depth_m"), py::kw_only(), py::arg("out") = py::none(),
+        "float32 (n, 3) [kcd/m^2], linear Rec. 709: what an eye this deep in a body of water sees in these directions, "
+        "float32 (n, 3), unit, z <= 0: the water, and the floor of scene.sea.depth_m. Into out, where that is given.\n\n"
+        "ValueError for water without a body.");
     module.def(
         "water_albedo",
         [](const PythonSky& sky, const WaterBody& water, const py::object& to_eye, const py::object& coverage,

@@ -40,10 +40,10 @@ RESULTS = {
     "uniforms": "dict[str, Any]", "foam": "dict[str, Any]", "water": "dict[str, Any]", "textures": "dict[str, Any]", "limit": "dict[str, Any]", "take_foam": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
     "triangles": "NDArray[np.uint32]", "size": "tuple[int, int]", "at_origin": f"tuple[NDArray[np.uint8], {ARRAY} | None]",
     "products": "tuple[str, ...]", "origin_m": "tuple[float, float]", "resolution": "tuple[int, int]", "shift": "tuple[float, float]",
-    "foam_picture": f"{ARRAY} | None", "water_albedo": ARRAY, "air": f"tuple[dict[str, Any], {ARRAY}]", "progress": "tuple[Any, ...] | None", "result": "Any",
+    "foam_picture": f"{ARRAY} | None", "water_albedo": ARRAY, "water_radiance": ARRAY, "air": f"tuple[dict[str, Any], {ARRAY}]", "progress": "tuple[Any, ...] | None", "result": "Any",
     **{name: "tuple[float, float, float]" for name in
        ("position_m", "right", "up", "forward", "sun_direction", "sun_radiance", "sun_irradiance", "sky_irradiance",
-        "reflectance", "absorption_per_m", "backscatter_per_m")},
+        "reflectance", "absorption_per_m", "backscatter_per_m", "lets_through")},
 }
 
 # Attributes of a scene's tables that aren't keys and can be set.

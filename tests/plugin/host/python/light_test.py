@@ -171,6 +171,34 @@ class Shade(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "coverage: its shape"):
             albedo(self.water, coverage=foam[:3])
 
+    def test_an_eye_in_the_water_sees_the_water_and_its_floor(self):
+        down, level = vectors(2, (0.0, 0.0, -1.0)), vectors(2, (1.0, 0.0, 0.0))
+        deep = [pelagic.water_radiance(self.sky, self.water, down, depth)[0] for depth in (0.0, 10.0, 40.0)]
+        irradiance = np.array(self.sky.sun_irradiance) + np.array(self.sky.sky_irradiance)
+        # Just below the surface the light that comes up is that of the water's reflectance, of all that enters.
+        np.testing.assert_allclose(deep[0][1:], (np.array(self.water.reflectance) * irradiance / np.pi)[1:], rtol=0.25)
+        self.assertTrue((deep[1] < deep[0])[1:].all() and (deep[2] < deep[1])[1:].all())
+        lagoon = scene_with_sun()
+        lagoon.sea.depth_m, lagoon.water.floor_colour = 3.0, (0.5, 0.5, 0.5)
+        water = pelagic.WaterBody(lagoon)
+        floor = pelagic.water_radiance(self.sky, water, down, 2.9)[0]
+        # Half of what it sends up comes down again.
+        self.assertTrue((floor > 3.0 * deep[0]).all() and (floor < 0.5 * irradiance / np.pi / (1.0 - 0.5 * 0.5)).all())
+        self.assertTrue((pelagic.water_radiance(self.sky, water, level, 1.0)[0] < floor).all())
+        self.assertEqual(water.lets_through(0.0), (1.0, 1.0, 1.0))
+        near, far = water.lets_through(2.0), water.lets_through(4.0)
+        np.testing.assert_allclose(np.square(near[2]), far[2], rtol=0.05)
+        self.assertTrue(near[0] < near[2] and all(0.0 < b < a < 1.0 for a, b in zip(near, far)))
+        out = np.zeros((2, 3), np.float32)
+        self.assertIs(pelagic.water_radiance(self.sky, water, down, 2.9, out=out), out)
+        np.testing.assert_array_equal(out[0], floor)
+        plain = scene_with_sun()
+        plain.water.body = False
+        for ask in (lambda: pelagic.water_radiance(self.sky, pelagic.WaterBody(plain), down, 1.0), lambda: pelagic.WaterBody(plain).lets_through(1.0),
+                    lambda: pelagic.water_radiance(self.sky, water, down, -1.0), lambda: water.lets_through(math.nan),
+                    lambda: pelagic.water_radiance(self.sky, water, down, math.inf)):
+            self.assertRaises(ValueError, ask)
+
     def test_foam_takes_its_share(self):
         none, half, full = (self.lit(coverage=np.full(300, share, np.float32)) for share in (0.0, 0.5, 1.0))
         for name, array in self.lit().items():

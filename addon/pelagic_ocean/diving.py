@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a camera in the water sees in EEVEE.
+
+Nothing there bends light up to a critical angle and mirrors it beyond, and no light comes through the surface into a volume. So all that
+isn't an object of the artist's glows by the core's numbers: the surface by the sky that its facets let through and the water that they
+mirror, and water and floor by a picture of what the camera sees of both in each direction, which is the glow of a volume as wide as
+the floor, too: before the artist's objects it takes as much of their light away as it adds of its own. Cycles has its own (depths.py).
+"""
+
+import math
+
+import numpy as np
+
+from . import light
+from .facets import WATER_INDEX, add_fresnel, transformed
+from .module import pelagic
+
+SURFACE, SHOWN = "Surface from Below", "Seen from Below"  # nodes of the water's material, the second only while it shows
+SKY, WATER = "Sky from Below", "Water Around the Camera"
+SUN, SUN_LIGHT, ON_SEA = "Sun from Below", "Sunlight", "Light on the Sea"
+FOG = "Water before the Floor"  # of the floor's
+PICTURE = "Pelagic Water"
+LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
+WIDTH = 256  # of the picture: what it has of the sun is wide
+SUN_WIDTH = 0.03  # by how much the sun behind a facet is blurred [rad]: of its disc next to no sample would find any
+FOG_AT_M = 5.0
+
+
+def add_surface(tree, part, foam, above):
+    """Adds what connect() shows. part, foam: of add_facets() and add_foam(); above: the shader of the surface from above."""
+    def named(name, kind, inputs=(), **settings):
+        node = tree.node(kind, inputs, **settings)
+        node.name = node.label = name
+        return tree.value(node, 0)
+
+    geometry, facet, cosine = tree.node("ShaderNodeNewGeometry"), part["Normal"], part["Facet Cosine"]
+    to_eye = tree.value(geometry, "Incoming")
+    beyond = (1.0 - (1.0 - cosine * cosine) * WATER_INDEX**2).sqrt()
+    kept = add_fresnel(tree, beyond)
+    let = (1.0 - kept) * WATER_INDEX**2
+    x, y, z = (facet * (cosine * WATER_INDEX - beyond) - to_eye * WATER_INDEX).parts()
+    ray = tree.vector(x, y, z.at_least(1e-3)).normalized()
+    # The chord of a small angle serves as well.
+    chord = (ray - named(SUN, "ShaderNodeCombineXYZ")).length() * (1.0 / SUN_WIDTH)
+    sun = named(SUN_LIGHT, "ShaderNodeRGB") * ((chord * chord * -0.5).at_least(-80.0).exp() * (1.0 / (2.0 * math.pi * SUN_WIDTH**2)))
+    x, y, z = (facet * (2.0 * cosine) - to_eye).parts()
+    mirrored = named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
+    seen = (named(SKY, "ShaderNodeTexEnvironment", {"Vector": ray}) + sun) * let + mirrored * kept
+    through_foam = named(ON_SEA, "ShaderNodeRGB") * (foam["Color"] * -LETS_THROUGH + (LETS_THROUGH,) * 3) * (1.0 / math.pi)
+    glow = tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: tree.add("ShaderNodeEmission", {"Color": seen}),
+                                            2: tree.add("ShaderNodeEmission", {"Color": through_foam})})
+    seen = tree.add("ShaderNodeMixShader", {0: tree.value(geometry, "Backfacing"), 1: above, 2: glow})
+    # What is in the water has the lamps' light.
+    named(SURFACE, "ShaderNodeMixShader", {0: tree.add("ShaderNodeLightPath", output="Is Shadow Ray"), 1: seen,
+                                           2: tree.add("ShaderNodeBsdfTransparent")})
+
+
+def add_floor(tree):
+    """Adds what connect() shows of a floor, and before it."""
+    def named(name, kind, inputs=(), **settings):
+        node = tree.node(kind, inputs, **settings)
+        node.name = node.label = name
+        return tree.value(node, 0)
+
+    place = transformed(tree, tree.add("ShaderNodeNewGeometry", output="Position"), "POINT", "WORLD", "CAMERA")
+    towards = transformed(tree, place, "VECTOR", "CAMERA", "WORLD")
+    x, y, z = towards.normalized().parts()
+    around = named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
+    lost = named(FOG, "ShaderNodeRGB")
+    most = tree.add("ShaderNodeVectorMath", {0: lost, 1: (1.0, 1.0, 1.0)}, "Value", operation="DOT_PRODUCT")
+    volume = tree.add("ShaderNodeAddShader", {
+        0: tree.add("ShaderNodeVolumeAbsorption", {"Color": lost * (-1.0 / most.at_least(1e-6)) + (1.0, 1.0, 1.0), "Density": most}),
+        1: tree.add("ShaderNodeEmission", {"Color": around * lost})})
+    node = tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeEmission", {"Color": around}),
+                                                  "Volume": volume}, target="EEVEE")
+    node.name = node.label = SHOWN
+
+
+def connect(material, floor, scene, depth_m):
+    """Makes EEVEE show the surface from below, the water and the floor (an object) to a camera this deep [m], None: to none."""
+    nodes = material.node_tree.nodes
+    shown = nodes.get(SHOWN)
+    below = floor.data.materials[0].node_tree.nodes if floor is not None and floor.data.materials else {}
+    if depth_m is None or SURFACE not in nodes or FOG not in below:
+        if shown is not None:
+            nodes.remove(shown)
+        if FOG in below:
+            floor.display_type = "BOUNDS"
+            _set(below[FOG], (0.0, 0.0, 0.0))
+        return
+    if shown is None:
+        shown = nodes.new("ShaderNodeOutputMaterial")
+        shown.name = shown.label = SHOWN
+        shown.target = "EEVEE"
+        shown.location = nodes[SURFACE].location
+        shown.location.x += 200
+        material.node_tree.links.new(nodes[SURFACE].outputs[0], shown.inputs["Surface"])
+        shown.is_active_output = True
+    sky, water = light.sky_of(scene), pelagic.WaterBody(scene)
+    nodes[WATER].image = below[WATER].image = light.packed_image(PICTURE, _around(sky, water, depth_m), nodes[WATER].image)
+    for socket, value in zip(nodes[SUN].inputs, sky.sun_direction):
+        socket.default_value = value
+    _set(nodes[SUN_LIGHT], np.array(sky.sun_radiance) * math.pi * sky.sun_angular_radius**2)
+    _set(nodes[ON_SEA], np.array(sky.sun_irradiance) + np.array(sky.sky_irradiance))
+    _set(below[FOG], [-math.log(max(part, 1e-6)) / FOG_AT_M for part in water.lets_through(FOG_AT_M)])
+    floor.display_type = "TEXTURED"  # a view draws nothing else of it
+
+
+def put_sky(material, scene, image):
+    """The sky that shows through the surface. image: of the scene's sky, None: Blender has another one."""
+    node = material.node_tree.nodes.get(SKY)
+    if node is not None and SHOWN in material.node_tree.nodes:
+        node.image = image or light.sky_image(node.image, light.sky_of(scene))
+
+
+def _set(node, colour):
+    node.outputs[0].default_value = (*map(float, colour), 1.0)
+
+
+def _around(sky, water, depth_m):
+    """float32 (WIDTH/2, WIDTH, 3), rows from the top: the water's light in each direction; above the horizon that of the horizon."""
+    up = 0.5 * math.pi - 2.0 * math.pi * (np.arange(WIDTH // 2) + 0.5) / WIDTH
+    up, azimuth = np.meshgrid(np.minimum(up, -1e-3), math.pi - 2.0 * math.pi * (np.arange(WIDTH) + 0.5) / WIDTH, indexing="ij")
+    towards = np.stack([np.cos(up) * np.cos(azimuth), np.cos(up) * np.sin(azimuth), np.sin(up)], axis=-1).astype(np.float32)
+    return pelagic.water_radiance(sky, water, towards.reshape(-1, 3), depth_m).reshape(towards.shape)

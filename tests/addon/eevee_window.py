@@ -57,9 +57,9 @@ def run():
     with checking("EEVEE shows a camera in it Snell's window, the water mirrored round it, and the floor, as bright as the core's pictures"):
         from pictures import core_layers
         from pelagic_ocean import diving, ocean
-        camera, ratios, lower = bpy.context.scene.camera, [], np.arange(SIZE[1])[:, None] < SIZE[1] // 2
+        camera, ratios = bpy.context.scene.camera, []
         camera.data.sensor_fit = "HORIZONTAL"
-        for pitch_deg, fov_deg in ((89.0, 120.0), (-10.0, 70.0)):
+        for pitch_deg, fov_deg, parts in ((89.0, 120.0, ((0.77, 1.0), (0.0, 0.57))), (-10.0, 70.0, ((0.05, 0.5), (-1.0, -0.2)))):
             camera.data.angle = math.radians(fov_deg)
             camera.matrix_world = Matrix.Translation((0.0, 0.0, -1.5)) @ Matrix.Rotation(math.radians(90.0 + pitch_deg), 4, "X")
             bpy.context.view_layer.update()
@@ -70,9 +70,12 @@ def run():
                 scene.save(Path(folder) / "below.toml")
                 layers = core_layers(Path(folder) / "below.toml", SIZE)
             mine, core = picture(), sum(layers.values())
+            x, y = np.meshgrid(*((np.arange(count) + 0.5 - 0.5 * count) * 2.0 * math.tan(math.radians(0.5 * fov_deg)) / SIZE[0] for count in SIZE))
+            up = (np.stack([x, y, -np.ones_like(x)], axis=-1) / np.sqrt(x * x + y * y + 1.0)[..., None]) @ np.array(camera.matrix_world.to_3x3())[2]
             no_sun = layers["sun"][..., 1] == 0.0
-            ratios += [mine[part].mean(0)[1:] / core[part].mean(0)[1:] for part in (no_sun & lower, no_sun & ~lower)]
-        print("   green and blue: {} {} {} {}".format(*(np.round(each, 3) for each in ratios)))
+            seen = [no_sun & (low < up) & (up < high) for low, high in parts]
+            ratios += [mine[part].mean(0)[1:] / core[part].mean(0)[1:] for part in seen]
+        print("   green and blue: window {}, round it {}, surface ahead {}, floor {}".format(*(np.round(each, 3) for each in ratios)))
         assert all((np.abs(each - 1.0) < 0.2).all() for each in ratios), ratios
 
 

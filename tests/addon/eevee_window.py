@@ -76,7 +76,8 @@ def run():
             seen = [no_sun & (low < up) & (up < high) for low, high in parts]
             ratios += [mine[part].mean(0)[1:] / core[part].mean(0)[1:] for part in seen]
         print("   green and blue: window {}, round it {}, surface ahead {}, floor {}".format(*(np.round(each, 3) for each in ratios)))
-        assert all((np.abs(each - 1.0) < 0.2).all() for each in ratios), ratios
+        # Before the surface the water glows as it does level, where it has more of the floor's green.
+        assert all((np.abs(each - 1.0) < most).all() for each, most in zip(ratios, (0.1, 0.25, 0.25, 0.05))), ratios
 
 
 def main():

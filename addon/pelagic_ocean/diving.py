@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from . import light
-from .facets import WATER_INDEX, add_fresnel, transformed
+from .facets import WATER_INDEX, add_fresnel
 from .module import pelagic
 
 SURFACE, SHOWN = "Surface from Below", "Seen from Below"  # nodes of the water's material, the second only while it shows
@@ -62,9 +62,7 @@ def add_floor(tree):
         node.name = node.label = name
         return tree.value(node, 0)
 
-    place = transformed(tree, tree.add("ShaderNodeNewGeometry", output="Position"), "POINT", "WORLD", "CAMERA")
-    towards = transformed(tree, place, "VECTOR", "CAMERA", "WORLD")
-    x, y, z = towards.normalized().parts()
+    x, y, z = (-tree.add("ShaderNodeNewGeometry", output="Incoming")).parts()
     around = named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
     lost = named(FOG, "ShaderNodeRGB")
     most = tree.add("ShaderNodeVectorMath", {0: lost, 1: (1.0, 1.0, 1.0)}, "Value", operation="DOT_PRODUCT")

@@ -251,14 +251,20 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
             noise.variance += part * through * through;
         }
     }
-    for (int k = 0; k < 2; ++k) {
-        float size_m = k == 0 ? 8.0f : 2.0f;
-        float part = 0.5f * streaks;
-        float through = foam_weight(size_m, footprint_m);
-        if (part * through > 0.0f) {
-            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 + 2 * k, vec2(0.0f, bent.y / size_m), false);
-            noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
-            noise.variance += part * through * through;
+    // Langmuir's cells, of all sizes (a few metres to a hundred between rows, Leibovich 1983): they meander, and rows of several sizes
+    // meet at sharp angles, since smaller ones are moved less.
+    if (streaks > 0.0f && foam_weight(32.0f, footprint_m) > 0.0f) {
+        float meander_m = 5.0f * foam_clouds(foam_cell(cells, rest, 0, vec2(0.0f), false), 90u);
+        for (int k = 0; k < 3; ++k) {
+            float size_m = k == 0 ? 32.0f : k == 1 ? 8.0f : 2.0f;
+            float part = (k == 1 ? 0.4f : 0.3f) * streaks;
+            float through = foam_weight(size_m, footprint_m);
+            if (part * through > 0.0f) {
+                float aside_m = bent.y + (k == 2 ? 0.5f : 1.0f) * meander_m;
+                FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 * k, vec2(0.0f, aside_m / size_m), false);
+                noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
+                noise.variance += part * through * through;
+            }
         }
     }
     return noise;

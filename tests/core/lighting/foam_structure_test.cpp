@@ -213,6 +213,29 @@ TEST(FoamStructure, LiesInStreaksWhereOld) {
     EXPECT_GT(change(along, 0.0f), 0.6 * change(across, 0.0f));
 }
 
+// From a plane too: pixels of 10 m still tell wide rows from what is between, and rows bend: far along one the wind's own direction has left it.
+TEST(FoamStructure, HasWideRowsThatBend) {
+    std::mt19937 random(12);
+    std::uniform_real_distribution<float> place(-3000.0f, 3000.0f);
+    const auto likeness = [&](glm::vec2 step_m, float footprint_m) {
+        const auto pattern = pattern_of(1.0, 1.0, 0.0);
+        double both = 0.0, square = 0.0;
+        for (int i = 0; i < 8000; ++i) {
+            const glm::vec2 at(place(random), place(random));
+            const auto here = static_cast<double>(shading.foam_noise(pattern, at, footprint_m, 8.0f).shown);
+            both +=
+                here * static_cast<double>(shading.foam_noise(pattern, at + step_m, footprint_m, 8.0f).shown);
+            square += here * here;
+        }
+        EXPECT_GT(square / 8000.0, 0.05);
+        return both / square;
+    };
+    EXPECT_LT(likeness({0.0f, 40.0f}, 10.0f), 0.2);
+    EXPECT_GT(likeness({40.0f, 0.0f}, 10.0f), 0.7);
+    // Rows of 8 m have cells of 136 m: straight ones are alike by 0.89.
+    EXPECT_LT(likeness({40.0f, 0.0f}, 1.5f), 0.8);
+}
+
 // The same place of the sea, seen from any origin near it, also a million metres away from the world's; also beyond where
 // integers of single precision end.
 TEST(FoamStructure, StaysWithTheWater) {

@@ -251,14 +251,20 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
             noise.variance += part * through * through;
         }
     }
-    for (int k = 0; k < 2; ++k) {
-        float size_m = k == 0 ? 8.0f : 2.0f;
-        float part = 0.5f * streaks;
-        float through = foam_weight(size_m, footprint_m);
-        if (part * through > 0.0f) {
-            FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 + 2 * k, vec2(0.0f, bent.y / size_m), false);
-            noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
-            noise.variance += part * through * through;
+    // Langmuir's cells, of all sizes (a few metres to a hundred between rows, Leibovich 1983): they meander, and rows of several sizes
+    // meet at sharp angles, since smaller ones are moved less.
+    if (streaks > 0.0f && foam_weight(32.0f, footprint_m) > 0.0f) {
+        float meander_m = 5.0f * foam_clouds(foam_cell(cells, rest, 0, vec2(0.0f), false), 90u);
+        for (int k = 0; k < 3; ++k) {
+            float size_m = k == 0 ? 32.0f : k == 1 ? 8.0f : 2.0f;
+            float part = (k == 1 ? 0.4f : 0.3f) * streaks;
+            float through = foam_weight(size_m, footprint_m);
+            if (part * through > 0.0f) {
+                float aside_m = bent.y + (k == 2 ? 0.5f : 1.0f) * meander_m;
+                FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 * k, vec2(0.0f, aside_m / size_m), false);
+                noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
+                noise.variance += part * through * through;
+            }
         }
     }
     return noise;
@@ -292,6 +298,32 @@ SeenFoam foam_in(FoamNoise noise, float mean, float white, float softness) {
     return SeenFoam(opacity, white * (1.0f + hollows * (min(heaps, 1.0f / kHeaps) - 1.0f)), 0.0f);
 }
 
+// Where pixels are too large for heaps and relief foam isn't of one tone: patches of all sizes are thicker or thinner, and lean to the sun
+// or from it. Of those some times as large as the pixel, up to the largest cells, the tone is even over −1 … 1: its mean is 0.
+const float kTonePixels = 5.0f;
+const float kTone = 0.4f;
+
+float foam_tone(FoamPattern pattern, vec2 rest_m, float footprint_m) {
+    float along = pattern.axes.x * rest_m.x + pattern.axes.y * rest_m.y;
+    float across = pattern.axes.x * rest_m.y - pattern.axes.y * rest_m.x;
+    vec3 place = pattern.rest + vec3(pattern.axes.z * along, pattern.axes.w * along, across / float(kFoamCell_m));
+    vec3 whole = floor(place);
+    place -= whole;
+    vec3 cell = pattern.cell + whole;
+    cell -= 65536.0f * floor(cell / 65536.0f);
+    float octave = log2(float(kFoamCell_m) / (kTonePixels * footprint_m));
+    float fade = smoothstep(0.2f, 0.8f, footprint_m) * smoothstep(-1.5f, 0.0f, octave);
+    if (!(fade > 0.0f)) return 0.0f;
+    octave = clamp(octave, 0.0f, 7.0f);
+    int coarse = min(int(octave), 6);
+    float t = octave - float(coarse);
+    float sum = 0.0f;
+    for (int k = coarse; k < coarse + 2; ++k)
+        sum += (k == coarse ? 1.0f - t : t) *
+               foam_clouds(foam_cell(vec2(cell.x, cell.z), vec2(place.x, place.z), k, vec2(0.0f), k % 2 == 1), uint(80 + k));
+    return fade * (2.0f * normal_below(sum * inversesqrt((1.0f - t) * (1.0f - t) + t * t)) - 1.0f);
+}
+
 // Foam's relief: this high for a deviation of its finest bubbles, and as much of a lump's breadth, since lumps of all sizes are as
 // steep. Its facets are as steep as their own roughness has it (kFoamSlopeVariance), no steeper.
 const float kFoamRelief_m = 0.02f;
@@ -312,6 +344,7 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     float footprint_m = foam_footprint(pixel_m);
     float since_s = (1.0f - fresh) * age_s;
     FoamNoise noise = foam_noise(pattern, rest_m, footprint_m, since_s);
+    white *= 1.0f + clamp(0.95f / max(white, 1.0e-3f) - 1.0f, 0.0f, kTone * strength) * foam_tone(pattern, rest_m, footprint_m);
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
     noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
     SeenFoam seen = foam_in(noise, c * mean, white, foam_softness(since_s));

@@ -140,9 +140,9 @@ vec3 spray_source(vec3 ray, float column, SprayView spray) {
         float across = length(vec2(ray.x, ray.y));
         float turned = (ray.x * spray.to_sun.x + ray.y * spray.to_sun.y) /
                        max(across * length(vec2(spray.to_sun.x, spray.to_sun.y)), 1.0e-6f);
-        vec3 low = spray.low_beside + 0.5f * turned * (spray.low_ahead - spray.low_behind) +
-                   turned * turned * (0.5f * (spray.low_ahead + spray.low_behind) - spray.low_beside);
-        sky = mix(sky, max(low, vec3(0.0f)), kSprayForward * across * across);
+        // By halves: a parabola through all three would take the sun's bright yellow away from what is opposite, and leave mauve.
+        vec3 low = mix(spray.low_beside, turned > 0.0f ? spray.low_ahead : spray.low_behind, turned * turned);
+        sky = mix(sky, low, kSprayForward * across * across);
     }
     vec3 around = mix(spray.below, sky, 0.5f + 0.5f * kSprayForward * ray.z);
     return around + spray.sun * (left * phase + (1.0f - left) * 0.07957747f);

@@ -73,15 +73,18 @@ bool has_bubbles(const Scene& scene) {
     return scene.water.body && scene.water.bubbles > 0.0;
 }
 
-double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) {
-    // A quarter of the height of what breaks (clouds reach half of it: Kalvoda 2003); most whitecaps are those of waves much shorter than the
-    // peak's, some 0.4 of its speed and 0.3 of its height.
+double breaker_height_m(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    // Most whitecaps are those of waves much shorter than the peak's, some 0.4 of its speed and 0.3 of its height.
     constexpr double kBreakerOverHs = 0.3;
     SeaState wind = scene.sea;  // swell doesn't break in the open sea
     wind.swell.clear();
     const double m0 =
         scene.sea.swell.empty() ? spectrum.m0() : DirectionalSpectrum(wind, scene.waves.band_gains).m0();
-    return 0.25 * kBreakerOverHs * 4.0 * std::sqrt(m0);
+    return kBreakerOverHs * 4.0 * std::sqrt(m0);
+}
+
+double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    return 0.25 * breaker_height_m(scene, spectrum);  // clouds reach half of it: Kalvoda 2003
 }
 
 FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period) {

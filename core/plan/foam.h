@@ -58,7 +58,8 @@ struct FoamPlan {
 
 // Whether pictures of the scene show bubbles.
 bool has_bubbles(const Scene& scene);
-// How deep bubbles are under foam, e-folding [m]: `spectrum` is the scene's.
+// Of what breaks most, the height [m], and how deep bubbles are under it, e-folding: `spectrum` is the scene's.
+double breaker_height_m(const Scene& scene, const DirectionalSpectrum& spectrum);
 double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum);
 
 // Of a scene that has persistent foam. steps_a_period: Knobs::foam_steps_a_period. `finest_m`: no breaking is resolved

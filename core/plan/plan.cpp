@@ -360,6 +360,12 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.breaking = breaking_of(scene, plan.filter);
+    // In pictures the edge of what breaks is as wide as a breaker's roller is thick, and the foam's pattern tears it: to a pixel it would be cut.
+    // Two thirds of the height are by eye; a mean over footprints stays.
+    constexpr double kRollerOverHeight = 2.0 / 3.0;
+    if (std::ranges::any_of(queries, [](const Query& query) { return query.is_picture; }))
+        plan.breaking.footprint_m =
+            plan.breaking.footprint_of(kRollerOverHeight * breaker_height_m(scene, prepared.spectrum));
     for (const Query& query : queries) add_query(plan, query);
     for (const EffectRow& row : effect_table())
         if (!row.is_on(scene))

@@ -36,7 +36,8 @@ struct Force {
     const char* help;
 };
 
-// What the sea looks like: after the same table's descriptions, shortened. From force 6 on the camera is low, as on a small boat in a trough,
+// What the sea looks like: after the same table's descriptions, shortened. Each is whiter than the one before, and none of them by the sun's
+// glitter alone: foam is lit from the side or from behind the eye, and a hurricane's spray against the light. From force 6 on the camera is low, as on a small boat in a trough,
 // where the next sea stands over the horizon: from the seas' own height they are low hills. The places are those of the default seed, found by a
 // search: the water stays below the camera for ten seconds, and a crest is ahead, on the default patch,
 // which a bake of the preset shows.
@@ -48,13 +49,13 @@ constexpr std::array<Force, 13> kForces{{
     {"Gentle breeze", 4.4, 300.0, 1.0, {16.0, 90.0, 2.0}, {3.0, 1.0, 50.0}, "large wavelets, the first scattered whitecaps"},
     {"Moderate breeze", 6.7, 70.0, 1.0, {52.0, 150.0, 2.0}, {4.0, 0.0, 50.0}, "small waves that grow longer, fairly frequent whitecaps; 1 m"},
     {"Fresh breeze", 9.3, 150.0, 1.0, {38.0, 20.0, 2.0}, {4.5, 1.0, 46.0}, "moderate, long waves, many whitecaps; 2 m"},
-    {"Strong breeze", 12.3, 180.0, 1.2, {34.0, 320.0, 2.0}, {1.3, 1.8, 34.0, -77.0, -34.0, 80.0}, "large waves, white crests everywhere; 3 m"},
-    {"Near gale", 15.5, 190.0, 1.4, {40.0, 40.0, 2.2}, {1.6, 2.0, 34.0, 15.0, 34.0, 280.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
-    {"Gale", 18.9, 240.0, 1.7, {22.0, 290.0, 2.4}, {1.6, 2.4, 32.0, 6.0, -44.0, 40.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
-    {"Strong gale", 22.6, 270.0, 2.0, {30.0, 350.0, 2.6}, {2.7, 3.6, 32.0, 57.0, 35.0, 240.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
-    {"Storm", 26.4, 320.0, 3.2, {10.0, 160.0, 3.0}, {3.3, 4.4, 34.0, 50.0, 58.0, 220.0}, "very high waves with overhanging crests, the sea looks white; 9 m"},
-    {"Violent storm", 30.5, 385.0, 4.5, {26.0, 325.0, 3.0}, {3.9, 5.0, 34.0, 77.0, 69.0, 200.0}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
-    {"Hurricane", 35.0, 425.0, 7.5, {24.0, 185.0, 3.5}, {3.9, 5.0, 34.0, -2.0, -5.0, 40.0}, "the air is full of foam, the sea white; 14 m"},
+    {"Strong breeze", 12.3, 180.0, 1.2, {34.0, 290.0, 2.0}, {0.9, 1.8, 34.0, -5.0, -30.0, 330.0}, "large waves, white crests everywhere; 3 m"},
+    {"Near gale", 15.5, 190.0, 1.4, {40.0, 100.0, 2.2}, {1.6, 2.0, 34.0, 15.0, 34.0, 280.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
+    {"Gale", 18.9, 240.0, 1.7, {28.0, 200.0, 2.4}, {0.9, 2.2, 32.0, -18.0, -51.0, 330.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
+    {"Strong gale", 22.6, 270.0, 2.0, {30.0, 200.0, 2.6}, {0.5, 3.0, 32.0, -2.0, -63.0, 340.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
+    {"Storm", 26.4, 320.0, 3.2, {24.0, 300.0, 3.0}, {3.3, 4.4, 34.0, 50.0, 58.0, 220.0, -0.3}, "very high waves with overhanging crests, the sea looks white; 9 m"},
+    {"Violent storm", 30.5, 385.0, 4.5, {26.0, 300.0, 3.0}, {3.9, 5.0, 34.0, 77.0, 69.0, 200.0, -0.2}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
+    {"Hurricane", 35.0, 425.0, 7.5, {24.0, 100.0, 3.5}, {3.9, 5.0, 34.0, -2.0, -5.0, 40.0}, "the air is full of foam, the sea white; 14 m"},
 }};
 // clang-format on
 
@@ -120,6 +121,23 @@ void add_before(Preset& preset, const Before& before) {
     }
 }
 
+// What a storm adds to its waves: spray, and foam that is thick. Of the streaks that whiten a sea from force 10 on there is no law: by eye, so
+// that each force is whiter than the one before it.
+struct Storm {
+    bool spray = false;
+    double new_opaque = 0.0, old_opaque = 0.0;  // 0: the law's
+};
+Storm storm_of(int force) {
+    constexpr std::array<Storm, 5> kFrom8{
+        {{true}, {true}, {true, 0.8, 0.5}, {true, 0.9, 0.65}, {true, 0.95, 0.85}}};
+    return force < 8 ? Storm{} : kFrom8[static_cast<std::size_t>(force - 8)];
+}
+void add_storm(Preset& preset, const Storm& storm) {
+    preset.values.push_back({"effects.spray", storm.spray, 3});
+    preset.values.push_back({"effects.foam_new_opaque", storm.new_opaque, 3});
+    preset.values.push_back({"effects.foam_old_opaque", storm.old_opaque, 3});
+}
+
 Preset beaufort(int number) {
     const Force& force = kForces[static_cast<std::size_t>(number)];
     Preset preset{.name = "beaufort-" + std::to_string(number),
@@ -131,6 +149,9 @@ Preset beaufort(int number) {
                              {"sea.significant_height_m", KeyValue()},
                              {"sea.spectrum", std::string(word_of(SpectrumKind::Jonswap))}}};
     add(preset, "effects.whitecap_amount", force.foam);
+    add_storm(preset, storm_of(number));
+    // What amounts of foam add to the law's is drifting streaks, which have no bubbles below.
+    preset.values.push_back({"water.bubbles", 1.0 / force.foam, 3});
     for (const auto& [path, value] : values_of(force.day)) add(preset, path, value);
     add_framing(preset, force.framing);
     return preset;
@@ -138,7 +159,7 @@ Preset beaufort(int number) {
 
 // All keys of the tables that a named sea sets, as they are in this scene.
 Preset named(const char* name, const char* label, const char* help, const Scene& scene,
-             const Framing& framing) {
+             const Framing& framing, const Storm& storm = {}) {
     Preset preset{.name = name, .label = label, .help = help, .group = PresetGroup::Sea, .values = {}};
     for (const KeyTable& table : key_tables()) {
         if (table.name != "sea" && table.name != "waves" && table.name != "light" && table.name != "water")
@@ -146,6 +167,7 @@ Preset named(const char* name, const char* label, const char* help, const Scene&
         for (const Key& key : table.keys)
             if (key.set) preset.values.push_back({key.path, value_of(scene, key)});
     }
+    add_storm(preset, storm);
     add_framing(preset, framing);
     return preset;
 }
@@ -206,7 +228,7 @@ std::vector<Preset> named_seas() {
     gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 150.0};
     gale.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 1.0};
     out.push_back(named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam",
-                        gale, {3.1, 3.9, 34.0, 48.0, 72.0, 240.0}));
+                        gale, {3.1, 3.9, 34.0, 48.0, 72.0, 240.0}, {.spray = true}));
 
     Scene southern;
     southern.sea.wind_speed_mps = 17.0;
@@ -214,7 +236,7 @@ std::vector<Preset> named_seas() {
     southern.sea.swell = {{5.0, 15.0, 20.0}, {2.0, 12.0, 320.0}};
     southern.light = {.sun_elevation_deg = 14.0, .sun_azimuth_deg = 300.0};
     out.push_back(named("southern-ocean", "Southern Ocean", "a gale over a swell as high as a house",
-                        southern, {1.3, 2.2, 32.0, 21.0, -76.0, 20.0}));
+                        southern, {1.3, 2.2, 32.0, 21.0, -76.0, 20.0}, {.spray = true}));
     return out;
 }
 

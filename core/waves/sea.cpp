@@ -112,7 +112,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     if (!table_) table_ = std::make_shared<const SpectrumTable>(spectrum);
     if (plan_.trains) {
-        trains_ = make_trains<T>(*plan_.from, *plan_.trains, plan_.filter);
+        trains_ = make_trains<T>(*plan_.from, *plan_.trains, plan_.filter, plan_.breaking);
         total_ = pelagic::total(trains_);
     } else {
         total_ =

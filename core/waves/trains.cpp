@@ -156,11 +156,12 @@ void add_up(Trains<T>& trains) {
 }  // namespace
 
 template <class T>
-Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, const FootprintFilter& filter) {
+Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, const FootprintFilter& filter,
+                      const std::optional<Breaking>& planned) {
     const Scene& scene = prepared.scene;
     const DirectionalSpectrum& spectrum = prepared.spectrum;
     const double choppiness = Choppiness::asked(scene).built().largest(), loop_s = scene.shot.sea_loop_s();
-    const Breaking breaking = breaking_of(scene, filter);
+    const Breaking breaking = planned.value_or(breaking_of(scene, filter));
     Breaking unscaled = breaking;
     unscaled.choppiness = 1.0;
     const Dispersion& dispersion = spectrum.dispersion();
@@ -294,8 +295,10 @@ std::vector<double> phases_at(const Trains<T>& trains, glm::dvec2 origin_m, doub
     return cycles;
 }
 
-template Trains<float> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&);
-template Trains<double> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&);
+template Trains<float> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&,
+                                   const std::optional<Breaking>&);
+template Trains<double> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&,
+                                    const std::optional<Breaking>&);
 template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);

@@ -11,8 +11,10 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
+#include "core/plan/breaking.h"
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
 #include "core/plan/trains.h"
@@ -71,7 +73,8 @@ struct Trains {
 // gives the same trains, bit for bit.
 template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan,
-                      const FootprintFilter& filter = {});
+                      const FootprintFilter& filter = {},
+                      const std::optional<Breaking>& breaking = {});  // the plan's; none: the scene's
 
 // The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and
 // include choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's is. Where a

@@ -156,6 +156,44 @@ TEST(FoamStructure, HasHeapsAndHollows) {
 }
 
 // Old foam lies in streaks along the wind: along it the pattern of a footprint of metres changes less than across it.
+// Where a pixel is too large for heaps foam has patches of several tones, as much light as without, and no step from one octave to the next.
+TEST(FoamStructure, HasTonesFarOff) {
+    constexpr int kPlaces = 20000;
+    const auto pattern = pattern_of(1.0, 0.5);
+    for (const float footprint_m : {0.05f, 0.3f, 1.0f, 3.0f, 6.0f, 50.0f}) {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> place(-2000.0f, 2000.0f);
+        double mean = 0.0, square = 0.0, step = 0.0;
+        for (int i = 0; i < kPlaces; ++i) {
+            const glm::vec2 rest_m(place(random), place(random));
+            const auto tone = static_cast<double>(shading.foam_tone(pattern, rest_m, footprint_m));
+            ASSERT_LE(std::abs(tone), 1.0);
+            mean += tone / kPlaces;
+            square += tone * tone / kPlaces;
+            step = std::max(step, std::abs(tone - static_cast<double>(shading.foam_tone(
+                                                      pattern, rest_m, 1.001f * footprint_m))));
+        }
+        const bool is_seen = footprint_m > 0.5f && footprint_m < 7.0f;
+        EXPECT_NEAR(mean, 0.0, 0.02) << footprint_m;
+        EXPECT_NEAR(std::sqrt(square), is_seen ? std::sqrt(1.0 / 3.0) : 0.25, is_seen ? 0.03 : 0.26)
+            << footprint_m;
+        EXPECT_LT(step, 0.02) << footprint_m;
+    }
+    EXPECT_EQ(shading.foam_tone(pattern, {3.0f, 4.0f}, 0.05f), 0.0f);
+    EXPECT_EQ(shading.foam_tone(pattern, {3.0f, 4.0f}, 50.0f), 0.0f);
+    // An octave's end: 32 m / (5 · 1.6 m) = 4.
+    EXPECT_NEAR(shading.foam_tone(pattern, {3.0f, 4.0f}, 1.5999f),
+                shading.foam_tone(pattern, {3.0f, 4.0f}, 1.6001f), 0.01f);
+    // In a picture's foam it is the light alone that has them.
+    double light = 0.0;
+    for (int i = 0; i < kPlaces; ++i)
+        light += static_cast<double>(shading
+                                         .seen_foam(pattern, {1.7f * float(i), 0.3f * float(i)},
+                                                    glm::vec3(3.0f, 0.0f, 0.0f), 0.5f, 0.5f, 0.0f, kSun)
+                                         .white);
+    EXPECT_NEAR(light / kPlaces / 0.55, 1.0, 0.01);
+}
+
 TEST(FoamStructure, LiesInStreaksWhereOld) {
     std::mt19937 random(12);
     std::uniform_real_distribution<float> place(-3000.0f, 3000.0f);
@@ -173,6 +211,29 @@ TEST(FoamStructure, LiesInStreaksWhereOld) {
     const glm::vec2 along(8.0f, 0.0f), across(0.0f, 8.0f);
     EXPECT_LT(change(along, 8.0f), 0.4 * change(across, 8.0f));
     EXPECT_GT(change(along, 0.0f), 0.6 * change(across, 0.0f));
+}
+
+// From a plane too: pixels of 10 m still tell wide rows from what is between, and rows bend: far along one the wind's own direction has left it.
+TEST(FoamStructure, HasWideRowsThatBend) {
+    std::mt19937 random(12);
+    std::uniform_real_distribution<float> place(-3000.0f, 3000.0f);
+    const auto likeness = [&](glm::vec2 step_m, float footprint_m) {
+        const auto pattern = pattern_of(1.0, 1.0, 0.0);
+        double both = 0.0, square = 0.0;
+        for (int i = 0; i < 8000; ++i) {
+            const glm::vec2 at(place(random), place(random));
+            const auto here = static_cast<double>(shading.foam_noise(pattern, at, footprint_m, 8.0f).shown);
+            both +=
+                here * static_cast<double>(shading.foam_noise(pattern, at + step_m, footprint_m, 8.0f).shown);
+            square += here * here;
+        }
+        EXPECT_GT(square / 8000.0, 0.05);
+        return both / square;
+    };
+    EXPECT_LT(likeness({0.0f, 40.0f}, 10.0f), 0.2);
+    EXPECT_GT(likeness({40.0f, 0.0f}, 10.0f), 0.7);
+    // Rows of 8 m have cells of 136 m: straight ones are alike by 0.89.
+    EXPECT_LT(likeness({40.0f, 0.0f}, 1.5f), 0.8);
 }
 
 // The same place of the sea, seen from any origin near it, also a million metres away from the world's; also beyond where

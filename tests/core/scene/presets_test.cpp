@@ -85,7 +85,9 @@ TEST(Presets, StayAsTheirEditionsHadThem) {
     EXPECT_EQ(second.camera.look_at_m, glm::dvec3(0.0, 0.0, 7.5));
     EXPECT_EQ(second.light.sun_azimuth_deg, 195.0);
     EXPECT_LT(third.camera.position_m.z, 4.0);
-    EXPECT_EQ(third.light.sun_azimuth_deg, 160.0);
+    EXPECT_EQ(third.light.sun_azimuth_deg, 300.0);
+    EXPECT_TRUE(third.effects.spray);
+    EXPECT_FALSE(second.effects.spray);
 }
 
 TEST(Presets, ABuoysHourGivesWayToAPreset) {

@@ -175,6 +175,21 @@ class StormCameras(unittest.TestCase):
                 crest_m = frame.heights(eye[:2] + away_m[:, None] * ahead)["height_m"] - eye[2]
                 self.assertGreater(np.degrees(np.arctan2(crest_m, away_m)).max(), 1.0)
 
+    def test_each_force_is_whiter_than_the_one_before(self):
+        def white(force):
+            """The share of the sea in the picture that foam and spray make white, without the sun's glitter."""
+            scene = pelagic.Scene()
+            scene.apply_preset(f"beaufort-{force}")
+            seen = pelagic.render(scene, 1, (160, 90), 1, layers=[])
+            light = (seen["sky"] + seen["sea"] + seen["foam"] + seen["air"])[seen["is_sea"]] * pelagic.Sky(scene).exposure(scene)
+            return np.mean((light @ [0.2126, 0.7152, 0.0722] > 0.3) & (light.min(1) > 0.7 * light.max(1)))
+
+        shares = [white(force) for force in range(4, 13)]
+        self.assertTrue(all(more >= less for less, more in zip(shares, shares[1:])), shares)
+        self.assertTrue(all(more > 1.5 * less > 0.0 for less, more in zip(shares[2:], shares[3:])), shares)  # from force 6 on
+        self.assertLess(shares[4], 0.05, shares)
+        self.assertGreater(shares[8], 0.7, shares)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -63,7 +63,8 @@ void for_each_bake_file(const fs::path& folder, const std::function<void(const s
                                       ? extension == ".usda" || extension == ".usdc" || extension == ".exr" ||
                                             extension == ".vdb"
                                       : extension == ".usda" || extension == ".json" ||
-                                            name.ends_with(".camera.usdc") || name.ends_with(".sky.exr");
+                                            name.ends_with(".camera.usdc") || name.ends_with(".sky.exr") ||
+                                            (name.ends_with(".exr") && name.find(".sky.") != std::string::npos);
             if (is_bakes && !name.starts_with('.')) take(below + name);
         }
     }

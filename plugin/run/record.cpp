@@ -55,6 +55,11 @@ struct ToJson {
         }
         return list;
     }
+    Json operator()(const NumberKeys& number) const {
+        Json keys = Json::array();
+        for (const auto& [frame, value] : number.keys) keys.push_back({frame, value});
+        return {{"keys", keys}, {"interpolation", word_of(number.interpolation)}};
+    }
     template <class Plain>
     Json operator()(const Plain& value) const {
         return value;

@@ -51,15 +51,9 @@ Scene scene_at(const Scene& scene, double frame) {
     return made;
 }
 
-bool has_keys(const Scene& scene, KeyPartSet parts) {
-    return std::ranges::any_of(scene.keyed, [&](const KeyedNumber& number) {
-        return (key_of(number.path).key_parts & parts).any();
-    });
-}
-
-void refuse_keys(const Scene& scene, KeyPartSet parts) {
+void refuse_keys(const Scene& scene, std::string_view table) {
     for (const KeyedNumber& number : scene.keyed)
-        if ((key_of(number.path).key_parts & parts).any())
+        if (number.path.starts_with(table))
             throw std::invalid_argument(number.path +
                                         " has keys, and this shows one moment; accepted: a number, or the scene of a "
                                         "frame (in Python scene.at(frame), in C++ scene_at())");

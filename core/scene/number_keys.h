@@ -14,10 +14,9 @@ double value_at(const NumberKeys& number, bool is_angle, double frame);
 // The scene of a frame, without keys. Those of camera.keys stay: they are poses (core/surface/view.h).
 Scene scene_at(const Scene& scene, double frame);
 
-// Whether one of the scene's numbers that have keys is of these parts.
-bool has_keys(const Scene& scene, KeyPartSet parts);
-// Throws std::invalid_argument, naming it: for what shows one moment and isn't told which.
-void refuse_keys(const Scene& scene, KeyPartSet parts);
+// For what shows one moment and isn't told which: throws std::invalid_argument, naming it, if a number of that table ("light"; "": of
+// any) has keys.
+void refuse_keys(const Scene& scene, std::string_view table = {});
 
 // A shot's text without its numbers that have keys, and theirs at a frame as lines of their own: a frame's fingerprint depends on no
 // other frame's values.

@@ -187,7 +187,7 @@ std::vector<View> metered_views(const Scene& scene) {
 }
 
 float shot_exposure(const Scene& scene, const Sky& sky, double stops, const Floor* floor) {
-    refuse_keys(scene, key_parts(KeyPart::Light, KeyPart::Water));
+    refuse_keys(scene);
     stops += scene.camera.exposure_ev;
     if (scene.camera.ev100) return static_cast<float>(exposure_of_ev100(*scene.camera.ev100 - stops));
     Meter meter(scene, sky, floor);

@@ -165,7 +165,7 @@ std::string content_of(const std::string& path, const Problem& unreadable) {
 }  // namespace
 
 Sky make_sky(const Scene& scene) {
-    refuse_keys(scene, key_parts(KeyPart::Light));
+    refuse_keys(scene, "light");
     const Light& light = scene.light;
     if (light.sky == Light{}.sky)
         return daylight_sky({.sun_elevation_deg = light.sun_elevation_deg,
@@ -253,13 +253,13 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg)
 }
 
 WaterBody make_water(const Scene& scene) {
-    refuse_keys(scene, key_parts(KeyPart::Water));
+    refuse_keys(scene, "water");
     if (!scene.water.body) return water_body(choice_of(scene.water));
     return make_water(scene, DirectionalSpectrum(scene.sea, scene.waves.band_gains));
 }
 
 WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
-    refuse_keys(scene, key_parts(KeyPart::Water));
+    refuse_keys(scene, "water");
     WaterChoice choice = choice_of(scene.water);
     choice.has_body = scene.water.body;
     choice.floor_colour = scene.water.floor_colour;
@@ -466,7 +466,7 @@ double foam_streaks(const Scene& scene) {
 }  // namespace
 
 FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {
-    refuse_keys(scene, key_parts(KeyPart::Water));
+    refuse_keys(scene, "effects");
     const Effects& effects = scene.effects;
     FoamLook look{.image = std::move(picture),
                   .image_m = effects.foam_pattern_m,

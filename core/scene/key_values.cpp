@@ -101,8 +101,7 @@ std::string accepted_text(const Key& key, const About& about) {
             return "an integer" + and_range +
                    (key.other_word.empty() ? "" : ", or " + quoted_text(key.other_word));
         case KeyType::Number:
-            return "a number" + and_range +
-                   (key.may_have_keys ? ", or { keys = [[frame, number], …] }" : "");
+            return "a number" + and_range + (key.may_have_keys ? ", or { keys = [[frame, number], …] }" : "");
         case KeyType::Word:
             return "one of " + words_text(key.choices);
         case KeyType::Words:
@@ -212,9 +211,10 @@ std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& v
     if (!key.set) return Problem{key.path, value_text(key, value), "can't be set", key.accepted};
     if (key.set(scene, value)) return std::nullopt;
     if (std::holds_alternative<NumberKeys>(value))
-        return Problem{key.path, value_text(key, value),
-                       key.may_have_keys ? "has no keys in it" : "is a number's keys, and this key can't have any",
-                       key.accepted};
+        return Problem{
+            key.path, value_text(key, value),
+            key.may_have_keys ? "has no keys in it" : "is a number's keys, and this key can't have any",
+            key.accepted};
     const auto is_unknown = [&](const std::string& word) {
         return std::find(key.choices.begin(), key.choices.end(), word) == key.choices.end();
     };

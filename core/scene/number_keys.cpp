@@ -54,9 +54,10 @@ Scene scene_at(const Scene& scene, double frame) {
 void refuse_keys(const Scene& scene, std::string_view table) {
     for (const KeyedNumber& number : scene.keyed)
         if (number.path.starts_with(table))
-            throw std::invalid_argument(number.path +
-                                        " has keys, and this shows one moment; accepted: a number, or the scene of a "
-                                        "frame (in Python scene.at(frame), in C++ scene_at())");
+            throw std::invalid_argument(
+                number.path +
+                " has keys, and this shows one moment; accepted: a number, or the scene of a "
+                "frame (in Python scene.at(frame), in C++ scene_at())");
 }
 
 Scene without_keyed(Scene scene) {

@@ -110,7 +110,8 @@ struct ValueCheck {
                     {path, '[' + std::to_string(frame) + ", " + number_text(value) + ']', problem, accepted});
             };
             if (!is_in_range(at.key, value))
-                refuse_key(std::isnan(value) ? "is not a number" : "is outside the range", range_text(at.key));
+                refuse_key(std::isnan(value) ? "is not a number" : "is outside the range",
+                           range_text(at.key));
             else if (!limits::kFrame.holds(frame))
                 refuse_key("is at a frame outside the range", text_of(limits::kFrame));
             else if (i > 0 && frame <= number.keys[i - 1].frame)

@@ -27,17 +27,21 @@ namespace {
 
 // The stage has one material, the record one foam and a map of the floor one light for all frames.
 std::vector<Problem> unbaked_keys(const Scene& scene) {
-    const auto asks = [&](MapKind map) { return std::ranges::find(scene.output.maps, map) != scene.output.maps.end(); };
+    const auto asks = [&](MapKind map) {
+        return std::ranges::find(scene.output.maps, map) != scene.output.maps.end();
+    };
     std::vector<Problem> problems;
     for (const KeyedNumber& number : scene.keyed) {
         const Key& key = key_of(number.path);
-        const bool is_foam = number.path.starts_with("effects.foam_"), is_camera = number.path.starts_with("camera.");
+        const bool is_foam = number.path.starts_with("effects.foam_"),
+                   is_camera = number.path.starts_with("camera.");
         const bool is_plankton = number.path == "water.chlorophyll_mg_m3";
-        const char* what = is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
-                               ? "changes over the shot, and what a bake says of water and foam is one for all frames"
-                           : !is_foam && !is_camera && asks(MapKind::Floor)
-                               ? "changes over the shot, and a map of the floor has one light for all frames"
-                               : nullptr;
+        const char* what =
+            is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
+                ? "changes over the shot, and what a bake says of water and foam is one for all frames"
+            : !is_foam && !is_camera && asks(MapKind::Floor)
+                ? "changes over the shot, and a map of the floor has one light for all frames"
+                : nullptr;
         if (what)
             problems.push_back({number.path, value_text(key, number.keys), what,
                                 "a number in bakes; pelagic render shows it with keys"});

@@ -124,10 +124,10 @@ usd::Sun sun_of(const Sky& sky) {
     const double brightest = std::max({irradiance.x, irradiance.y, irradiance.z});
     const glm::dvec3 towards(sky.sun_direction);
     return {.elevation_deg = std::atan2(towards.z, std::hypot(towards.x, towards.y)) * kDegrees,
-                    .azimuth_deg = std::atan2(towards.y, towards.x) * kDegrees,
-                    .angle_deg = 2.0 * radius * kDegrees,
-                    .intensity = brightest,
-                    .color = brightest > 0.0 ? glm::vec3(irradiance / brightest) : glm::vec3(1.0f)};
+            .azimuth_deg = std::atan2(towards.y, towards.x) * kDegrees,
+            .angle_deg = 2.0 * radius * kDegrees,
+            .intensity = brightest,
+            .color = brightest > 0.0 ? glm::vec3(irradiance / brightest) : glm::vec3(1.0f)};
 }
 
 // What the light leaves in a bake.
@@ -258,8 +258,8 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
     const bool is_changing = has_changing_light(scene);
     std::vector<usd::FrameLight> light;
     std::optional<Scene> lit;
-    for (int frame = scene.shot.first_frame; frame <= (is_changing ? scene.shot.last_frame : scene.shot.first_frame);
-         ++frame) {
+    for (int frame = scene.shot.first_frame;
+         frame <= (is_changing ? scene.shot.last_frame : scene.shot.first_frame); ++frame) {
         Scene now = scene_at(scene, frame);
         if (lit && same_sky(*lit, now)) continue;
         lit = std::move(now);

@@ -18,10 +18,7 @@ namespace pelagic {
 
 template <class T>
 SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, const BuildWatch& watch)
-    : choice_(choice),
-      sky_(std::move(sky)),
-      sea_(std::make_shared<const Sea<T>>(plan, watch)),
-      state_(sea_) {
+    : choice_(choice), sky_(std::move(sky)), sea_(std::make_shared<const Sea<T>>(plan, watch)), state_(sea_) {
     foam_.image = make_foam_picture(plan.from->scene);
     light_by(scene_at(plan.from->scene, plan.from->scene.shot.first_frame));
 }

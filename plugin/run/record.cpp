@@ -332,8 +332,8 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     shot["whitecap_threshold"] = number(whitecap_threshold);
     if (plan.gusts) shot["whitecap_threshold_is"] = "without gusts, which move it from place to place";
     // A bake refuses keys of how foam looks (plugin/bake/bake.cpp).
-    const FoamLook foam = make_foam(scene_at(scene, scene.shot.first_frame), nullptr,
-                                    active_foam(scene, residual_coverage));
+    const FoamLook foam =
+        make_foam(scene_at(scene, scene.shot.first_frame), nullptr, active_foam(scene, residual_coverage));
     shot["dense_foam"] = {{"active", foam.fresh_opacity}, {"left", foam.old_opacity}};
 
     Json& planned = shot["plan"];

@@ -157,9 +157,9 @@ std::optional<KeyValue> read_number_keys(Reader& reader, const Asked& asked) {
         const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
         const Asked value{frame ? *pair->get(1) : node, path, asked.key};
         if (!frame || !std::in_range<int>(frame->get())) {
-            reader.refuse(node.source().begin, {path, text_of(node), "is no frame and its number",
-                                                "[frame, number], the frame an integer, " +
-                                                    text_of(limits::kFrame)});
+            reader.refuse(node.source().begin,
+                          {path, text_of(node), "is no frame and its number",
+                           "[frame, number], the frame an integer, " + text_of(limits::kFrame)});
         } else if (const std::optional<double> read = read_number(reader, value)) {
             number.keys.push_back({static_cast<int>(frame->get()), *read});
         }

@@ -177,7 +177,8 @@ struct Stage {
     bool has_drops = false;    // drops_file() (drops.h) is
     std::optional<Sun> sun{};
     std::optional<Sky> sky{};
-    std::vector<FrameLight> light{};  // by rising frame, at least one; instead of the two: a light that changes
+    std::vector<FrameLight>
+        light{};  // by rising frame, at least one; instead of the two: a light that changes
     // The entries of customLayerData's dictionary "pelagic", in this order. A key is an identifier:
     // [A-Za-z_][A-Za-z0-9_]*.
     std::vector<std::pair<std::string, CustomValue>> custom_data{};

@@ -362,7 +362,8 @@ void write_sky(Page& page, const Sky& sky) {
 
 // The values of what changes, by frame.
 template <class Text>
-void write_samples(Page& page, const std::string& name, const std::vector<FrameLight>& light, const Text& text) {
+void write_samples(Page& page, const std::string& name, const std::vector<FrameLight>& light,
+                   const Text& text) {
     page.open({name, ".timeSamples = {"});
     for (const FrameLight& at : light) page.line({number(std::int64_t{at.frame}), ": ", text(at), ","});
     page.close("}");

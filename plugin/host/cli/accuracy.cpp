@@ -1,6 +1,6 @@
 // pelagic accuracy [SHOT.toml] --out DIR
-#include "core/scene/number_keys.h"
 #include "plugin/accuracy/accuracy.h"
+#include "core/scene/number_keys.h"
 
 #include <algorithm>
 #include <filesystem>

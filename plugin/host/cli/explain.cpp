@@ -130,13 +130,15 @@ Settled print_settled(const Scene& scene, Purpose purpose, const std::string& ti
 
 // What changes over the shot.
 void print_keyed(const Scene& scene) {
-    const Scene first = scene_at(scene, scene.shot.first_frame), last = scene_at(scene, scene.shot.last_frame);
+    const Scene first = scene_at(scene, scene.shot.first_frame),
+                last = scene_at(scene, scene.shot.last_frame);
     for (const KeyedNumber& number : scene.keyed) {
         const Key& key = key_of(number.path);
-        std::cout << key.path << " has " << count_text(static_cast<long>(number.keys.keys.size()), "key", "keys")
-                  << ", " << word_of(number.keys.interpolation) << ": "
-                  << value_text(key, value_of(first, key)) << " at frame " << scene.shot.first_frame << ", "
-                  << value_text(key, value_of(last, key)) << " at frame " << scene.shot.last_frame << ".\n";
+        std::cout << key.path << " has "
+                  << count_text(static_cast<long>(number.keys.keys.size()), "key", "keys") << ", "
+                  << word_of(number.keys.interpolation) << ": " << value_text(key, value_of(first, key))
+                  << " at frame " << scene.shot.first_frame << ", " << value_text(key, value_of(last, key))
+                  << " at frame " << scene.shot.last_frame << ".\n";
     }
     if (!scene.keyed.empty())
         std::cout << "Pictures meter each frame's light; where the sky changes each bakes its own"

@@ -107,10 +107,11 @@ KeyValue number_keys_from_python(const Key& key, const std::string& path, const 
     for (const auto& [name, value] : given) {
         if (py::str(name).equal(py::str("interpolation"))) {
             const auto word = py::isinstance<py::str>(value)
-                                  ? choice_of<CameraInterpolation>(value.cast<std::string>())
+                                  ? pelagic::choice_of<CameraInterpolation>(value.cast<std::string>())
                                   : std::nullopt;
-            if (!word) throw ShotError(text_of(unknown_word(key_of("camera.interpolation"), path + ".interpolation",
-                                                            std::string(py::str(value)))));
+            if (!word)
+                throw ShotError(text_of(unknown_word(pelagic::key_of("camera.interpolation"),
+                                                     path + ".interpolation", std::string(py::str(value)))));
             number.interpolation = *word;
             continue;
         }

@@ -21,13 +21,15 @@ TEST(NumberKeys, AreTheirOwnValuesAtTheirFramesAndConstantOutside) {
     for (const auto interpolation : {kLinear, kSmooth}) {
         const NumberKeys number{{{-3, 0.1}, {10, 7.3}, {11, -2.0}}, interpolation};
         for (const bool is_angle : {false, true}) {
-            for (const auto& [frame, value] : number.keys) EXPECT_EQ(value_at(number, is_angle, frame), value);
+            for (const auto& [frame, value] : number.keys)
+                EXPECT_EQ(value_at(number, is_angle, frame), value);
             EXPECT_EQ(value_at(number, is_angle, -1e8), 0.1);
             EXPECT_EQ(value_at(number, is_angle, 1e8), -2.0);
         }
     }
     EXPECT_DOUBLE_EQ(value_at(NumberKeys{{{0, 1.0}, {8, 5.0}}, kLinear}, false, 2.5), 2.25);
-    EXPECT_DOUBLE_EQ(value_at(NumberKeys{{{0, 1.0}, {8, 5.0}}, kSmooth}, false, 2.0), 1.0 + 4.0 * 10.0 / 64.0);  // smoothstep(1/4)
+    EXPECT_DOUBLE_EQ(value_at(NumberKeys{{{0, 1.0}, {8, 5.0}}, kSmooth}, false, 2.0),
+                     1.0 + 4.0 * 10.0 / 64.0);  // smoothstep(1/4)
 }
 
 TEST(NumberKeys, GoTheShortWayRound) {
@@ -80,7 +82,8 @@ TEST(NumberKeys, OfTheWholeTable) {
             const std::string before = canonical(scene);
             const auto problem = set_value(scene, key, two(1.0, 2.0));
             ASSERT_TRUE(problem);
-            EXPECT_TRUE(!key.set || problem->problem.find("can't have any") != std::string::npos) << problem->problem;
+            EXPECT_TRUE(!key.set || problem->problem.find("can't have any") != std::string::npos)
+                << problem->problem;
             EXPECT_EQ(canonical(scene), before);
             continue;
         }
@@ -107,7 +110,8 @@ TEST(NumberKeys, OfTheWholeTable) {
         // Two equal values are that value, and a plain number takes the keys away.
         Scene equal;
         set_value(equal, key, two(middle, middle));
-        for (const double frame : {-7.0, 1.0, 4.0, 9.0, 100.0}) EXPECT_EQ(canonical(scene_at(equal, frame)), canonical(plain));
+        for (const double frame : {-7.0, 1.0, 4.0, 9.0, 100.0})
+            EXPECT_EQ(canonical(scene_at(equal, frame)), canonical(plain));
         set_value(equal, key, middle);
         EXPECT_TRUE(equal.keyed.empty());
         // A table takes its keys along, and no others.
@@ -134,18 +138,21 @@ std::string problem_of(const Scene& scene) {
 }
 
 TEST(NumberKeys, ThatMakeNoSenseAreRefusedWithTheirPlace) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                     kInf = std::numeric_limits<double>::infinity();
     Scene scene;
     const auto of = [&](std::vector<NumberKeys::Key> keys) {
         scene.keyed = {{"light.turbidity", {std::move(keys), kLinear}}};
         return problem_of(scene);
     };
     EXPECT_EQ(of({{1, 2.0}, {5, 3.0}}), "0 problems");
-    EXPECT_EQ(of({{1, 2.0}, {1, 3.0}}),
-              "light.turbidity.keys[1] = [1, 3]: does not come after the key before, of frame 1; accepted: rising frames, "
-              "each once");
+    EXPECT_EQ(
+        of({{1, 2.0}, {1, 3.0}}),
+        "light.turbidity.keys[1] = [1, 3]: does not come after the key before, of frame 1; accepted: rising frames, "
+        "each once");
     EXPECT_NE(of({{5, 2.0}, {1, 3.0}}).find("does not come after"), std::string::npos);
-    EXPECT_NE(of({{1, 2.0}, {2, 1.0}}).find("keys[1] = [2, 1]: is outside the range; accepted: 1.7 … 10"), std::string::npos);
+    EXPECT_NE(of({{1, 2.0}, {2, 1.0}}).find("keys[1] = [2, 1]: is outside the range; accepted: 1.7 … 10"),
+              std::string::npos);
     EXPECT_NE(of({{1, kNan}}).find("keys[0] = [1, nan]: is not a number"), std::string::npos);
     EXPECT_NE(of({{1, kInf}}).find("is outside the range"), std::string::npos);
     EXPECT_NE(of({{-200000000, 2.0}}).find("is at a frame outside the range"), std::string::npos);

@@ -302,15 +302,18 @@ TEST_F(StageLightTest, OfNumbersThatHaveKeysIsEachFramesOwn) {
     set_value(scene, key_of("camera.exposure_ev"), NumberKeys{{{1, 0.0}, {5, 3.0}}});
     const std::string stage = baked(scene), sun = part_of(stage, "def DistantLight", "def DomeLight");
     const std::string intensity = part_of(sun, "inputs:intensity.timeSamples", "}"),
-                      turn = part_of(sun, "rotateXYZ.timeSamples", "}"), dome = part_of(stage, "def DomeLight", "rotateXYZ");
+                      turn = part_of(sun, "rotateXYZ.timeSamples", "}"),
+                      dome = part_of(stage, "def DomeLight", "rotateXYZ");
     std::map<int, std::string> domes;
     for (const int frame : {1, 3, 4}) {
-        const std::string file = "a-b.sky.000" + std::to_string(frame) + ".exr", at = std::to_string(frame) + ": ";
+        const std::string file = "a-b.sky.000" + std::to_string(frame) + ".exr",
+                          at = std::to_string(frame) + ": ";
         EXPECT_NE(dome.find(at + "@./" + file + "@"), std::string::npos) << dome;
         domes[frame] = text_of(folder_ / file);
         fs::remove(folder_ / file);  // of another shot than those below
     }
-    for (const int frame : {2, 5}) EXPECT_FALSE(fs::exists(folder_ / ("a-b.sky.000" + std::to_string(frame) + ".exr")));
+    for (const int frame : {2, 5})
+        EXPECT_FALSE(fs::exists(folder_ / ("a-b.sky.000" + std::to_string(frame) + ".exr")));
     EXPECT_NE(turn.find("3: (0, 85.49"), std::string::npos) << turn;
     EXPECT_NE(turn.find("4: (0, 91, 200),"), std::string::npos) << turn;  // the short way on
     EXPECT_NE(intensity.find("4: 0,"), std::string::npos) << intensity;
@@ -318,8 +321,10 @@ TEST_F(StageLightTest, OfNumbersThatHaveKeysIsEachFramesOwn) {
     for (const int frame : {1, 3}) {
         Scene plain = scene_at(scene, frame);
         const std::string of_plain = baked(plain);
-        const std::string told = part_of(part_of(of_plain, "def DistantLight", "def DomeLight"), "float inputs:intensity = ", "\n");
-        EXPECT_NE(intensity.find(std::to_string(frame) + ": " + told.substr(std::string("float inputs:intensity = ").size()) + ","),
+        const std::string told = part_of(part_of(of_plain, "def DistantLight", "def DomeLight"),
+                                         "float inputs:intensity = ", "\n");
+        EXPECT_NE(intensity.find(std::to_string(frame) + ": " +
+                                 told.substr(std::string("float inputs:intensity = ").size()) + ","),
                   std::string::npos)
             << intensity << told;
         EXPECT_TRUE(text_of(folder_ / "a-b.sky.exr") == domes[frame]);
@@ -342,7 +347,8 @@ TEST_F(StageLightTest, KeysThatABakeCantSayAreRefused) {
         EXPECT_NE(refusal(path, false).find(std::string(path) + " = { keys = "), std::string::npos) << path;
     EXPECT_EQ(refusal("water.caustics", false), "");
     EXPECT_EQ(refusal("camera.exposure_ev", true), "");
-    EXPECT_NE(refusal("water.caustics", true).find("a map of the floor has one light for all frames"), std::string::npos);
+    EXPECT_NE(refusal("water.caustics", true).find("a map of the floor has one light for all frames"),
+              std::string::npos);
     EXPECT_NE(refusal("light.sun_elevation_deg", true).find("a map of the floor"), std::string::npos);
 }
 

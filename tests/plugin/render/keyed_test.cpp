@@ -66,7 +66,8 @@ class KeyedPictures : public ::testing::Test {
     // What a frame's files show: the light, and the pixels of the PNG as they are packed.
     std::string shown(const Scene& scene, const std::vector<int>& frames, int frame) {
         const fs::path out = folder_ / std::to_string(++made_);
-        render_files({.scene = scene, .options = render_options(scene)}, {.out = out, .frames = frames, .progress = {}, .cancel = nullptr});
+        render_files({.scene = scene, .options = render_options(scene)},
+                     {.out = out, .frames = frames, .progress = {}, .cancel = nullptr});
         const exr::RgbPixels light = exr::read_rgb((out / picture_file(scene.shot, frame, "exr")).string());
         std::string bytes(reinterpret_cast<const char*>(light.pixels.data()),
                           light.pixels.size() * sizeof(light.pixels[0]));
@@ -82,17 +83,26 @@ class KeyedPictures : public ::testing::Test {
 };
 
 // A number of each key that shows in that shot, at its first and last frame.
-const std::map<std::string, std::pair<double, double>> kValues{
-    {"camera.exposure_ev", {-1.0, 2.0}},       {"camera.ev100", {10.0, 15.0}},
-    {"camera.white_balance_k", {3000, 9000}},  {"camera.glare", {0.05, 0.3}},
-    {"light.sun_elevation_deg", {30.0, 50.0}}, {"light.sun_azimuth_deg", {70.0, 130.0}},
-    {"light.turbidity", {3.0, 6.0}},           {"light.visibility_km", {0.1, 0.3}},
-    {"light.sky_rotation_deg", {30.0, 120.0}}, {"light.sky_gain", {0.5, 4.0}},
-    {"water.chlorophyll_mg_m3", {1.0, 9.0}},   {"water.crest_light", {0.0, 3.0}},
-    {"water.bubbles", {2.0, 8.0}},             {"water.caustics", {0.0, 1.0}},
-    {"effects.foam_structure", {0.0, 0.6}},    {"effects.foam_streaks", {0.0, 0.4}},
-    {"effects.foam_new_albedo", {0.1, 0.4}},   {"effects.foam_old_albedo", {0.1, 0.4}},
-    {"effects.foam_new_opaque", {0.2, 0.6}},   {"effects.foam_old_opaque", {0.2, 0.9}}};
+const std::map<std::string, std::pair<double, double>> kValues{{"camera.exposure_ev", {-1.0, 2.0}},
+                                                               {"camera.ev100", {10.0, 15.0}},
+                                                               {"camera.white_balance_k", {3000, 9000}},
+                                                               {"camera.glare", {0.05, 0.3}},
+                                                               {"light.sun_elevation_deg", {30.0, 50.0}},
+                                                               {"light.sun_azimuth_deg", {70.0, 130.0}},
+                                                               {"light.turbidity", {3.0, 6.0}},
+                                                               {"light.visibility_km", {0.1, 0.3}},
+                                                               {"light.sky_rotation_deg", {30.0, 120.0}},
+                                                               {"light.sky_gain", {0.5, 4.0}},
+                                                               {"water.chlorophyll_mg_m3", {1.0, 9.0}},
+                                                               {"water.crest_light", {0.0, 3.0}},
+                                                               {"water.bubbles", {2.0, 8.0}},
+                                                               {"water.caustics", {0.0, 1.0}},
+                                                               {"effects.foam_structure", {0.0, 0.6}},
+                                                               {"effects.foam_streaks", {0.0, 0.4}},
+                                                               {"effects.foam_new_albedo", {0.1, 0.4}},
+                                                               {"effects.foam_old_albedo", {0.1, 0.4}},
+                                                               {"effects.foam_new_opaque", {0.2, 0.6}},
+                                                               {"effects.foam_old_opaque", {0.2, 0.9}}};
 
 // Over the whole table: a frame of a run, the frame alone, the frame between two equal keys and that of the plain number are the same to
 // the bit, and each number shows.
@@ -149,6 +159,7 @@ TEST_F(KeyedPictures, OneMomentsLightWantsAFrame) {
     }
     EXPECT_NO_THROW(make_water(scene));
     set_value(scene, key_of("water.bubbles"), NumberKeys{{{1, 0.0}}});
+    set_value(scene, key_of("effects.foam_streaks"), NumberKeys{{{1, 0.0}}});
     EXPECT_THROW(make_water(scene), std::invalid_argument);
     EXPECT_THROW(make_foam(scene, nullptr), std::invalid_argument);
 }

@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import cages, camera, light, ocean
+from . import baked, cages, camera, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule
 from .query import first_ocean
@@ -137,7 +137,8 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
     def execute(self, context):
         path = Path(bpy.path.abspath(self.filepath)).absolute()
         try:
-            scene = pelagic.Scene.from_file(path)
+            shot = pelagic.Scene.from_file(path)
+            scene = shot.at(shot.shot.frames[0])
             obj = ocean.make(scene.shot.name, context.collection)
             try:
                 ocean.set_from(obj, scene)
@@ -149,6 +150,8 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        if baked.changing(shot):
+            self.report({"WARNING"}, baked.changing(shot))
         if scene.sea.is_measured:
             obj.pelagic.sea.spectrum_file = str(Path(scene.sea.spectrum_file).absolute())
         if scene.light.sky != pelagic.Scene().light.sky:

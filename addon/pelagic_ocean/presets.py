@@ -66,7 +66,8 @@ class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
         try:
             scene = ocean.scene_of(obj, context.scene)
             if self.name in own_presets():
-                _with_tables_of(pelagic.Scene.from_file(own_presets()[self.name]), scene)
+                shot = pelagic.Scene.from_file(own_presets()[self.name])
+                _with_tables_of(shot.at(shot.shot.frames[0]), scene)
             else:
                 scene.apply_preset(self.name)
             ocean.set_from(obj, scene)

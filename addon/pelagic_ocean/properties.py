@@ -192,7 +192,8 @@ def label_of(key):
 def _common(key):
     text = _sentence(key["help"]) or key["label"]
     if key["accepted"]:
-        text += f". Accepted: {key['accepted']}"
+        accepted = key["accepted"].partition(", or { keys")[0]  # which are a shot file's
+        text += f". Accepted: {accepted}"
     return {"name": label_of(key), "description": text, "update": _touched}
 
 

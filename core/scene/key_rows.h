@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <tuple>
@@ -201,6 +202,8 @@ struct About {
     const char* accepted = "";  // instead of what type and range say
     KeyPartSet key_parts = {};
     bool may_be_infinite = false;
+    bool may_have_keys = false;
+    bool is_angle = false;
     bool is_picture = false;
     bool may_be_mesh = false;
     const char* of_picture = "";
@@ -324,6 +327,9 @@ auto entries(const About& about, Rows... rows) {
     return Row<Owner, 1>{std::move(key), get, set};
 }
 
+// Lets the key of a number have NumberKeys as well.
+void allow_keys(Key& key);
+
 // A table of the scene, its rows' access moved from the table's struct to the scene.
 template <auto kTable, class... Rows>
 void add_table(std::vector<KeyTable>& tables, std::vector<Key>& keys, KeyTable about, Rows... rows) {
@@ -341,10 +347,17 @@ void add_table(std::vector<KeyTable>& tables, std::vector<Key>& keys, KeyTable a
             key.set = [set = std::move(made.set)](Scene& scene, const KeyValue& value) {
                 return set(scene.*kTable, value);
             };
+        if (key.may_have_keys) allow_keys(key);
         keys.push_back(std::move(key));
     };
     (add(std::move(rows)), ...);
-    about.copy = [](const Scene& from, Scene& to) { to.*kTable = from.*kTable; };
+    about.copy = [prefix = about.name + '.'](const Scene& from, Scene& to) {
+        const auto is_ours = [&](const KeyedNumber& number) { return number.path.starts_with(prefix); };
+        to.*kTable = from.*kTable;
+        const std::vector<KeyedNumber> given = from.keyed;  // the two scenes may be one
+        std::erase_if(to.keyed, is_ours);
+        std::copy_if(given.begin(), given.end(), std::back_inserter(to.keyed), is_ours);
+    };
     tables.push_back(std::move(about));
 }
 

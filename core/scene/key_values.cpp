@@ -42,6 +42,7 @@ std::string type_text(const KeyValue& value) {
         std::string operator()(const std::vector<std::int64_t>&) const { return "a list of integers"; }
         std::string operator()(const std::vector<std::string>&) const { return "a list of words"; }
         std::string operator()(const std::vector<KeyEntry>&) const { return "a list of tables"; }
+        std::string operator()(const NumberKeys&) const { return "a number's keys"; }
     };
     return std::visit(Visitor{}, value);
 }
@@ -100,7 +101,7 @@ std::string accepted_text(const Key& key, const About& about) {
             return "an integer" + and_range +
                    (key.other_word.empty() ? "" : ", or " + quoted_text(key.other_word));
         case KeyType::Number:
-            return "a number" + and_range;
+            return "a number" + and_range + (key.may_have_keys ? ", or { keys = [[frame, number], …] }" : "");
         case KeyType::Word:
             return "one of " + words_text(key.choices);
         case KeyType::Words:
@@ -147,6 +148,8 @@ Key key_about(const About& about, KeyType type) {
     if (!key.soft && key.range && (type == KeyType::Number || type == KeyType::Integer))
         key.soft = SoftRange{key.range->low, key.range->high};
     key.may_be_infinite = about.may_be_infinite;
+    key.may_have_keys = about.may_have_keys;
+    key.is_angle = about.is_angle;
     key.is_picture = about.is_picture;
     key.may_be_mesh = about.may_be_mesh;
     key.of_picture = about.of_picture;
@@ -157,6 +160,24 @@ Key key_about(const About& about, KeyType type) {
     key.key_parts = about.key_parts;
     key.accepted = about.accepted;
     return key;
+}
+
+void allow_keys(Key& key) {
+    const auto is_it = [path = key.path](const KeyedNumber& number) { return number.path == path; };
+    key.get = [is_it, get = std::move(key.get)](const Scene& scene) {
+        const auto keyed = std::find_if(scene.keyed.begin(), scene.keyed.end(), is_it);
+        return keyed != scene.keyed.end() ? KeyValue(keyed->keys) : get(scene);
+    };
+    key.set = [is_it, path = key.path, set = std::move(key.set)](Scene& scene, const KeyValue& value) {
+        const auto* number = std::get_if<NumberKeys>(&value);
+        if (number && number->keys.empty()) return false;
+        const auto is_less = [](const auto& a, const auto& b) { return a.value < b.value; };
+        if (!set(scene, number ? KeyValue(std::ranges::max_element(number->keys, is_less)->value) : value))
+            return false;
+        std::erase_if(scene.keyed, is_it);
+        if (number) scene.keyed.push_back({path, *number});
+        return true;
+    };
 }
 
 // ---- Values
@@ -189,6 +210,11 @@ void replace_pictures(Scene& scene,
 std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& value) {
     if (!key.set) return Problem{key.path, value_text(key, value), "can't be set", key.accepted};
     if (key.set(scene, value)) return std::nullopt;
+    if (std::holds_alternative<NumberKeys>(value))
+        return Problem{
+            key.path, value_text(key, value),
+            key.may_have_keys ? "has no keys in it" : "is a number's keys, and this key can't have any",
+            key.accepted};
     const auto is_unknown = [&](const std::string& word) {
         return std::find(key.choices.begin(), key.choices.end(), word) == key.choices.end();
     };
@@ -234,6 +260,14 @@ std::string value_text(const Key& key, const KeyValue& value) {
                         out += (out.size() == 2 ? "" : ", ") + std::string(name) + " = " + text;
                 return out + " }";
             });
+        }
+        std::string operator()(const NumberKeys& number) const {
+            return "{ keys = " +
+                   list_text(number.keys,
+                             [](const NumberKeys::Key& at) {
+                                 return '[' + std::to_string(at.frame) + ", " + number_text(at.value) + ']';
+                             }) +
+                   ", interpolation = " + quoted_text(word_of(number.interpolation)) + " }";
         }
     };
     return std::visit(Visitor{key}, value);

@@ -522,7 +522,8 @@ void add_camera(Built& out) {
              .unit = "stops",
              .range = limits::kExposure_ev,
              .soft = SoftRange{-4.0, 4.0},
-             .key_parts = key_parts(KeyPart::Light)}),
+             .key_parts = key_parts(KeyPart::Light),
+             .may_have_keys = true}),
         row<&Camera::ev100>(
             {.name = "ev100",
              .help =
@@ -531,7 +532,8 @@ void add_camera(Built& out) {
              .unit = "stops",
              .range = limits::kEv100,
              .soft = SoftRange{0.0, 17.0},
-             .key_parts = key_parts(KeyPart::Light)}),
+             .key_parts = key_parts(KeyPart::Light),
+             .may_have_keys = true}),
         row<&Camera::white_balance_k>(
             {.name = "white_balance_k",
              .help =
@@ -540,14 +542,16 @@ void add_camera(Built& out) {
              .unit = "K",
              .range = limits::kWhiteBalance_k,
              .soft = SoftRange{2000.0, 12000.0, true},
-             .key_parts = key_parts(KeyPart::Light)}),
+             .key_parts = key_parts(KeyPart::Light),
+             .may_have_keys = true}),
         row<&Camera::glare>(
             {.name = "glare",
              .help = "of PNGs: the share of the light that the lens scatters round where it belongs, as the "
                      "eye does: 0.1 is a clean lens. The preview has none, and EXRs hold the light itself",
              .range = limits::kGlare,
              .soft = SoftRange{0.0, 0.5},
-             .key_parts = key_parts(KeyPart::Light)}));
+             .key_parts = key_parts(KeyPart::Light),
+             .may_have_keys = true}));
 }
 
 void add_light_and_water(Built& out) {
@@ -559,13 +563,16 @@ void add_light_and_water(Built& out) {
                                         .unit = "degrees",
                                         .range = limits::kSunElevation_deg,
                                         .soft = SoftRange{-10.0, 90.0},
-                                        .key_parts = kLight}),
+                                        .key_parts = kLight,
+                                        .may_have_keys = true}),
         row<&Light::sun_azimuth_deg>({.name = "sun_azimuth_deg",
                                       .help = "towards the sun, counter-clockwise from +x (east)",
                                       .unit = "degrees",
                                       .range = limits::kAngle_deg,
                                       .soft = kTurn,
-                                      .key_parts = kLight}),
+                                      .key_parts = kLight,
+                                      .may_have_keys = true,
+                                      .is_angle = true}),
         row<&Light::sky>({.name = "sky",
                           .help =
                               "clear daylight, or a picture of a sky: lat-long, middle column +x, azimuth "
@@ -577,7 +584,8 @@ void add_light_and_water(Built& out) {
             {.name = "turbidity",
              .help = "haze of the daylight's air; 2 is the open sea's, 3 land's, 6 is hazy",
              .range = limits::kTurbidity,
-             .key_parts = kLight}),
+             .key_parts = kLight,
+             .may_have_keys = true}),
         row<&Light::visibility_km>(
             {.name = "visibility_km",
              .help = "with a picture of a sky: how far one sees through its air; without it "
@@ -585,7 +593,8 @@ void add_light_and_water(Built& out) {
              .unit = "km",
              .range = limits::kVisibility_km,
              .soft = SoftRange{1.0, 200.0, true},
-             .key_parts = kLight}),
+             .key_parts = kLight,
+             .may_have_keys = true}),
         row<&Light::sky_rotation_deg>(
             {.name = "sky_rotation_deg",
              .help = "turns a picture of a sky and its sun, counter-clockwise from above",
@@ -593,12 +602,15 @@ void add_light_and_water(Built& out) {
              .range = limits::kAngle_deg,
              .soft = kTurn,
              .key_parts = kLight,
+             .may_have_keys = true,
+             .is_angle = true,
              .of_picture = "light.sky"}),
         row<&Light::sky_gain>({.name = "sky_gain",
                                .help = "multiplies the radiance of a picture of a sky and its sun",
                                .range = limits::kSkyGain,
                                .soft = SoftRange{0.01, 100.0, true},
                                .key_parts = kLight,
+                               .may_have_keys = true,
                                .of_picture = "light.sky"}));
     add_table<&Scene::water>(
         out.tables, out.keys, {"water", "the water body", {}, {}},
@@ -612,7 +624,8 @@ void add_light_and_water(Built& out) {
                                         .unit = "mg/m³",
                                         .range = limits::kChlorophyll_mg_m3,
                                         .soft = SoftRange{0.01, 30.0, true},
-                                        .key_parts = kWater}),
+                                        .key_parts = kWater,
+                                        .may_have_keys = true}),
         row<&Water::body>(
             {.name = "body",
              .help = "light in the water by the ways of sun and eye, with the floor at sea.depth_m; off: one "
@@ -645,20 +658,23 @@ void add_light_and_water(Built& out) {
                  "are dark; 1 is as computed, 0 none",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0},
-             .key_parts = kWater}),
+             .key_parts = kWater,
+             .may_have_keys = true}),
         row<&Water::bubbles>(
             {.name = "bubbles",
              .help = "how much the bubbles under foam brighten the water; 1 is as computed, 0 none",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0},
-             .key_parts = kWater}),
+             .key_parts = kWater,
+             .may_have_keys = true}),
         row<&Water::caustics>(
             {.name = "caustics",
              .help =
                  "how much waves gather the sun's light, on a floor that is seen and in shafts under water; 1 is as computed, 0 even light",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0},
-             .key_parts = kWater}));
+             .key_parts = kWater,
+             .may_have_keys = true}));
 }
 
 void add_effects_and_quality(Built& out) {
@@ -713,13 +729,15 @@ void add_effects_and_quality(Built& out) {
              .help =
                  "in pictures: 0 shows foam as smooth coverage, 1 as holes and lace; its mean is the same",
              .range = limits::kFoamStructure,
-             .key_parts = key_parts(KeyPart::Water)}),
+             .key_parts = key_parts(KeyPart::Water),
+             .may_have_keys = true}),
         row<&Effects::foam_streaks>(
             {.name = "foam_streaks",
              .help =
                  "how far a wind of 15 m/s draws that lace out along it; less blows less, a storm twice as far",
              .range = limits::kFoamStreaks,
-             .key_parts = key_parts(KeyPart::Water)}),
+             .key_parts = key_parts(KeyPart::Water),
+             .may_have_keys = true}),
         row<&Effects::foam_pattern>(
             {.name = "foam_pattern",
              .help =
@@ -742,22 +760,26 @@ void add_effects_and_quality(Built& out) {
              .help =
                  "what foam reflects where waves break, as far as it hides the water; 0.55 is measured (Whitlock 1982)",
              .range = limits::kFoamAlbedo,
-             .key_parts = key_parts(KeyPart::Water)}),
+             .key_parts = key_parts(KeyPart::Water),
+             .may_have_keys = true}),
         row<&Effects::foam_old_albedo>({.name = "foam_old_albedo",
                                         .help = "the same for the foam that breaking has left",
                                         .range = limits::kFoamAlbedo,
-                                        .key_parts = key_parts(KeyPart::Water)}),
+                                        .key_parts = key_parts(KeyPart::Water),
+                                        .may_have_keys = true}),
         row<&Effects::foam_new_opaque>(
             {.name = "foam_new_opaque",
              .help =
                  "the share of its area that foam hides where waves break; 0: such that the mean over all foam is "
                  "0.4, which is measured (Koepke 1984)",
              .range = limits::kFoamOpacity,
-             .key_parts = key_parts(KeyPart::Water)}),
+             .key_parts = key_parts(KeyPart::Water),
+             .may_have_keys = true}),
         row<&Effects::foam_old_opaque>({.name = "foam_old_opaque",
                                         .help = "the same for the foam that breaking has left",
                                         .range = limits::kFoamOpacity,
-                                        .key_parts = key_parts(KeyPart::Water)}),
+                                        .key_parts = key_parts(KeyPart::Water),
+                                        .may_have_keys = true}),
         row<&Effects::spray>({.name = "spray",
                               .help = "droplets over breaking crests; none without whitecaps",
                               .key_parts = key_parts(KeyPart::Spray)}),
@@ -853,7 +875,7 @@ Built build() {
     add_light_and_water(out);
     add_effects_and_quality(out);
     add_output(out);
-    static_assert(member_count<Scene>() == 10, "a table without keys: add it above");
+    static_assert(member_count<Scene>() == 11, "a table without keys: add it above");
     // All keys of a table are neighbours in the list.
     for (KeyTable& table : out.tables) {
         const auto of_table = [&](const Key& key) { return key.path.starts_with(table.name + '.'); };

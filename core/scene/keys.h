@@ -67,9 +67,10 @@ std::string text_of(KeyPartSet set);
 struct KeyEntry;
 
 // A key's value: nothing (not given, and no default), a truth, an integer, a number, a text or word, three
-// numbers, two integers, words, or the entries of a list.
-using KeyValue = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>,
-                              std::vector<std::int64_t>, std::vector<std::string>, std::vector<KeyEntry>>;
+// numbers, two integers, words, the entries of a list, or a number's keys over the shot.
+using KeyValue =
+    std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>,
+                 std::vector<std::int64_t>, std::vector<std::string>, std::vector<KeyEntry>, NumberKeys>;
 
 // An entry of a list such as sea.swell: its keys' names, in the order of the table, and values.
 struct KeyEntry {
@@ -114,6 +115,8 @@ struct Key {
     std::optional<Range> range;        // of the number, or of each one
     std::optional<SoftRange> soft;     // of a number
     bool may_be_infinite = false;      // besides what is in the range
+    bool may_have_keys = false;        // a number: NumberKeys do as well
+    bool is_angle = false;             // a number of degrees: between keys it turns the short way
     bool is_optional = false;          // a number that may be left out, and has no default
     bool is_required = false;          // in an entry: it has no default
     bool is_picture = false;           // a text: its fallback, or the path of an .exr in its place

@@ -101,6 +101,25 @@ struct ValueCheck {
             refuse(value, std::isnan(value) ? "is not a number" : "is outside the range");
     }
     void operator()(const std::string&) const {}
+    void operator()(const NumberKeys& number) const {
+        for (std::size_t i = 0; i < number.keys.size(); ++i) {
+            const auto& [frame, value] = number.keys[i];
+            const std::string path = indexed(at.path + ".keys", i);
+            const auto refuse_key = [&](const std::string& problem, const std::string& accepted) {
+                check.refuse(
+                    {path, '[' + std::to_string(frame) + ", " + number_text(value) + ']', problem, accepted});
+            };
+            if (!is_in_range(at.key, value))
+                refuse_key(std::isnan(value) ? "is not a number" : "is outside the range",
+                           range_text(at.key));
+            else if (!limits::kFrame.holds(frame))
+                refuse_key("is at a frame outside the range", text_of(limits::kFrame));
+            else if (i > 0 && frame <= number.keys[i - 1].frame)
+                refuse_key("does not come after the key before, of frame " +
+                               std::to_string(number.keys[i - 1].frame),
+                           "rising frames, each once");
+        }
+    }
     template <class Number>
     void operator()(const std::vector<Number>& list) const {
         const auto is_good = [&](Number value) { return is_in_range(at.key, static_cast<double>(value)); };
@@ -499,13 +518,23 @@ void check_pictures(SceneChecker& check, const Scene& scene) {
     }
 }
 
-void check_water(SceneChecker& check, const Water& water) {
-    if (water.type <= WaterType::Turbid || !check.is_good("water.chlorophyll_mg_m3")) return;
-    if (water.chlorophyll_mg_m3 == Water{}.chlorophyll_mg_m3) return;
+void check_water(SceneChecker& check, const Scene& scene) {
+    const Water& water = scene.water;
+    const Key& key = key_of("water.chlorophyll_mg_m3");
+    if (water.type <= WaterType::Turbid || !check.is_good(key.path)) return;
+    if (value_of(scene, key) == key.fallback) return;
     check.refuse(
-        {"water.chlorophyll_mg_m3", number_text(water.chlorophyll_mg_m3),
+        {key.path, value_text(key, value_of(scene, key)),
          "is plankton beside that of water.type = " + choice_text(water.type),
          number_text(Water{}.chlorophyll_mg_m3) + ", or water.type = \"ocean\", \"coastal\", \"turbid\""});
+}
+
+void check_keyed(SceneChecker& check, const Scene& scene) {
+    if (scene.shot.loop_s == 0.0) return;
+    for (const KeyedNumber& number : scene.keyed)
+        check.refuse({number.path, value_text(key_of(number.path), number.keys),
+                      "changes over the shot, and a loop has no beginning to change from",
+                      "a number, or shot.loop_s = 0"});
 }
 
 // The fit needs a regular grid, whose limit surface is a spline.
@@ -621,7 +650,8 @@ std::vector<Problem> validate(const Scene& scene) {
     check_planet(check, scene);
     check_cage(check, scene.surface);
     check_pictures(check, scene);
-    check_water(check, scene.water);
+    check_water(check, scene);
+    check_keyed(check, scene);
     check_output(check, scene);
     check_scheme(check, scene.output, scene.surface);
     check_budget(check, scene.quality);

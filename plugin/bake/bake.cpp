@@ -2,6 +2,7 @@
 
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/scene/keys.h"
 #include "core/spectrum/possible.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/sequence.h"
@@ -23,10 +25,35 @@
 namespace pelagic {
 namespace {
 
+// The stage has one material, the record one foam and a map of the floor one light for all frames.
+std::vector<Problem> unbaked_keys(const Scene& scene) {
+    const auto asks = [&](MapKind map) {
+        return std::ranges::find(scene.output.maps, map) != scene.output.maps.end();
+    };
+    std::vector<Problem> problems;
+    for (const KeyedNumber& number : scene.keyed) {
+        const Key& key = key_of(number.path);
+        const bool is_foam = number.path.starts_with("effects.foam_"),
+                   is_camera = number.path.starts_with("camera.");
+        const bool is_plankton = number.path == "water.chlorophyll_mg_m3";
+        const char* what =
+            is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
+                ? "changes over the shot, and what a bake says of water and foam is one for all frames"
+            : !is_foam && !is_camera && asks(MapKind::Floor)
+                ? "changes over the shot, and a map of the floor has one light for all frames"
+                : nullptr;
+        if (what)
+            problems.push_back({number.path, value_text(key, number.keys), what,
+                                "a number in bakes; pelagic render shows it with keys"});
+    }
+    return problems;
+}
+
 void refuse_invalid(const Scene& scene) {
+    std::vector<Problem> all = problems_of(scene);
+    if (all.empty()) all = unbaked_keys(scene);
     std::string problems;
-    for (const Problem& problem : problems_of(scene))
-        problems += (problems.empty() ? "" : "\n") + text_of(problem);
+    for (const Problem& problem : all) problems += (problems.empty() ? "" : "\n") + text_of(problem);
     if (!problems.empty()) throw std::invalid_argument(problems);
 }
 

@@ -18,6 +18,7 @@
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 #include "core/surface/view.h"
 #include "pelagic/version.h"
 #include "plugin/bake/volumes.h"
@@ -26,6 +27,7 @@
 #include "plugin/format/usd/text.h"
 #include "plugin/format/usd/volumes.h"
 #include "plugin/light/light.h"
+#include "plugin/run/part.h"
 
 namespace pelagic {
 namespace {
@@ -114,26 +116,34 @@ std::string dome_file(const Scene& scene, const Sky& sky) {
     return exr::encode_scanline(header, image);
 }
 
-// None after sunset, and where a picture of a sky has none.
-std::optional<usd::Sun> sun_of(const Sky& sky) {
+// Of an intensity of 0 after sunset, and where a picture of a sky has none.
+usd::Sun sun_of(const Sky& sky) {
     const double radius = static_cast<double>(sky.sun_angular_radius);
     const glm::dvec3 irradiance = glm::dvec3(sky.sun_radiance) * (kPi * radius * radius);  // across its rays
     // As colours are shown and edited: from 0 to 1.
     const double brightest = std::max({irradiance.x, irradiance.y, irradiance.z});
-    if (!(brightest > 0.0)) return {};
     const glm::dvec3 towards(sky.sun_direction);
-    return usd::Sun{.elevation_deg = std::atan2(towards.z, std::hypot(towards.x, towards.y)) * kDegrees,
-                    .azimuth_deg = std::atan2(towards.y, towards.x) * kDegrees,
-                    .angle_deg = 2.0 * radius * kDegrees,
-                    .intensity = brightest,
-                    .color = glm::vec3(irradiance / brightest)};
+    return {.elevation_deg = std::atan2(towards.z, std::hypot(towards.x, towards.y)) * kDegrees,
+            .azimuth_deg = std::atan2(towards.y, towards.x) * kDegrees,
+            .angle_deg = 2.0 * radius * kDegrees,
+            .intensity = brightest,
+            .color = brightest > 0.0 ? glm::vec3(irradiance / brightest) : glm::vec3(1.0f)};
 }
 
 // What the light leaves in a bake.
 struct StageLight {
     std::string dome;  // the file
-    std::optional<usd::Sun> sun;
+    usd::Sun sun;
 };
+
+// The sky of a frame, and those of the frames after it that have the same.
+std::string sky_file(const Shot& shot, int frame) {
+    return FilePattern{shot.name + ".sky.", ".exr"}.file(frame);
+}
+
+bool has_changing_light(const Scene& scene) {
+    return !same_sky(scene, scene_at(scene, scene.shot.first_frame));
+}
 
 // It takes a few tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake
 // again and again under the same light, and a bake looks at it before it does anything else.
@@ -180,7 +190,7 @@ std::vector<usd::Volume> volumes_of(const Plan& plan) {
     return volumes;
 }
 
-usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optional<usd::Sun>& sun) {
+usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::FrameLight> light) {
     const Scene& scene = plan.from->scene;
     const Shot& shot = scene.shot;
     const ProductSet& products = mesh.query().products;
@@ -200,13 +210,17 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
     stage.points_follow_camera = !plan.surface->is_constant();
     stage.origin_follows_camera = plan.surface->origin_follows_camera();
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
-    const WaterBody body = make_water(scene, plan.from->spectrum);
+    const WaterBody body = make_water(scene_at(scene, shot.first_frame), plan.from->spectrum);
     stage.material = material_of(plan, body);
     stage.has_camera = true;
     stage.has_volumes = !volumes_of(plan).empty();
     stage.has_drops = scene.output.drops;
-    stage.sun = sun;
-    stage.sky = usd::Sky{.lat_long_file = "./" + usd::sky_file(shot.name)};
+    if (has_changing_light(scene)) {
+        stage.light = std::move(light);
+    } else {
+        if (light.front().sun.intensity > 0.0) stage.sun = light.front().sun;
+        stage.sky = light.front().sky;
+    }
     stage.custom_data = {
         {"version", std::string(PELAGIC_VERSION)},
         {"fingerprint", mesh.fingerprint()},
@@ -234,15 +248,32 @@ std::size_t camera_layer_bytes(const Scene& scene) {
 }
 
 void prepare_light(const Scene& scene) {
-    light_of(scene);
+    light_of(scene_at(scene, scene.shot.first_frame));
 }
 
 void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> volume_frames,
                  const FileSink& sink) {
     const Scene& scene = plan.from->scene;
     const std::string& name = scene.shot.name;
-    const std::shared_ptr<const StageLight> light = light_of(scene);
-    sink({.path = usd::sky_file(name), .content = [&](const usd::Sink& take) { take(light->dome); }});
+    const bool is_changing = has_changing_light(scene);
+    std::vector<usd::FrameLight> light;
+    std::optional<Scene> lit;
+    for (int frame = scene.shot.first_frame;
+         frame <= (is_changing ? scene.shot.last_frame : scene.shot.first_frame); ++frame) {
+        Scene now = scene_at(scene, frame);
+        if (lit && same_sky(*lit, now)) continue;
+        lit = std::move(now);
+        const std::shared_ptr<const StageLight> made = light_of(*lit);
+        const std::string file = is_changing ? sky_file(scene.shot, frame) : usd::sky_file(name);
+        sink({.path = file, .content = [&](const usd::Sink& take) { take(made->dome); }});
+        light.push_back({frame, made->sun, {.lat_long_file = "./" + file}});
+        // Hosts go straight from one angle to the next.
+        if (const std::size_t n = light.size(); n > 1) {
+            const double before = light[n - 2].sun.azimuth_deg;
+            double& azimuth = light[n - 1].sun.azimuth_deg;
+            azimuth = before + std::remainder(azimuth - before, 360.0);
+        }
+    }
     sink({.path = usd::camera_file(name),
           .content = [&](const usd::Sink& take) { usd::write_camera_crate(camera_of(scene), take); }});
     if (std::vector<usd::Volume> volumes = volumes_of(plan); !volumes.empty()) {
@@ -255,7 +286,7 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
               .content = [&](const usd::Sink& take) { usd::write_volumes_text(layer, take); }});
     }
     sink({.path = usd::root_file(name),
-          .content = [&](const usd::Sink& take) { take(usd::root_text(stage_of(plan, mesh, light->sun))); }});
+          .content = [&](const usd::Sink& take) { take(usd::root_text(stage_of(plan, mesh, light))); }});
 }
 
 }  // namespace pelagic

@@ -13,6 +13,7 @@
 
 #include "core/plan/memory.h"
 #include "core/scene/budget.h"
+#include "core/scene/number_keys.h"
 #include "core/surface/rest_surface.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -52,7 +53,7 @@ MeasuredErrors measured_errors(const Scene& scene, std::size_t max_memory_bytes,
     small.camera.resolution = {std::max(1, static_cast<int>(std::lround(width))),
                                std::max(1, static_cast<int>(std::lround(width * shape)))};
     const std::vector<int> frames = frames_to_measure(scene);
-    const Sky sky = make_sky(scene);
+    const Sky sky = make_sky(scene_at(scene, frames.front()));
     RenderOptions own = render_options(scene);
     own.knobs = Knobs{.double_precision = true};
     MeasuredErrors errors;

@@ -15,6 +15,7 @@
 #include "core/lighting/lighting.h"
 #include "core/lighting/tone.h"
 #include "core/plan/effects.h"
+#include "core/scene/number_keys.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/surface/earth.h"
@@ -186,6 +187,7 @@ std::vector<View> metered_views(const Scene& scene) {
 }
 
 float shot_exposure(const Scene& scene, const Sky& sky, double stops, const Floor* floor) {
+    refuse_keys(scene);
     stops += scene.camera.exposure_ev;
     if (scene.camera.ev100) return static_cast<float>(exposure_of_ev100(*scene.camera.ev100 - stops));
     Meter meter(scene, sky, floor);

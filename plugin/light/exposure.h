@@ -15,6 +15,9 @@ namespace pelagic {
 // change the sea's brightness.
 std::vector<View> metered_views(const Scene& scene);
 
+// Of the scene of a frame, as make_sky(): where light has keys each frame is metered, over all those views, so that the exposure follows
+// the light and neither waves nor camera.
+//
 // The exposure for display_colour() (core/lighting/tone.h), brighter by `stops` and camera.exposure_ev: a factor of 2 for each. > 0
 // and finite. camera.ev100, or else metered: the logarithmic mean of the luminance in those views: the sky without the sun's disc,
 // and through the air before it a sea that is at rest in the mean, on the earth's sphere where the shot's is, with the slopes that

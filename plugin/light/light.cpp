@@ -25,6 +25,7 @@
 #include "core/plan/foam.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "core/spectrum/directional_spectrum.h"
@@ -164,6 +165,7 @@ std::string content_of(const std::string& path, const Problem& unreadable) {
 }  // namespace
 
 Sky make_sky(const Scene& scene) {
+    refuse_keys(scene, "light");
     const Light& light = scene.light;
     if (light.sky == Light{}.sky)
         return daylight_sky({.sun_elevation_deg = light.sun_elevation_deg,
@@ -251,11 +253,13 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg)
 }
 
 WaterBody make_water(const Scene& scene) {
+    refuse_keys(scene, "water");
     if (!scene.water.body) return water_body(choice_of(scene.water));
     return make_water(scene, DirectionalSpectrum(scene.sea, scene.waves.band_gains));
 }
 
 WaterBody make_water(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    refuse_keys(scene, "water");
     WaterChoice choice = choice_of(scene.water);
     choice.has_body = scene.water.body;
     choice.floor_colour = scene.water.floor_colour;
@@ -389,6 +393,12 @@ std::string light_content(const Scene& scene) {
     return canonical(scene, key_parts(KeyPart::Light)) + scene.effects.foam_pattern;
 }
 
+bool same_sky(const Scene& a, const Scene& b) {
+    const auto light = std::ranges::find(key_tables(), "light", &KeyTable::name);
+    return std::ranges::all_of(light->keys,
+                               [&](const Key& key) { return value_of(a, key) == value_of(b, key); });
+}
+
 double active_foam(const Scene& scene, double residual_coverage) {
     const double law = law_coverage(scene);
     return law > 0.0 ? std::clamp(1.0 - residual_coverage / law, 0.0, 1.0) : 1.0;
@@ -456,6 +466,7 @@ double foam_streaks(const Scene& scene) {
 }  // namespace
 
 FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {
+    refuse_keys(scene, "effects");
     const Effects& effects = scene.effects;
     FoamLook look{.image = std::move(picture),
                   .image_m = effects.foam_pattern_m,

@@ -24,7 +24,8 @@ std::vector<Problem> check_sky(const Scene& scene);
 // of a shot.
 std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
-// Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
+// Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky. As what else here
+// shows one moment it wants the scene of a frame (core/scene/number_keys.h), and throws where what it shows has keys.
 Sky make_sky(const Scene& scene);
 // The floor below a sea that rests at a height [m]: level at sea.depth_m, or as the pictures or the mesh say that sea.depth_file and water.floor_pattern
 // are the paths of. Depths below a centimetre are one: land isn't seen. Throws std::invalid_argument, naming the key and the file, for a picture that
@@ -55,6 +56,8 @@ struct WaterText {
 WaterText water_text(const WaterBody& water);
 // What the light depends on, as text: while it stays the same, sky and make_foam_picture() do. Water and how foam looks are no part of it.
 std::string light_content(const Scene& scene);
+// Whether make_sky() gives both the same; quicker than light_content(), which has the exposure in it.
+bool same_sky(const Scene& a, const Scene& b);
 // The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without
 // persistent foam.
 double active_foam(const Scene& scene, double residual_coverage);

@@ -11,6 +11,7 @@
 #include "core/plan/effects.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
@@ -136,7 +137,9 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
-    if (const std::size_t floor = floor_light_bytes(scene, make_water(scene, plan.from->spectrum)); floor > 0)
+    if (const std::size_t floor = floor_light_bytes(
+            scene, make_water(scene_at(scene, scene.shot.first_frame), plan.from->spectrum));
+        floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");

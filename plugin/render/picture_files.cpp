@@ -16,6 +16,7 @@
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "pelagic/version.h"
@@ -135,6 +136,7 @@ std::string picture_file(const Shot& shot, int frame, const char* extension) {
 
 PictureFingerprint::PictureFingerprint(const PictureSource& source)
     : shot_(source.scene.shot), camera_(source.scene.camera), options_(source.options) {
+    keyed_.keyed = source.scene.keyed;
     const LightingChoice& lighting = options_.lighting;
     const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
     // What the plan says of a view is the same whichever frames it is for.
@@ -143,7 +145,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
     hash.add(source.drawn_by_gpu ? "drawn picture" : "picture")
         .add("revision " + std::to_string(kPictureRevision))
         .add(source.scene.shot.name)  // a picture says its own file's name
-        .add(canonical(portable(source.scene), parts_beside_the_view(options_)))
+        .add(canonical(portable(without_keyed(source.scene)), parts_beside_the_view(options_)))
         .add(plan_text(plan, 0))
         .add(source.picture_content)
         .add("samples " + std::to_string(options_.samples) + " terms " + digit(lighting.sun) +
@@ -162,6 +164,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
 std::string PictureFingerprint::of(int frame) const {
     Fingerprint hash;
     hash.add(source_).add("frame " + std::to_string(frame));
+    if (!keyed_.keyed.empty()) hash.add(keyed_text(keyed_, parts_beside_the_view(options_), frame));
     for (const PicturePass& pass : passes_of(camera_, frame, options_).all) {
         hash.add(pose_text(view_of(camera_, pass)));
         // Which time of a loop a frame shows isn't in any key.

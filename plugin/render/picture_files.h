@@ -59,6 +59,7 @@ class PictureFingerprint {
     Shot shot_;
     Camera camera_;
     RenderOptions options_;
+    Scene keyed_;  // the shot's numbers that have keys, and nothing else of it
     std::string source_;
 };
 

@@ -68,6 +68,7 @@ class RendererOf final : public Impl {
     void render(int frame, Picture& picture, const BuildWatch& watch) override {
         const int n = options_.samples;
         clear(picture);
+        if (sea_.light_frame(frame)) air_ = {};
         const auto [all, parts] = passes_of(scene_.camera, frame, options_);
         const auto passes = static_cast<int>(all.size());
         // In rising time, so that foam's past is gone through once.

@@ -95,7 +95,8 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
 
 class Renderer {
   public:
-    // The scene must be valid; its own sky (make_sky()), or another one; the frames that will be rendered, at
+    // The scene must be valid; its own sky (make_sky()), or another one, which frames of a scene whose light has keys replace by their
+    // own; the frames that will be rendered, at
     // least one. Seconds for the largest seas. Throws as check_render(), and
     // BuildCancelled.
     Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames,

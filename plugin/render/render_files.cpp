@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/number_keys.h"
 #include "plugin/files/files.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
@@ -24,6 +25,10 @@ namespace {
 struct PictureSlot : RunSlot {
     Picture picture;
     std::array<std::string, 2> files;  // by part
+    // Of a shot whose numbers have keys, the frame's own.
+    std::optional<Scene> scene;
+    std::optional<Sky> sky;
+    float exposure = 0.0f;
 };
 constexpr std::array kExtensions{"png", "exr"};
 
@@ -35,8 +40,11 @@ class Pictures final : public Sequence {
           made_of_(made_of),
           chosen_(std::move(chosen)),
           cancel_(watch(RunStage::Building).cancel),
-          renderer_(order.scene, order.options, make_sky(order.scene), frames, watch(RunStage::Building)),
-          exposure_(shot_exposure(order.scene, renderer_.sky(), order.exposure_stops)) {
+          renderer_(order.scene, order.options, make_sky(scene_at(order.scene, frames.front())), frames,
+                    watch(RunStage::Building)),
+          exposure_(order.scene.keyed.empty()
+                        ? shot_exposure(order.scene, renderer_.sky(), order.exposure_stops)
+                        : 0.0f) {
         renderer_.check_cameras(frames, watch(RunStage::Looking));
     }
 
@@ -46,15 +54,20 @@ class Pictures final : public Sequence {
         PictureSlot& slot = static_cast<PictureSlot&>(any);
         slot.frame = frame;
         renderer_.render(frame, slot.picture, {.progress = progress, .cancel = cancel_});
+        slot.exposure = exposure_;
+        if (order_.scene.keyed.empty()) return;
+        slot.scene = scene_at(order_.scene, frame);
+        slot.sky = renderer_.sky();
+        slot.exposure = shot_exposure(*slot.scene, *slot.sky, order_.exposure_stops);
     }
 
     void encode(RunSlot& any) const override {
         PictureSlot& slot = static_cast<PictureSlot&>(any);
-        const PictureContext context{.scene = order_.scene,
+        const PictureContext context{.scene = slot.scene ? *slot.scene : order_.scene,
                                      .options = order_.options,
-                                     .sky = renderer_.sky(),
+                                     .sky = slot.sky ? *slot.sky : renderer_.sky(),
                                      .made_of = made_of_.of(slot.frame),
-                                     .exposure = exposure_,
+                                     .exposure = slot.exposure,
                                      .colours = order_.colours,
                                      .chosen = chosen_};
         if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/lighting/background.h"
+#include "core/scene/number_keys.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
@@ -17,15 +18,30 @@ namespace pelagic {
 
 template <class T>
 SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, const BuildWatch& watch)
-    : choice_(choice),
-      sky_(std::move(sky)),
-      water_(make_water(plan.from->scene, plan.from->spectrum)),
-      foam_(make_foam(plan.from->scene, make_foam_picture(plan.from->scene))),
-      sea_(std::make_shared<const Sea<T>>(plan, watch)),
-      state_(sea_) {
-    if (plan.foam)
-        foam_ = make_foam(plan.from->scene, foam_.image,
-                          active_foam(plan.from->scene, sea_->residual_coverage()));
+    : choice_(choice), sky_(std::move(sky)), sea_(std::make_shared<const Sea<T>>(plan, watch)), state_(sea_) {
+    foam_.image = make_foam_picture(plan.from->scene);
+    light_by(scene_at(plan.from->scene, plan.from->scene.shot.first_frame));
+}
+
+template <class T>
+void SeaLight<T>::light_by(const Scene& scene) {
+    water_ = make_water(scene, plan().from->spectrum);
+    foam_ = make_foam(scene, foam_.image, plan().foam ? active_foam(scene, sea_->residual_coverage()) : 1.0);
+    caustics_ = scene.water.caustics;
+}
+
+template <class T>
+bool SeaLight<T>::light_frame(int frame) {
+    const Scene& shot = plan().from->scene;
+    if (shot.keyed.empty()) return false;
+    Scene scene = scene_at(shot, frame);
+    light_by(scene);
+    floor_lit_.reset();
+    // The sky that the renderer was given stays where light has no keys.
+    const bool is_other = !same_sky(shot, scene) && !(lit_ && same_sky(*lit_, scene));
+    if (is_other) sky_ = make_sky(scene);
+    lit_ = std::move(scene);
+    return is_other;
 }
 
 template <class T>
@@ -95,7 +111,7 @@ void SeaLight<T>::light_floor_before(FloorLightWanted wanted, double rest_m,
     wanted.water = water_;
     wanted.sun_direction = sky_.sun_direction;
     wanted.sun_angular_radius = sky_.sun_angular_radius;
-    wanted.gain = plan().from->scene.water.caustics;
+    wanted.gain = caustics_;
     if (floor_lit_ == wanted) return;
     floor_lit_.reset();
     light_floor(floor_, frame(), wanted, cancel);

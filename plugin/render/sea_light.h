@@ -84,6 +84,8 @@ class SeaLight {
     const WaterBody& water() const { return water_; }
     const Frame<T>& frame() const { return state_.frame(); }
 
+    // From now on the light is that of a frame, where some of it has keys; whether the sky is another then.
+    bool light_frame(int frame);
     // As Frame's.
     void set(double time_s, const std::atomic<bool>* cancel = nullptr) {
         floor_lit_.reset();
@@ -129,12 +131,15 @@ class SeaLight {
     bool foam_lives() const { return state_.has_past(kQuery); }
 
   private:
+    void light_by(const Scene& scene);
     float residual_age_s(std::size_t i) const;
 
     LightingChoice choice_;
     Sky sky_;
     WaterBody water_;
     FoamLook foam_;
+    double caustics_;
+    std::optional<Scene> lit_;  // that of the frame whose light it is
     Floor floor_;
     std::optional<double> floor_rest_m_;         // that it is for
     std::optional<FloorLightWanted> floor_lit_;  // as its light is, at the frame's time

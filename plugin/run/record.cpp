@@ -23,6 +23,7 @@
 #include "core/plan/random_tiling.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/viscous_cutoff.h"
@@ -54,6 +55,11 @@ struct ToJson {
             for (const auto& [name, inner] : entry.values) made[std::string(name)] = std::visit(*this, inner);
         }
         return list;
+    }
+    Json operator()(const NumberKeys& number) const {
+        Json keys = Json::array();
+        for (const auto& [frame, value] : number.keys) keys.push_back({frame, value});
+        return {{"keys", keys}, {"interpolation", word_of(number.interpolation)}};
     }
     template <class Plain>
     Json operator()(const Plain& value) const {
@@ -325,7 +331,9 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                         {"whitecap_law_coverage", law_coverage(scene)}};
     shot["whitecap_threshold"] = number(whitecap_threshold);
     if (plan.gusts) shot["whitecap_threshold_is"] = "without gusts, which move it from place to place";
-    const FoamLook foam = make_foam(scene, nullptr, active_foam(scene, residual_coverage));
+    // A bake refuses keys of how foam looks (plugin/bake/bake.cpp).
+    const FoamLook foam =
+        make_foam(scene_at(scene, scene.shot.first_frame), nullptr, active_foam(scene, residual_coverage));
     shot["dense_foam"] = {{"active", foam.fresh_opacity}, {"left", foam.old_opacity}};
 
     Json& planned = shot["plan"];

@@ -50,6 +50,10 @@ void take(Drawn& drawn, const KeyValue& value) {
             drawn.of_entries = std::max(drawn.of_entries, static_cast<int>(list.size()));
             drawn.is_empty = drawn.is_empty || list.empty();
         }
+        void operator()(const NumberKeys& number) const {
+            for (const NumberKeys::Key& key : number.keys) drawn.numbers.push_back(key.value);
+            drawn.words.insert(std::string(word_of(number.interpolation)));
+        }
         void operator()(const std::vector<KeyEntry>& list) const {
             drawn.of_entries = std::max(drawn.of_entries, static_cast<int>(list.size()));
             drawn.is_empty = drawn.is_empty || list.empty();

@@ -100,6 +100,8 @@ class Shrinking {
         if (auto* number = std::get_if<double>(&value)) take(*number);
         if (auto* numbers = std::get_if<std::vector<double>>(&value))
             for (double& number : *numbers) take(number);
+        if (auto* number = std::get_if<NumberKeys>(&value))
+            for (NumberKeys::Key& key : number->keys) take(key.value);
         if (auto* entries = std::get_if<std::vector<KeyEntry>>(&value))
             for (KeyEntry& entry : *entries)
                 for (auto& [name, inner] : entry.values) each_number(inner, take);

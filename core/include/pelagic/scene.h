@@ -272,6 +272,24 @@ struct Output {
     bool drops = false;    // effects.spray_drops' particles
 };
 
+// A number at some frames, and in between.
+struct NumberKeys {
+    struct Key {
+        int frame = 1;
+        double value = 0.0;
+        bool operator==(const Key&) const = default;
+    };
+    std::vector<Key> keys;  // by rising frame, at least one
+    CameraInterpolation interpolation = CameraInterpolation::Linear;
+    bool operator==(const NumberKeys&) const = default;
+};
+
+// A number of the scene that changes over the shot.
+struct KeyedNumber {
+    std::string path;  // of its key: "light.sun_elevation_deg"
+    NumberKeys keys;
+};
+
 struct Scene {
     Shot shot;
     SeaState sea;
@@ -283,6 +301,9 @@ struct Scene {
     Effects effects;
     Quality quality;
     Output output;
+    // Numbers that have keys (set_value() puts them here). A frame's own scene, without any, is scene_at()'s
+    // (core/scene/number_keys.h); until then their members hold the largest of the keys, so that a plan has what some frame needs.
+    std::vector<KeyedNumber> keyed;
 };
 }  // namespace PELAGIC_VERSION_NAMESPACE
 }  // namespace pelagic

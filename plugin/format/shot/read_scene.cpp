@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/scene/editions.h"
 #include "core/scene/keys.h"
@@ -118,11 +119,6 @@ std::optional<double> read_number(Reader& reader, const Asked& asked) {
     return refuse_type(reader, asked);
 }
 
-std::optional<std::string> read_text(Reader& reader, const Asked& asked) {
-    if (const auto* text = asked.node.as_string()) return text->get();
-    return refuse_type(reader, asked);
-}
-
 std::optional<std::string> read_word(Reader& reader, const Asked& asked) {
     const auto* text = asked.node.as_string();
     if (!text) return refuse_type(reader, asked);
@@ -132,6 +128,50 @@ std::optional<std::string> read_word(Reader& reader, const Asked& asked) {
     problem.value = text_of(asked.node);
     reader.refuse(asked.node.source().begin, problem);
     return std::nullopt;
+}
+
+// { keys = [[frame, number], …], interpolation = "smooth" }. What is wrong with a key names its place in the list.
+std::optional<KeyValue> read_number_keys(Reader& reader, const Asked& asked) {
+    const toml::table& table = *asked.node.as_table();
+    static const KnownKeys known{{"keys", "interpolation"}, "the keys keys and interpolation"};
+    static const Key& interpolation = pelagic::key_of("camera.interpolation");
+    if (!asked.key.may_have_keys)
+        return refuse(reader, asked, "has keys, and this number can't change over the shot yet");
+    const std::size_t problems_before = reader.problem_count();
+    NumberKeys number;
+    for (const auto& at : in_order(table))
+        if (at.first.str() != "keys" && at.first.str() != "interpolation")
+            refuse_unknown(reader, asked.path, at, known);
+    if (const toml::node* word = table.get("interpolation")) {
+        const Asked here{*word, asked.path + ".interpolation", interpolation};
+        if (const auto given = read_word(reader, here))
+            number.interpolation = *choice_of<CameraInterpolation>(*given);
+    }
+    const toml::array* list = table["keys"].as_array();
+    if (!list || list->empty()) return refuse(reader, asked, "has no list of keys in it");
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const toml::node& node = *list->get(i);
+        const std::string path = indexed(asked.path + ".keys", i);
+        reader.remember(path, node.source().begin);
+        const toml::array* pair = node.as_array();
+        const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
+        const Asked value{frame ? *pair->get(1) : node, path, asked.key};
+        if (!frame || !std::in_range<int>(frame->get())) {
+            reader.refuse(node.source().begin,
+                          {path, text_of(node), "is no frame and its number",
+                           "[frame, number], the frame an integer, " + text_of(limits::kFrame)});
+        } else if (const std::optional<double> read = read_number(reader, value)) {
+            number.keys.push_back({static_cast<int>(frame->get()), *read});
+        }
+    }
+    if (reader.problem_count() == problems_before) return number;
+    reader.mark_failed(asked.path);
+    return std::nullopt;
+}
+
+std::optional<std::string> read_text(Reader& reader, const Asked& asked) {
+    if (const auto* text = asked.node.as_string()) return text->get();
+    return refuse_type(reader, asked);
 }
 
 // A list of exactly this many numbers, each read by `read`.
@@ -252,6 +292,7 @@ std::optional<KeyValue> read_value(Reader& reader, const Asked& asked) {
             }
             return value(read_integer(reader, asked));
         case KeyType::Number:
+            if (asked.node.is_table()) return read_number_keys(reader, asked);
             return value(read_number(reader, asked));
         case KeyType::Text:
         case KeyType::DataFile:

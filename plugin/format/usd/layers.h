@@ -138,6 +138,13 @@ struct Sky {
     std::string lat_long_file{};
 };
 
+// Sun and sky from a frame on, until the next one's.
+struct FrameLight {
+    int frame = 1;
+    Sun sun{};  // an intensity of 0: it doesn't shine
+    Sky sky{};
+};
+
 // How the water looks in a renderer that has no material of its own for it.
 struct Material {
     double ior = 1.34;               // sea water
@@ -170,6 +177,8 @@ struct Stage {
     bool has_drops = false;    // drops_file() (drops.h) is
     std::optional<Sun> sun{};
     std::optional<Sky> sky{};
+    std::vector<FrameLight>
+        light{};  // by rising frame, at least one; instead of the two: a light that changes
     // The entries of customLayerData's dictionary "pelagic", in this order. A key is an identifier:
     // [A-Za-z_][A-Za-z0-9_]*.
     std::vector<std::pair<std::string, CustomValue>> custom_data{};

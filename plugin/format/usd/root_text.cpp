@@ -360,6 +360,38 @@ void write_sky(Page& page, const Sky& sky) {
     page.close("}");
 }
 
+// The values of what changes, by frame.
+template <class Text>
+void write_samples(Page& page, const std::string& name, const std::vector<FrameLight>& light,
+                   const Text& text) {
+    page.open({name, ".timeSamples = {"});
+    for (const FrameLight& at : light) page.line({number(std::int64_t{at.frame}), ": ", text(at), ","});
+    page.close("}");
+}
+
+void write_light(Page& page, const std::vector<FrameLight>& light) {
+    page.prim("def DistantLight", "Sun");
+    page.line({"float inputs:angle = ", real32("the sun's angle", light.front().sun.angle_deg)});
+    write_samples(page, "color3f inputs:color", light,
+                  [](const FrameLight& at) { return color("the sun's colour", at.sun.color); });
+    write_samples(page, "float inputs:intensity", light,
+                  [](const FrameLight& at) { return real32("the sun's intensity", at.sun.intensity); });
+    page.line({"bool inputs:normalize = 1"});
+    write_samples(page, "float3 xformOp:rotateXYZ", light, [](const FrameLight& at) {
+        return "(0, " + real32("the sun's elevation", 90.0 - at.sun.elevation_deg) + ", " +
+               real32("the sun's azimuth", at.sun.azimuth_deg) + ")";
+    });
+    page.line({"uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\"]"});
+    page.close("}");
+    page.prim("def DomeLight", "Sky");
+    write_samples(page, "asset inputs:texture:file", light,
+                  [](const FrameLight& at) { return asset(at.sky.lat_long_file); });
+    page.line({"token inputs:texture:format = \"latlong\""});
+    page.line({"float3 xformOp:rotateXYZ = (90, 0, 90)"});
+    page.line({"uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\"]"});
+    page.close("}");
+}
+
 void write_camera(Page& page, const Stage& stage) {
     page.gap();
     page.open({"def Camera \"", kCameraName, "\" ("});
@@ -410,6 +442,7 @@ std::string root_text(const Stage& stage) {
     page.close("}");
     if (stage.sun) write_sun(page, *stage.sun);
     if (stage.sky) write_sky(page, *stage.sky);
+    if (!stage.light.empty()) write_light(page, stage.light);
     if (stage.has_camera) write_camera(page, stage);
     if (stage.has_volumes) write_volumes(page, stage);
     if (stage.has_drops) write_drops(page, stage);

@@ -1,5 +1,6 @@
 // pelagic accuracy [SHOT.toml] --out DIR
 #include "plugin/accuracy/accuracy.h"
+#include "core/scene/number_keys.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -110,9 +111,13 @@ int run(const AccuracyArguments& arguments) {
     refuse_rows(arguments.rows);
     const std::vector<const ApproximationRow*> rows = asked_rows(arguments.rows);
     // Sweeps turn the knobs that a budget would choose.
-    const Scene shot =
+    const Scene settled =
         held(settle(arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene), Purpose::Mesh))
             .scene;
+    const Scene shot = scene_at(settled, settled.shot.first_frame);
+    if (!settled.keyed.empty())
+        std::cerr << "pelagic: note: numbers that have keys are measured as they are at frame "
+                  << settled.shot.first_frame << '\n';
     const fs::path folder =
         arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
     files::ensure_folder(folder);

@@ -15,6 +15,7 @@
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
+#include "core/scene/number_keys.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/measure.h"
 #include "plugin/bake/stage.h"
@@ -127,6 +128,26 @@ Settled print_settled(const Scene& scene, Purpose purpose, const std::string& ti
     return settled;
 }
 
+// What changes over the shot.
+void print_keyed(const Scene& scene) {
+    const Scene first = scene_at(scene, scene.shot.first_frame),
+                last = scene_at(scene, scene.shot.last_frame);
+    for (const KeyedNumber& number : scene.keyed) {
+        const Key& key = key_of(number.path);
+        std::cout << key.path << " has "
+                  << count_text(static_cast<long>(number.keys.keys.size()), "key", "keys") << ", "
+                  << word_of(number.keys.interpolation) << ": " << value_text(key, value_of(first, key))
+                  << " at frame " << scene.shot.first_frame << ", " << value_text(key, value_of(last, key))
+                  << " at frame " << scene.shot.last_frame << ".\n";
+    }
+    if (!scene.keyed.empty())
+        std::cout << "Pictures meter each frame's light; where the sky changes each bakes its own"
+                  << (scene.output.mesh == MeshFormat::None || same_sky(scene, first)
+                          ? ""
+                          : ", and the stage has a dome for each frame of the shot")
+                  << ".\n";
+}
+
 // What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.
 void print_memory(const Scene& scene, const RenderOptions& options, const Plan& plan) {
     const int threads = tbb::this_task_arena::max_concurrency();
@@ -138,7 +159,8 @@ void print_memory(const Scene& scene, const RenderOptions& options, const Plan& 
     if (scene.output.mesh != MeshFormat::None)
         std::cout << "The camera of the bake's stage takes " << bytes_text(camera_layer_bytes(scene))
                   << ", for all frames of the shot together.\n";
-    const WaterBody water = make_water(scene, plan.from->spectrum);
+    print_keyed(scene);
+    const WaterBody water = make_water(scene_at(scene, scene.shot.first_frame), plan.from->spectrum);
     if (const WaterText text = water_text(water); !text.wavelengths_nm.empty())
         std::cout << "The water at " << text.wavelengths_nm << " nm absorbs " << text.absorption_per_m
                   << " and scatters back " << text.backscatter_per_m

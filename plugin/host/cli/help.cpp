@@ -85,7 +85,8 @@ const char* const kRenderFooter =
     "                                                    in a studio's colours\n"
     "\n"
     "The PNG's exposure is metered from the light and the sea in view, once for the whole shot\n"
-    "(at the camera's keys), so that a turning camera keeps its brightness.\n"
+    "(at the camera's keys), so that a turning camera keeps its brightness; where light or water have\n"
+    "keys, for each frame's light. Such a frame has its own sky, also while the shutter is open.\n"
     "A frame doesn't depend on other frames or on the number of threads.\n"
     "surface.beyond decides whether a patch or a cage lies in the open sea or before nothing but sky.\n"
     "camera.f_stop blurs what isn't in focus by the samples, too. camera.white_balance_k and\n"
@@ -282,7 +283,12 @@ const char* const kKeys =
 const char* const kKeysFooter =
     "Examples:\n"
     "  pelagic keys\n"
-    "  pelagic keys | grep wind";
+    "  pelagic keys | grep wind\n"
+    "\n"
+    "Where \"or { keys = [[frame, number], …] }\" stands, the number can change over the shot:\n"
+    "  sun_elevation_deg = { keys = [[1, 9.0], [96, -1.0]], interpolation = \"smooth\" }\n"
+    "\"linear\", the default, goes straight from key to key; \"smooth\" never beyond them. Before the first\n"
+    "key and after the last their numbers hold; angles turn the short way. Not in a loop (shot.loop_s).";
 
 const char* const kPresets =
     "List the named seas, or print one.\n"

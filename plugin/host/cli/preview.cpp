@@ -12,6 +12,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/shot_text.h"
 #include "plugin/files/files.h"
 #include "plugin/format/shot/edit_shot.h"
@@ -58,6 +59,7 @@ int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArgumen
                    Progress& progress) {
     Scene scene = without_budget(shot);  // of bakes and renders
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
+    scene = scene_at(scene, frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
     files::check_folder(file.parent_path());

@@ -208,6 +208,9 @@ bool key_control(Scene& scene, const Key& key) {
         changed = key_words(key, *word);
     } else if (auto* entries = std::get_if<std::vector<KeyEntry>>(&value)) {
         changed = key_entries(key, *entries);
+    } else if (std::holds_alternative<NumberKeys>(value)) {
+        ImGui::TextDisabled("%s: changes over the shot", key.label.c_str());
+        tooltip(value_text(key, value).c_str());
     } else {
         changed = key_slider(key, value);
     }
@@ -261,7 +264,8 @@ void water_section(Scene& scene) {
     if (!section(keys_of("Water").title)) return;
     key_controls(scene, keys_of("Water"));
     // Jerlov's types have plankton of their own.
-    if (scene.water.type > WaterType::Turbid) scene.water.chlorophyll_mg_m3 = Water{}.chlorophyll_mg_m3;
+    if (const Key& plankton = key_of("water.chlorophyll_mg_m3"); scene.water.type > WaterType::Turbid)
+        set_value(scene, plankton, plankton.fallback);
 }
 
 void light_section(LightingChoice& choice) {

@@ -23,6 +23,7 @@
 
 #include "core/lighting/tone.h"
 #include "core/scene/canonical.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
@@ -232,8 +233,8 @@ class Preview {
         camera_.take(view_at(scene.camera, scene.shot.first_frame));
         // Synchronises with the screen, except for a screenshot.
         glfwSwapInterval(options.screenshot ? 0 : 1);
-        show_sky(build_sky(scene));
-        lit_ = scene;
+        lit_ = now_ = scene_at(scene, std::round(controls_.frame));
+        show_sky(build_sky(now_));
         sea_.ask(scene);
     }
 
@@ -436,23 +437,23 @@ class Preview {
         meter();
     }
 
-    std::string water_content() const { return canonical(controls_.scene, key_parts(KeyPart::Water)); }
+    std::string water_content() const { return canonical(now_, key_parts(KeyPart::Water)); }
     void take_water() {
-        water_ = make_water(controls_.scene);
+        water_ = make_water(now_);
         water_from_ = water_content();
         take_floor(frame_ ? frame_->build->drawn->rest_m() : 0.0);
     }
 
     // Pictures of the floor are read only when what it is made of changes: another wind has the same.
     void take_floor(double rest_m) {
-        std::string from = water_from_ + number_text(controls_.scene.sea.depth_m) + " " + number_text(rest_m);
+        std::string from = water_from_ + number_text(now_.sea.depth_m) + " " + number_text(rest_m);
         if (from == floor_from_) return;
         floor_from_ = std::move(from);
         floor_.reset();
         floor_error_.clear();
         if (!water_.has_body) return;
         try {
-            floor_ = std::make_shared<const Floor>(make_floor(controls_.scene, rest_m));
+            floor_ = std::make_shared<const Floor>(make_floor(now_, rest_m));
         } catch (const std::invalid_argument& error) {  // a picture that is gone
             floor_error_ = error.what();
         }
@@ -462,13 +463,14 @@ class Preview {
         metered_wind_mps_ = controls_.scene.sea.wind_speed_mps;
         // Where a map of depths is gone, as the panel says, over deep water.
         const Floor deep;
-        exposure_ = shot_exposure(controls_.scene, sky_->sky, 0.0, floor_ ? floor_.get() : &deep);
+        exposure_ = shot_exposure(now_, sky_->sky, 0.0, floor_ ? floor_.get() : &deep);
     }
 
     // Requests what the panel asks for and takes finished results, without waiting.
     void take_what_is_ready() {
-        if (!same_light(lit_, controls_.scene)) {
-            lit_ = controls_.scene;
+        now_ = scene_at(controls_.scene, std::round(controls_.frame));
+        if (!same_light(lit_, now_)) {
+            lit_ = now_;
             skies_.ask(lit_);
         }
         if (const auto sky = skies_.take()) show_sky(sky);
@@ -561,7 +563,7 @@ class Preview {
         follow_foam(view, {mesh, &mesh->points});
         const Sea<float>& sea = *frame_->build->sea;
         controls_.draw.foam =
-            make_foam(controls_.scene, sky_ ? sky_->foam_picture : nullptr,
+            make_foam(now_, sky_ ? sky_->foam_picture : nullptr,
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
         lacks_drops_ = false;
@@ -575,7 +577,7 @@ class Preview {
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
         renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)),
-                       white_balance(controls_.scene.camera.white_balance_k));
+                       white_balance(now_.camera.white_balance_k));
         readout_.times.gpu = renderer_.times();
     }
 
@@ -583,7 +585,7 @@ class Preview {
     std::optional<LiveSea::FloorWanted> floor_before(const View& view) const {
         constexpr int kSide = 512;  // half of a single picture's: each frame has one
         const bool is_below = frame_ && frame_->build->drawn->is_below(view);
-        if (!floor_ || !sky_ || controls_.scene.water.caustics == 0.0 ||
+        if (!floor_ || !sky_ || now_.water.caustics == 0.0 ||
             !(is_below || floor_->has_depths() || shows_floor(water_, static_cast<double>(water_.floor_m))))
             return {};
         return LiveSea::FloorWanted{.floor = floor_,
@@ -591,7 +593,7 @@ class Preview {
                                               .water = water_,
                                               .sun_direction = sky_->sky.sun_direction,
                                               .sun_angular_radius = sky_->sky.sun_angular_radius,
-                                              .gain = controls_.scene.water.caustics,
+                                              .gain = now_.water.caustics,
                                               .side = kSide,
                                               .is_below = is_below}};
     }
@@ -685,6 +687,7 @@ class Preview {
     WaterBody water_;
     std::shared_ptr<const Floor> floor_;  // null: the water has no body
     std::string water_from_, floor_from_;
+    Scene now_;  // the panel's at the frame that plays, without keys
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
     long uploaded_ = 0;  // the frame's number

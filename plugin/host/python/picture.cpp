@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/scene/budget.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "plugin/host/python/arrays.h"
 #include "plugin/host/python/bindings.h"
@@ -60,7 +61,7 @@ py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, st
                        machine::memory_limit_or(most_bytes), "this picture");
         // Half of the way is the sea's: the first frame is about as long in the making.
         Renderer renderer(
-            order.scene, order.options, make_sky(order.scene), frames,
+            order.scene, order.options, make_sky(scene_at(order.scene, frame)), frames,
             {.progress = [&](double done) { watch->tell(0.5 * done); }, .cancel = watch->flag()});
         renderer.render(
             frame, *drawn,

@@ -15,6 +15,7 @@
 #include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
@@ -162,6 +163,8 @@ py::dict described_key(const Key& key) {
             before.append(py::make_tuple(change.edition, to_python(key, change.before)));
     out["defaults_before"] = before;
     out["required"] = key.is_required;
+    out["may_have_keys"] = key.may_have_keys;
+    out["is_angle"] = key.is_angle;
     out["range"] = range_of(key);
     out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());
     out["logarithmic"] = key.soft && key.soft->is_logarithmic;
@@ -300,6 +303,11 @@ void add_scene(py::module_& module) {
             "recorded two cores, so that all machines of a farm choose alike; bake() and render_files() count this machine's. "
             "ValueError where nothing holds the budget, ShotError for a scene that can't "
             "be.")
+        .def(
+            "at", [](const Scene& self, double frame) { return scene_at(self, frame); }, py::arg("frame"),
+            "The scene of a frame: numbers that change over the shot, such as {\"keys\": [(1, 30.0), (48, 2.0)], "
+            "\"interpolation\": \"smooth\"}, as they are there. What has no frame, as Sky, WaterBody and GpuLight, wants "
+            "a scene like that.")
         .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(
             "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },

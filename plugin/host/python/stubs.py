@@ -168,6 +168,8 @@ def kind_of(key):
         kind = "Literal[" + ", ".join(f'"{choice}"' for choice in key["choices"]) + "]"
     else:
         kind = KINDS[key["type"]]
+    if key["may_have_keys"]:
+        kind += " | dict[str, Any]"
     if key["type"] == "integer" and key["other_word"]:
         kind += f' | Literal["{key["other_word"]}"]'
     return kind if key["required"] or key["default"] is not None else f"{kind} | None"

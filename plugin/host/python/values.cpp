@@ -7,8 +7,10 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/scene/names.h"
 #include "plugin/format/shot/shot.h"
 
 namespace pelagic::python {
@@ -35,6 +37,16 @@ struct ToPython {
             out[i] = made(*values);
         }
         return out;
+    }
+    // As a shot file has them.
+    py::object operator()(const NumberKeys& number) const {
+        py::tuple keys(number.keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            keys[i] = py::make_tuple(number.keys[i].frame, number.keys[i].value);
+        py::dict made;
+        made["keys"] = keys;
+        made["interpolation"] = std::string(word_of(number.interpolation));
+        return made;
     }
     // A path may be any bytes: those that aren't UTF-8 come as in Python's own names of files.
     py::object operator()(const std::string& text) const {
@@ -89,6 +101,28 @@ KeyEntry entry_from_python(const Key& list, const std::string& path, py::handle 
     return entry;
 }
 
+// As ToPython gives them; without an interpolation they are "linear".
+KeyValue number_keys_from_python(const Key& key, const std::string& path, const py::dict& given) {
+    NumberKeys number;
+    for (const auto& [name, value] : given) {
+        if (py::str(name).equal(py::str("interpolation"))) {
+            const auto word = py::isinstance<py::str>(value)
+                                  ? pelagic::choice_of<CameraInterpolation>(value.cast<std::string>())
+                                  : std::nullopt;
+            if (!word)
+                throw ShotError(text_of(unknown_word(pelagic::key_of("camera.interpolation"),
+                                                     path + ".interpolation", std::string(py::str(value)))));
+            number.interpolation = *word;
+            continue;
+        }
+        py::detail::make_caster<std::vector<std::pair<int, double>>> keys;
+        if (!py::str(name).equal(py::str("keys")) || !keys.load(value, true)) refuse_type(key, path, given);
+        for (const auto& [frame, at] : py::detail::cast_op<std::vector<std::pair<int, double>>&>(keys))
+            number.keys.push_back({frame, at});
+    }
+    return number;
+}
+
 KeyValue from_python(const Key& key, const std::string& path, py::handle given) {
     if (key.is_optional && given.is_none()) return {};
     switch (key.type) {
@@ -98,6 +132,8 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given) 
             if (!key.other_word.empty() && py::isinstance<py::str>(given)) return given.cast<std::string>();
             return cast_to<std::int64_t>(key, path, given);
         case KeyType::Number:
+            if (py::isinstance<py::dict>(given))
+                return number_keys_from_python(key, path, py::reinterpret_borrow<py::dict>(given));
             return cast_to<double>(key, path, given);
         case KeyType::Point:
             return cast_to<std::vector<double>>(key, path, given);

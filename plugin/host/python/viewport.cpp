@@ -23,6 +23,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
 #include "core/scene/canonical.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/projected_grid.h"
@@ -67,6 +68,7 @@ py::dict dict_of(const std::vector<Uniform>& uniforms) {
 
 struct GpuLight {
     explicit GpuLight(const Scene& scene) : made_from(light_content(scene)) {
+        refuse_keys(scene, "camera");
         sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky);

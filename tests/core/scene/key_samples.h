@@ -75,6 +75,10 @@ inline KeyValue another_value(const Key& key, const KeyValue& now) {
                 words.pop_back();
             return words;
         }
+        KeyValue operator()(NumberKeys number) const {
+            number.keys.back().value = moved(number.keys.back().value);
+            return number;
+        }
         KeyValue operator()(std::vector<KeyEntry> entries) const {
             entries.push_back(good_entry(key));
             return entries;

@@ -24,6 +24,7 @@
 #include "core/lighting/background.h"
 #include "core/lighting/lighting.h"
 #include "core/scene/keys.h"
+#include "core/scene/number_keys.h"
 #include "plugin/bake/bake.h"
 #include "plugin/files/files.h"
 #include "plugin/format/exr/exr.h"
@@ -284,6 +285,71 @@ TEST_F(StageLightTest, ANewPictureUnderTheSameNameIsNoticed) {
     write_sky(file, 1.0f);
     EXPECT_EQ(baked(scene), before);
     EXPECT_TRUE(text_of(folder_ / "a-b.sky.exr") == dome);
+}
+
+std::string part_of(const std::string& text, const std::string& from, const std::string& to) {
+    const std::size_t begin = text.find(from);
+    return begin == std::string::npos ? "" : text.substr(begin, text.find(to, begin) - begin);
+}
+
+// A light that changes: sun and dome of each frame are those of a stage of its plain numbers, and a sky that stays has no file a frame.
+TEST_F(StageLightTest, OfNumbersThatHaveKeysIsEachFramesOwn) {
+    Scene scene = small_scene();
+    scene.shot.first_frame = 1;
+    scene.shot.last_frame = 5;
+    set_value(scene, key_of("light.sun_elevation_deg"), NumberKeys{{{2, 10.0}, {4, -1.0}}});
+    set_value(scene, key_of("light.sun_azimuth_deg"), NumberKeys{{{2, 170.0}, {4, -160.0}}});
+    set_value(scene, key_of("camera.exposure_ev"), NumberKeys{{{1, 0.0}, {5, 3.0}}});
+    const std::string stage = baked(scene), sun = part_of(stage, "def DistantLight", "def DomeLight");
+    const std::string intensity = part_of(sun, "inputs:intensity.timeSamples", "}"),
+                      turn = part_of(sun, "rotateXYZ.timeSamples", "}"),
+                      dome = part_of(stage, "def DomeLight", "rotateXYZ");
+    std::map<int, std::string> domes;
+    for (const int frame : {1, 3, 4}) {
+        const std::string file = "a-b.sky.000" + std::to_string(frame) + ".exr",
+                          at = std::to_string(frame) + ": ";
+        EXPECT_NE(dome.find(at + "@./" + file + "@"), std::string::npos) << dome;
+        domes[frame] = text_of(folder_ / file);
+        fs::remove(folder_ / file);  // of another shot than those below
+    }
+    for (const int frame : {2, 5})
+        EXPECT_FALSE(fs::exists(folder_ / ("a-b.sky.000" + std::to_string(frame) + ".exr")));
+    EXPECT_NE(turn.find("3: (0, 85.49"), std::string::npos) << turn;
+    EXPECT_NE(turn.find("4: (0, 91, 200),"), std::string::npos) << turn;  // the short way on
+    EXPECT_NE(intensity.find("4: 0,"), std::string::npos) << intensity;
+    EXPECT_EQ(intensity.find("2: "), std::string::npos) << intensity;
+    for (const int frame : {1, 3}) {
+        Scene plain = scene_at(scene, frame);
+        const std::string of_plain = baked(plain);
+        const std::string told = part_of(part_of(of_plain, "def DistantLight", "def DomeLight"),
+                                         "float inputs:intensity = ", "\n");
+        EXPECT_NE(intensity.find(std::to_string(frame) + ": " +
+                                 told.substr(std::string("float inputs:intensity = ").size()) + ","),
+                  std::string::npos)
+            << intensity << told;
+        EXPECT_TRUE(text_of(folder_ / "a-b.sky.exr") == domes[frame]);
+    }
+}
+
+TEST_F(StageLightTest, KeysThatABakeCantSayAreRefused) {
+    const auto refusal = [&](const char* path, bool has_floor) {
+        Scene scene = small_scene();
+        if (has_floor) scene.sea.depth_m = 5.0, scene.output.maps = {MapKind::Floor};
+        set_value(scene, key_of(path), NumberKeys{{{1, 0.5}, {4, 0.6}}});
+        try {
+            baked(scene);
+        } catch (const std::invalid_argument& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    for (const char* path : {"water.chlorophyll_mg_m3", "effects.foam_old_opaque", "effects.foam_new_albedo"})
+        EXPECT_NE(refusal(path, false).find(std::string(path) + " = { keys = "), std::string::npos) << path;
+    EXPECT_EQ(refusal("water.caustics", false), "");
+    EXPECT_EQ(refusal("camera.exposure_ev", true), "");
+    EXPECT_NE(refusal("water.caustics", true).find("a map of the floor has one light for all frames"),
+              std::string::npos);
+    EXPECT_NE(refusal("light.sun_elevation_deg", true).find("a map of the floor"), std::string::npos);
 }
 
 // What the last light was made of is asked before it is used again: all that makes it must be in the answer.

@@ -20,6 +20,9 @@ struct IsJsonOf {
     bool operator()(std::int64_t) const { return json.is_number_integer(); }
     bool operator()(double number) const { return std::isfinite(number) ? json.is_number() : json.is_null(); }
     bool operator()(const std::string& text) const { return json == text; }
+    bool operator()(const NumberKeys& number) const {
+        return json.at("keys").size() == number.keys.size() && json.at("interpolation").is_string();
+    }
     template <class Element>
     bool operator()(const std::vector<Element>& list) const {
         return json.is_array() && json.size() == list.size();
@@ -31,6 +34,7 @@ TEST(Record, HasEveryKeyAsAValue) {
     scene.surface.size_m = 40.0;
     scene.surface.resolution = 16;
     scene.sea.swell = {{1.0, 9.0, 10.0}, {0.5, 7.0, 90.0}};
+    set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {9, 5.0}}});
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("pelagic-record-" + std::to_string(getpid()) + ".json");
     Record record;
@@ -49,6 +53,8 @@ TEST(Record, HasEveryKeyAsAValue) {
     EXPECT_EQ(settings.size(), found);
     EXPECT_EQ(settings.at("sea.swell")[1],
               (nlohmann::json{{"height_m", 0.5}, {"period_s", 7.0}, {"direction_deg", 90.0}}));
+    EXPECT_EQ(settings.at("light.turbidity"),
+              (nlohmann::json{{"keys", {{1, 2.0}, {9, 5.0}}}, {"interpolation", "linear"}}));
     EXPECT_EQ(settings.at("sea.wind_speed_mps"), 10);
     EXPECT_TRUE(settings.at("sea.depth_m").is_null()) << "infinite";
     EXPECT_TRUE(settings.at("waves.longest_m").is_null()) << "not given";

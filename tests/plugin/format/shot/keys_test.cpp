@@ -80,6 +80,56 @@ TEST(ShotKeys, OfEveryKeyAValueThatIsNoneOfItsTypeIsRefusedWithWhatIsAccepted) {
     }
 }
 
+// Every key: those whose numbers may change over the shot are read and written back, the others refuse keys in words, at their line.
+TEST(ShotKeys, TakeKeysWhereTheyMayAndRefuseThemElsewhere) {
+    for (const Key& key : keys()) {
+        SCOPED_TRACE(key.path);
+        const std::string ends = key.range ? value_text(key, test::value_at(key, key.range->low)) : "1";
+        const std::string keyed =
+            "{ keys = [[-5, " + ends + "], [7, " + ends + "]], interpolation = \"smooth\" }";
+        if (key.may_have_keys) {
+            const Scene scene = parse_shot(shot_with(key, keyed), kKeysData / "s.toml", no_check);
+            EXPECT_EQ(value_text(key, value_of(scene, key)), keyed);
+            EXPECT_EQ(canonical(parse_shot(shot_text(scene), kKeysData / "s.toml", no_check)),
+                      canonical(scene));
+        } else if (key.type == KeyType::Number) {
+            const std::string message = key_refusal(shot_with(key, keyed));
+            EXPECT_NE(message.find(key.path + " = { "), std::string::npos) << message;
+            EXPECT_NE(message.find("this number can't change over the shot yet; accepted: "),
+                      std::string::npos)
+                << message;
+        } else {
+            EXPECT_NE(key_refusal(shot_with(key, keyed)).find(key.path), std::string::npos);
+        }
+    }
+}
+
+TEST(ShotKeys, OfNumbersAreRefusedWithLineAndEntry) {
+    const auto refusal = [](const std::string& value) {
+        return key_refusal("[light]\n\nturbidity = " + value);
+    };
+    for (const auto& [value, said] :
+         {std::pair{"{ keys = [[1, 2.0], [1, 3.0]] }",
+                    "s.toml:3:33: light.turbidity.keys[1] = [1, 3]: does not come after"},
+          {"{ keys = [[1, 2.0], [0.5, 3.0]] }",
+           ":3:33: light.turbidity.keys[1] = [0.5, 3]: is no frame and its number"},
+          {"{ keys = [[1, 2.0], [9, 1e9]] }", "light.turbidity.keys[1] = [9, 1e9]: is outside the range"},
+          {"{ keys = [[1, 2.0], [9, nan]] }", "light.turbidity.keys[1] = [9, nan]: is not a number"},
+          {"{ keys = [[1, 2.0], [9, \"x\"]] }", "light.turbidity.keys[1] = \"x\": is a string"},
+          {"{ keys = [[1, 2.0, 3.0]] }", "light.turbidity.keys[0]"},
+          {"{ keys = [[9999999999, 2.0]] }", "light.turbidity.keys[0]"},
+          {"{ keys = [] }", "has no list of keys in it"},
+          {"{ }", "has no list of keys in it"},
+          {"{ keys = [[1, 2.0]], interpolation = \"smoth\" }", "the nearest is \"smooth\""},
+          {"{ keys = [[1, 2.0]], easing = 1 }", "light.turbidity.easing = 1: is an unknown key"},
+          {"{ keys = [[1, 2.0], [2, 3.0]] }\n[shot]\nloop_s = 2.0", "a loop has no beginning"}})
+        EXPECT_NE(refusal(value).find(said), std::string::npos) << value << '\n' << refusal(value);
+    EXPECT_NE(
+        key_refusal("sea.swell = [{ height_m = { keys = [[1, 0.1]] }, period_s = 9.0, direction_deg = 0.0 }]")
+            .find("sea.swell[0].height_m = { keys = [[1, 0.1]] }: has keys, and this number can't"),
+        std::string::npos);
+}
+
 class RandomValues {
   public:
     explicit RandomValues(unsigned seed) : random_(seed) {}

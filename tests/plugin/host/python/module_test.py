@@ -35,6 +35,31 @@ class Scene(unittest.TestCase):
         self.assertEqual((scene.output.attributes, scene.output.mesh), (("normal",), "usda"))
         self.assertEqual(scene.validate(), [])
 
+    def test_numbers_that_change_over_the_shot(self):
+        scene = pelagic.Scene()
+        scene.light.sun_elevation_deg = {"keys": [(1, 30.0), (5, 10.0)], "interpolation": "smooth"}
+        scene.camera.ev100 = {"keys": [(2, 12.0)]}
+        self.assertEqual(scene.light.sun_elevation_deg, {"keys": ((1, 30.0), (5, 10.0)), "interpolation": "smooth"})
+        self.assertEqual(scene.camera.ev100["interpolation"], "linear")
+        self.assertEqual(pelagic.Scene.from_text(scene.shot_text()).light.sun_elevation_deg, scene.light.sun_elevation_deg)
+        self.assertEqual((scene.at(3).light.sun_elevation_deg, scene.at(-9).camera.ev100), (20.0, 12.0))
+        for make in (pelagic.Sky, pelagic.GpuLight):
+            with self.assertRaisesRegex(ValueError, "has keys, and this shows one moment"):
+                make(scene)
+        pelagic.Sky(scene.at(3))
+        with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps"):
+            scene.sea.wind_speed_mps = {"keys": [(1, 8.0), (9, 22.0)]}
+        with self.assertRaisesRegex(ValueError, "smooth"):
+            scene.light.turbidity = {"keys": [(1, 2.0)], "interpolation": "smoth"}
+        for bad in ({"key": [(1, 2.0)]}, {"keys": [(1, 2.0, 3.0)]}, {"keys": [("a", 2.0)]}):
+            with self.assertRaises(TypeError):
+                scene.light.turbidity = bad
+        scene.light.turbidity = {"keys": [(5, 2.0), (1, 3.0)]}
+        self.assertIn("light.turbidity.keys[1] = [1, 3]: does not come after", scene.validate()[0])
+        scene.light.turbidity = 2.0
+        self.assertEqual(scene.validate(), [])
+        self.assertEqual([key["path"] for key in pelagic.keys() if key["may_have_keys"]].count("light.turbidity"), 1)
+
     def test_trains_have_a_range_of_their_own_or_none(self):
         scene = pelagic.Scene()
         self.assertEqual((scene.waves.trains, scene.waves.shortest_m, scene.waves.longest_m), (250, None, None))

@@ -1,0 +1,80 @@
+#include "core/scene/number_keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/scene/text.h"
+
+namespace pelagic {
+
+double value_at(const NumberKeys& number, bool is_angle, double frame) {
+    const auto& keys = number.keys;
+    const auto after = std::upper_bound(keys.begin(), keys.end(), frame,
+                                        [](double f, const NumberKeys::Key& key) { return f < key.frame; });
+    if (after == keys.begin()) return after->value;
+    const auto from = static_cast<std::size_t>(after - keys.begin()) - 1;
+    if (after == keys.end() || frame == keys[from].frame) return keys[from].value;
+    // In double: the difference of two ints may overflow an int.
+    const auto frames = [&](std::size_t i) { return static_cast<double>(keys[i + 1].frame) - keys[i].frame; };
+    const auto change = [&](std::size_t i) {
+        const double plain = keys[i + 1].value - keys[i].value;
+        return is_angle ? std::remainder(plain, 360.0) : plain;
+    };
+    const double t = (frame - keys[from].frame) / frames(from), whole = change(from);
+    double share = t * whole;
+    if (number.interpolation == CameraInterpolation::Smooth) {
+        // The slope at a key that keeps the cubics monotone: the weighted harmonic mean of the lines' beside it, 0 at a turn (Fritsch and
+        // Butland, SIAM J. Sci. Stat. Comput. 5, 1984), and at the ends.
+        const auto slope = [&](std::size_t i) {
+            if (i == 0 || i + 1 == keys.size()) return 0.0;
+            const double h = frames(i - 1), k = frames(i), a = change(i - 1) / h, b = change(i) / k;
+            if (!(a * b > 0.0)) return 0.0;
+            return 3.0 * (h + k) / ((2.0 * k + h) / a + (k + 2.0 * h) / b);
+        };
+        const double u = 1.0 - t, span = frames(from);
+        share = t * t * (3.0 - 2.0 * t) * whole + t * u * span * (u * slope(from) - t * slope(from + 1));
+    }
+    const double value = keys[from].value + share;
+    if (is_angle) return value;
+    // Rounding must not leave the keys' values, which may be a limit.
+    const auto [low, high] = std::minmax(keys[from].value, keys[from + 1].value);
+    return std::clamp(value, low, high);
+}
+
+Scene scene_at(const Scene& scene, double frame) {
+    Scene made = scene;
+    for (const KeyedNumber& number : scene.keyed) {
+        const Key& key = key_of(number.path);
+        key.set(made, value_at(number.keys, key.is_angle, frame));
+    }
+    return made;
+}
+
+void refuse_keys(const Scene& scene, std::string_view table) {
+    for (const KeyedNumber& number : scene.keyed)
+        if (number.path.starts_with(table))
+            throw std::invalid_argument(
+                number.path +
+                " has keys, and this shows one moment; accepted: a number, or the scene of a "
+                "frame (in Python scene.at(frame), in C++ scene_at())");
+}
+
+Scene without_keyed(Scene scene) {
+    for (const std::vector<KeyedNumber> keyed = scene.keyed; const KeyedNumber& number : keyed) {
+        const Key& key = key_of(number.path);
+        key.set(scene, key.fallback);
+    }
+    return scene;
+}
+
+std::string keyed_text(const Scene& scene, KeyPartSet parts, int frame) {
+    std::string text;
+    for (const Key& key : keys())
+        for (const KeyedNumber& number : scene.keyed)
+            if (number.path == key.path && (key.key_parts & parts).any())
+                text += key.path + " = " + number_text(value_at(number.keys, key.is_angle, frame)) + '\n';
+    return text;
+}
+
+}  // namespace pelagic

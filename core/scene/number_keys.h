@@ -1,0 +1,26 @@
+// Numbers that change over the shot. A frame's scene has plain numbers: what comes after it knows nothing of keys, and a frame alone is
+// that frame of a run.
+#pragma once
+
+#include "core/scene/keys.h"
+
+namespace pelagic {
+
+// The number at a frame: before the first key the first's, after the last the last's; between two on a straight line, or, with "smooth",
+// on a C1 cubic that stays between their values and stands still at the first and the last key. Of an angle [degrees] by the shorter of
+// the two ways from key to key.
+double value_at(const NumberKeys& number, bool is_angle, double frame);
+
+// The scene of a frame, without keys. Those of camera.keys stay: they are poses (core/surface/view.h).
+Scene scene_at(const Scene& scene, double frame);
+
+// For what shows one moment and isn't told which: throws std::invalid_argument, naming it, if a number of that table ("light"; "": of
+// any) has keys.
+void refuse_keys(const Scene& scene, std::string_view table = {});
+
+// A shot's text without its numbers that have keys, and theirs at a frame as lines of their own: a frame's fingerprint depends on no
+// other frame's values.
+Scene without_keyed(Scene scene);
+std::string keyed_text(const Scene& scene, KeyPartSet parts, int frame);
+
+}  // namespace pelagic

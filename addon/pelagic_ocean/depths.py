@@ -41,20 +41,15 @@ BOTH_WAYS = SKY_SLANT + 1.18  # with the way up to an eye at 45 degrees
 def add_depths(tree, part, foam, mirror, white, upwards, before_air):
     """Adds what connect() shows. foam: add_foam()'s; mirror, white: shaders, of the reflected light and of foam; upwards: the vertical;
     before_air: puts the air before a shader."""
-    def named(name, kind, inputs=(), **settings):
-        node = tree.node(kind, inputs, **settings)
-        node.name = node.label = name
-        return tree.value(node, 0)
-
     path, geometry = tree.node("ShaderNodeLightPath"), tree.node("ShaderNodeNewGeometry")
     # Outside, radiance is spread over n² times the angles; Cycles leaves that to the colour.
     out = tree.vector(1.0, 1.0, 1.0) * ((1.0 - part["Fresnel"]) * WATER_INDEX**-2)
     bent = tree.add("ShaderNodeBsdfRefraction", {"Color": out, "Roughness": 0.0, "IOR": WATER_INDEX,
                                                  "Normal": part["Normal"]}, distribution=compat.sharp_refraction())
     seen = tree.add("ShaderNodeAddShader", {0: mirror, 1: bent})
-    bubbles = named(upwelling.CLEAR_OUT, "ShaderNodeVectorMath", {0: (0.0, 0.0, 0.0), "Scale": 1.0 - part["Fresnel"]}, operation="SCALE")
-    named(upwelling.CLEAR_LIGHT, "ShaderNodeBsdfDiffuse", {"Color": bubbles, "Normal": upwards})
-    seen = named(upwelling.CLEAR_SUM, "ShaderNodeAddShader", {0: seen})
+    bubbles = tree.named(upwelling.CLEAR_OUT, "ShaderNodeVectorMath", {0: (0.0, 0.0, 0.0), "Scale": 1.0 - part["Fresnel"]}, operation="SCALE")
+    tree.named(upwelling.CLEAR_LIGHT, "ShaderNodeBsdfDiffuse", {"Color": bubbles, "Normal": upwards})
+    seen = tree.named(upwelling.CLEAR_SUM, "ShaderNodeAddShader", {0: seen})
     seen = before_air(tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: seen, 2: white}))
 
     # From below: nothing comes through beyond the critical angle, and within it radiance is n² times that of the sky. A facet has the same
@@ -77,11 +72,11 @@ def add_depths(tree, part, foam, mirror, white, upwards, before_air):
     # angle of refraction.
     cosine = tree.math("ABSOLUTE", tree.value(geometry, "Incoming").parts()[2])
     below = (1.0 - (1.0 - cosine * cosine) * WATER_INDEX**-2).sqrt()
-    extinction = named(EXTINCTION, "ShaderNodeCombineXYZ")
+    extinction = tree.named(EXTINCTION, "ShaderNodeCombineXYZ")
     # Only where it leaves the water the first time: beyond, its length is that of its way through air, too. Before, it has come through
     # the surface once, or not at all from a camera in the water.
     above = tree.value(path, "Transmission Depth").above(0.5)
-    in_water = tree.value(geometry, "Backfacing") * tree.math("ABSOLUTE", above - named(FROM_BELOW, "ShaderNodeValue"))
+    in_water = tree.value(geometry, "Backfacing") * tree.math("ABSOLUTE", above - tree.named(FROM_BELOW, "ShaderNodeValue"))
     in_water = in_water * (1.0 - tree.value(path, "Transparent Depth").above(0.5))
     longer_m = in_water * tree.value(path, "Ray Length") * (1.0 - cosine / below)
     let_in = (1.0 - add_fresnel(tree, cosine)) * (1.0 - foam["Hidden"])
@@ -94,9 +89,9 @@ def add_depths(tree, part, foam, mirror, white, upwards, before_air):
     is_shadow = tree.value(path, "Is Shadow Ray")
     from_below = tree.value(geometry, "Backfacing") * (1.0 - tree.value(path, "Is Camera Ray"))
     window = tree.add("ShaderNodeMixShader", {0: is_shadow, 1: inside, 2: straight})
-    named(SURFACE, "ShaderNodeMixShader", {0: is_shadow.at_least(from_below), 1: seen, 2: window})
-    named(VOLUME, "ShaderNodeAddShader", {0: named(ABSORPTION, "ShaderNodeVolumeAbsorption"),
-                                          1: named(SCATTERING, "ShaderNodeVolumeScatter")})
+    tree.named(SURFACE, "ShaderNodeMixShader", {0: is_shadow.at_least(from_below), 1: seen, 2: window})
+    tree.named(VOLUME, "ShaderNodeAddShader", {0: tree.named(ABSORPTION, "ShaderNodeVolumeAbsorption"),
+                                               1: tree.named(SCATTERING, "ShaderNodeVolumeScatter")})
 
 
 _clear_to_m = {}  # a water's text → clear_to_m()

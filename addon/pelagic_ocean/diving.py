@@ -4,21 +4,21 @@
 Nothing there bends light up to a critical angle and mirrors it beyond, and no light comes through the surface into a volume. So all that
 isn't an object of the artist's glows by the core's numbers: the surface by the sky that its facets let through and the water that they
 mirror, and water and floor by a picture of what the camera sees of both in each direction, which is the glow of a volume as wide as
-the floor, too: before the artist's objects it takes as much of their light away as it adds of its own. Cycles has its own (depths.py).
+the floor, too, where EEVEE can have one: before the artist's objects it takes as much of their light away as it adds of its own. Cycles has its own (depths.py).
 """
 
 import math
 
 import numpy as np
 
-from . import light
+from . import compat, light
 from .facets import WATER_INDEX, add_fresnel
 from .module import pelagic
 
 SURFACE, SHOWN = "Surface from Below", "Seen from Below"  # nodes of the water's material, the second only while it shows
-SKY, WATER = "Sky from Below", "Water Around the Camera"
+SKY, WATER, AHEAD = "Sky from Below", "Water Around the Camera", "Water before the Surface"
 SUN, SUN_LIGHT, ON_SEA = "Sun from Below", "Sunlight", "Light on the Sea"
-FOG = "Water before the Floor"  # of the floor's
+FOG = "Lost before the Eye"  # [1/m], of both
 PICTURE = "Pelagic Water"
 LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
 WIDTH = 256  # of the picture: what it has of the sun is wide
@@ -28,11 +28,6 @@ FOG_AT_M = 5.0
 
 def add_surface(tree, part, foam, above):
     """Adds what connect() shows. part, foam: of add_facets() and add_foam(); above: the shader of the surface from above."""
-    def named(name, kind, inputs=(), **settings):
-        node = tree.node(kind, inputs, **settings)
-        node.name = node.label = name
-        return tree.value(node, 0)
-
     geometry, facet, cosine = tree.node("ShaderNodeNewGeometry"), part["Normal"], part["Facet Cosine"]
     to_eye = tree.value(geometry, "Incoming")
     beyond = (1.0 - (1.0 - cosine * cosine) * WATER_INDEX**2).sqrt()
@@ -41,36 +36,39 @@ def add_surface(tree, part, foam, above):
     x, y, z = (facet * (cosine * WATER_INDEX - beyond) - to_eye * WATER_INDEX).parts()
     ray = tree.vector(x, y, z.at_least(1e-3)).normalized()
     # The chord of a small angle serves as well.
-    chord = (ray - named(SUN, "ShaderNodeCombineXYZ")).length() * (1.0 / SUN_WIDTH)
-    sun = named(SUN_LIGHT, "ShaderNodeRGB") * ((chord * chord * -0.5).at_least(-80.0).exp() * (1.0 / (2.0 * math.pi * SUN_WIDTH**2)))
+    chord = (ray - tree.named(SUN, "ShaderNodeCombineXYZ")).length() * (1.0 / SUN_WIDTH)
+    sun = tree.named(SUN_LIGHT, "ShaderNodeRGB") * ((chord * chord * -0.5).at_least(-80.0).exp() * (1.0 / (2.0 * math.pi * SUN_WIDTH**2)))
     x, y, z = (facet * (2.0 * cosine) - to_eye).parts()
-    mirrored = named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
-    seen = (named(SKY, "ShaderNodeTexEnvironment", {"Vector": ray}) + sun) * let + mirrored * kept
-    through_foam = named(ON_SEA, "ShaderNodeRGB") * (foam["Color"] * -LETS_THROUGH + (LETS_THROUGH,) * 3) * (1.0 / math.pi)
-    glow = tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: tree.add("ShaderNodeEmission", {"Color": seen}),
-                                            2: tree.add("ShaderNodeEmission", {"Color": through_foam})})
+    mirrored = tree.named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
+    seen = (tree.named(SKY, "ShaderNodeTexEnvironment", {"Vector": ray}) + sun) * let + mirrored * kept
+    through_foam = tree.named(ON_SEA, "ShaderNodeRGB") * (foam["Color"] * -LETS_THROUGH + (LETS_THROUGH,) * 3) * (1.0 / math.pi)
+    before = lambda seen: seen  # noqa: E731
+    if not compat.eevee_volumes_reach_far():  # then the surface has the water before it itself
+        away = tree.add("ShaderNodeCameraData", output="View Distance")
+        left = tree.vector(*[(-(each * away)).at_least(-80.0).exp() for each in tree.named(FOG, "ShaderNodeRGB").parts()])
+        x, y, z = (-to_eye).parts()
+        ahead = tree.named(AHEAD, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
+        before = lambda seen: tree.mix(left, ahead, seen)  # noqa: E731
+    glow = tree.add("ShaderNodeMixShader", {0: foam["Foam"], 1: tree.add("ShaderNodeEmission", {"Color": before(seen)}),
+                                            2: tree.add("ShaderNodeEmission", {"Color": before(through_foam)})})
     seen = tree.add("ShaderNodeMixShader", {0: tree.value(geometry, "Backfacing"), 1: above, 2: glow})
     # What is in the water has the lamps' light.
-    named(SURFACE, "ShaderNodeMixShader", {0: tree.add("ShaderNodeLightPath", output="Is Shadow Ray"), 1: seen,
+    tree.named(SURFACE, "ShaderNodeMixShader", {0: tree.add("ShaderNodeLightPath", output="Is Shadow Ray"), 1: seen,
                                            2: tree.add("ShaderNodeBsdfTransparent")})
 
 
 def add_floor(tree):
     """Adds what connect() shows of a floor, and before it."""
-    def named(name, kind, inputs=(), **settings):
-        node = tree.node(kind, inputs, **settings)
-        node.name = node.label = name
-        return tree.value(node, 0)
-
     x, y, z = (-tree.add("ShaderNodeNewGeometry", output="Incoming")).parts()
-    around = named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
-    lost = named(FOG, "ShaderNodeRGB")
-    most = tree.add("ShaderNodeVectorMath", {0: lost, 1: (1.0, 1.0, 1.0)}, "Value", operation="DOT_PRODUCT")
-    volume = tree.add("ShaderNodeAddShader", {
-        0: tree.add("ShaderNodeVolumeAbsorption", {"Color": lost * (-1.0 / most.at_least(1e-6)) + (1.0, 1.0, 1.0), "Density": most}),
-        1: tree.add("ShaderNodeEmission", {"Color": around * lost})})
-    node = tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeEmission", {"Color": around}),
-                                                  "Volume": volume}, target="EEVEE")
+    around = tree.named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
+    shown = {"Surface": tree.add("ShaderNodeEmission", {"Color": around})}
+    lost = tree.named(FOG, "ShaderNodeRGB")
+    if compat.eevee_volumes_reach_far():
+        most = tree.add("ShaderNodeVectorMath", {0: lost, 1: (1.0, 1.0, 1.0)}, "Value", operation="DOT_PRODUCT")
+        shown["Volume"] = tree.add("ShaderNodeAddShader", {
+            0: tree.add("ShaderNodeVolumeAbsorption", {"Color": lost * (-1.0 / most.at_least(1e-6)) + (1.0, 1.0, 1.0), "Density": most}),
+            1: tree.add("ShaderNodeEmission", {"Color": around * lost})})
+    node = tree.node("ShaderNodeOutputMaterial", shown, target="EEVEE")
     node.name = node.label = SHOWN
 
 
@@ -100,7 +98,11 @@ def connect(material, floor, scene, depth_m):
         socket.default_value = value
     _set(nodes[SUN_LIGHT], np.array(sky.sun_radiance) * math.pi * sky.sun_angular_radius**2)
     _set(nodes[ON_SEA], np.array(sky.sun_irradiance) + np.array(sky.sky_irradiance))
-    _set(below[FOG], [-math.log(max(part, 1e-6)) / FOG_AT_M for part in water.lets_through(FOG_AT_M)])
+    lost = [-math.log(max(part, 1e-6)) / FOG_AT_M for part in water.lets_through(FOG_AT_M)]
+    _set(below[FOG], lost)
+    if AHEAD in nodes:
+        nodes[AHEAD].image = nodes[WATER].image
+        _set(nodes[FOG], lost)
     floor.display_type = "TEXTURED"  # a view draws nothing else of it
 
 

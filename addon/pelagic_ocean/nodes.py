@@ -142,6 +142,12 @@ class Tree:
     def add(self, kind, inputs=(), output=0, **settings):
         return self.value(self.node(kind, inputs, **settings), output)
 
+    def named(self, name, kind, inputs=(), **settings):
+        """add() of a node that others find by its name."""
+        node = self.node(kind, inputs, **settings)
+        node.name = node.label = name
+        return self.value(node, 0)
+
     def value(self, node, output):
         return Value(self, node.outputs[output], self._columns[node])
 

@@ -228,7 +228,7 @@ std::vector<Preset> named_seas() {
     gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 150.0};
     gale.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 1.0};
     out.push_back(named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam",
-                        gale, {3.1, 3.9, 34.0, 48.0, 72.0, 240.0}, {.spray = true}));
+                        gale, {1.3, 2.9, 40.0, -5.0, -68.0, 20.0}, {.spray = true}));
 
     Scene southern;
     southern.sea.wind_speed_mps = 17.0;
@@ -236,7 +236,7 @@ std::vector<Preset> named_seas() {
     southern.sea.swell = {{5.0, 15.0, 20.0}, {2.0, 12.0, 320.0}};
     southern.light = {.sun_elevation_deg = 14.0, .sun_azimuth_deg = 300.0};
     out.push_back(named("southern-ocean", "Southern Ocean", "a gale over a swell as high as a house",
-                        southern, {1.3, 2.2, 32.0, 21.0, -76.0, 20.0}, {.spray = true}));
+                        southern, {2.2, 3.4, 44.0, 41.0, -48.0, 316.0}, {.spray = true}));
     return out;
 }
 

@@ -52,7 +52,6 @@ void take(Drawn& drawn, const KeyValue& value) {
         }
         void operator()(const NumberKeys& number) const {
             for (const NumberKeys::Key& key : number.keys) drawn.numbers.push_back(key.value);
-            drawn.words.insert(std::string(word_of(number.interpolation)));
         }
         void operator()(const std::vector<KeyEntry>& list) const {
             drawn.of_entries = std::max(drawn.of_entries, static_cast<int>(list.size()));

@@ -341,9 +341,6 @@ inline std::vector<Edit> edits_of(const BaseShot& base) {
         } else if (values.empty() && !(base.is_picture && key.path == "light.sky")) {
             values.push_back(another_value(key, now));
         }
-        if (key.may_have_keys && !values.empty())
-            if (const auto* number = std::get_if<double>(&values.front()))
-                values.emplace_back(NumberKeys{{{base.scene.shot.first_frame, *number}}});
         for (const KeyValue& value : values) {
             Scene changed = base.scene;
             if (value == now || set_value(changed, key, value)) continue;

@@ -49,7 +49,7 @@ class Bake:
         try:
             told = json.loads(self.record.read_text(encoding="utf-8"))
             shot = _scene_of(told["settings"])
-            self.scene, self.changing = shot.at(shot.shot.frames[0]), changing(shot)
+            self.scene, self.changing = shot.at(shot.shot.frames[0]), ocean.changing(shot)
             self.is_patch = told["settings"].get("surface.kind", "patch") == "patch"
             dense = told.get("dense_foam")  # since records tell it
             self.dense_foam = (float(dense["active"]), float(dense["left"])) if dense else None
@@ -114,13 +114,6 @@ def _at_most(halvings, quads, most):
     while halvings and quads << halvings > most:
         halvings -= 1
     return halvings
-
-
-def changing(scene):
-    """What Blender doesn't animate yet, in words, "" if nothing: the keys whose numbers change over the shot."""
-    paths = [key["path"] for key in pelagic.keys() if key["may_have_keys"]
-             and isinstance(getattr(getattr(scene, key["path"].split(".")[0]), key["name"]), dict)]
-    return f"Stays as at frame {scene.shot.frames[0]}, without the shot's keys: {', '.join(paths)}" if paths else ""
 
 
 def _scene_of(settings):

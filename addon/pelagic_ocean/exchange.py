@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import baked, cages, camera, light, ocean
+from . import cages, camera, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule
 from .query import first_ocean
@@ -150,8 +150,8 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        if baked.changing(shot):
-            self.report({"WARNING"}, baked.changing(shot))
+        if ocean.changing(shot):
+            self.report({"WARNING"}, ocean.changing(shot))
         if scene.sea.is_measured:
             obj.pelagic.sea.spectrum_file = str(Path(scene.sea.spectrum_file).absolute())
         if scene.light.sky != pelagic.Scene().light.sky:

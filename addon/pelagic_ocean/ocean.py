@@ -150,6 +150,13 @@ FOV_DEG = (1.0, 179.0)
 NARROWEST_TAN, WIDEST_TAN = (math.tan(math.radians(angle / 2)) for angle in FOV_DEG)
 
 
+def changing(scene):
+    """What Blender doesn't animate yet, in words, "" if nothing: the keys whose numbers change over the shot."""
+    paths = [key["path"] for key in pelagic.keys() if key["may_have_keys"]
+             and isinstance(getattr(getattr(scene, key["path"].split(".")[0]), key["name"]), dict)]
+    return f"Stays as at frame {scene.shot.frames[0]}, without the shot's keys: {', '.join(paths)}" if paths else ""
+
+
 @dataclass(frozen=True)
 class Pinhole:
     """A Blender camera as the core's: metres and axes in the ocean's own coordinates."""

@@ -148,7 +148,7 @@ def connect(obj, material, scene):
     if is_on:
         _set_floor(obj, scene)
     floor = next((child for child in obj.children if MARK in child), None)
-    diving.connect(material, floor, scene, obj.get(UNDER) if is_on else None)
+    diving.connect(material, floor, scene, obj.get(UNDER) if is_on and scene.water.body else None)
 
 
 def _set_floor(obj, scene):
@@ -177,7 +177,7 @@ def _add_floor(obj):
     tree = Tree(black.node_tree)
     # The volume is empty: the water is the sea's.
     tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeBsdfDiffuse", {"Color": (0.0, 0.0, 0.0, 1.0)}),
-                                           "Volume": tree.add("ShaderNodeVolumeAbsorption", {"Density": 0.0})}, target="CYCLES")
+                                           "Volume": tree.add("ShaderNodeVolumeAbsorption", {"Density": 0.0})})
     diving.add_floor(tree)
     mesh.materials.append(black)
     floor = bpy.data.objects.new("Pelagic Floor", mesh)

@@ -19,11 +19,12 @@ SURFACE, SHOWN = "Surface from Below", "Seen from Below"  # nodes of the water's
 SKY, WATER, AHEAD = "Sky from Below", "Water Around the Camera", "Water before the Surface"
 SUN, SUN_LIGHT, ON_SEA = "Sun from Below", "Sunlight", "Light on the Sea"
 FOG = "Lost before the Eye"  # [1/m], of both
-PICTURE = "Pelagic Water"
+GLOW, BETWEEN = "Light from the Floor", "Water in Between"  # of the floor's
+PICTURE, OWN_SKY = "Pelagic Water", "Pelagic Sky from Below"  # images, the second where the world is an artist's
 LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
 WIDTH = 256  # of the picture: what it has of the sun is wide
 SUN_WIDTH = 0.03  # by how much the sun behind a facet is blurred [rad]: of its disc next to no sample would find any
-FOG_AT_M = 5.0
+FOG_AT_M, DEEPEST_M = 5.0, 10e3
 
 
 def add_surface(tree, part, foam, above):
@@ -61,39 +62,29 @@ def add_floor(tree):
     """Adds what connect() shows of a floor, and before it."""
     x, y, z = (-tree.add("ShaderNodeNewGeometry", output="Incoming")).parts()
     around = tree.named(WATER, "ShaderNodeTexEnvironment", {"Vector": tree.vector(x, y, z.at_most(-1e-3))})
-    shown = {"Surface": tree.add("ShaderNodeEmission", {"Color": around})}
+    tree.named(GLOW, "ShaderNodeEmission", {"Color": around})
     lost = tree.named(FOG, "ShaderNodeRGB")
     if compat.eevee_volumes_reach_far():
         most = tree.add("ShaderNodeVectorMath", {0: lost, 1: (1.0, 1.0, 1.0)}, "Value", operation="DOT_PRODUCT")
-        shown["Volume"] = tree.add("ShaderNodeAddShader", {
+        tree.named(BETWEEN, "ShaderNodeAddShader", {
             0: tree.add("ShaderNodeVolumeAbsorption", {"Color": lost * (-1.0 / most.at_least(1e-6)) + (1.0, 1.0, 1.0), "Density": most}),
             1: tree.add("ShaderNodeEmission", {"Color": around * lost})})
-    node = tree.node("ShaderNodeOutputMaterial", shown, target="EEVEE")
-    node.name = node.label = SHOWN
 
 
 def connect(material, floor, scene, depth_m):
     """Makes EEVEE show the surface from below, the water and the floor (an object) to a camera this deep [m], None: to none."""
     nodes = material.node_tree.nodes
-    shown = nodes.get(SHOWN)
-    below = floor.data.materials[0].node_tree.nodes if floor is not None and floor.data.materials else {}
-    if depth_m is None or SURFACE not in nodes or FOG not in below:
-        if shown is not None:
-            nodes.remove(shown)
-        if FOG in below:
-            floor.display_type = "BOUNDS"
-            _set(below[FOG], (0.0, 0.0, 0.0))
+    floor_tree = floor.data.materials[0].node_tree if floor is not None and floor.data.materials else None
+    below = floor_tree.nodes if floor_tree else {}
+    is_shown = depth_m is not None and SURFACE in nodes and FOG in below
+    _show(material.node_tree, is_shown, {"Surface": SURFACE})
+    if FOG in below:
+        _show(floor_tree, is_shown, {"Surface": GLOW, "Volume": BETWEEN})
+        floor.display_type = "TEXTURED" if is_shown else "BOUNDS"  # a view draws nothing else of it
+    if not is_shown:
         return
-    if shown is None:
-        shown = nodes.new("ShaderNodeOutputMaterial")
-        shown.name = shown.label = SHOWN
-        shown.target = "EEVEE"
-        shown.location = nodes[SURFACE].location
-        shown.location.x += 200
-        material.node_tree.links.new(nodes[SURFACE].outputs[0], shown.inputs["Surface"])
-        shown.is_active_output = True
     sky, water = light.sky_of(scene), pelagic.WaterBody(scene)
-    nodes[WATER].image = below[WATER].image = light.packed_image(PICTURE, _around(sky, water, depth_m), nodes[WATER].image)
+    nodes[WATER].image = below[WATER].image = light.packed_image(PICTURE, _around(sky, water, min(float(depth_m), DEEPEST_M)), nodes[WATER].image)
     for socket, value in zip(nodes[SUN].inputs, sky.sun_direction):
         socket.default_value = value
     _set(nodes[SUN_LIGHT], np.array(sky.sun_radiance) * math.pi * sky.sun_angular_radius**2)
@@ -103,14 +94,36 @@ def connect(material, floor, scene, depth_m):
     if AHEAD in nodes:
         nodes[AHEAD].image = nodes[WATER].image
         _set(nodes[FOG], lost)
-    floor.display_type = "TEXTURED"  # a view draws nothing else of it
 
 
 def put_sky(material, scene, image):
     """The sky that shows through the surface. image: of the scene's sky, None: Blender has another one."""
     node = material.node_tree.nodes.get(SKY)
-    if node is not None and SHOWN in material.node_tree.nodes:
-        node.image = image or light.sky_image(node.image, light.sky_of(scene))
+    if node is None or SHOWN not in material.node_tree.nodes:
+        return
+    is_own = node.image is not None and node.image.name.startswith(OWN_SKY)
+    if image is not None:
+        node.image = image
+    elif not is_own or material.get(OWN_SKY) != repr(scene.light):
+        sky = light.sky_of(scene)
+        node.image = light.packed_image(OWN_SKY, sky.image(light.SKY_WIDTH), node.image if is_own else None)
+        material[OWN_SKY] = repr(scene.light)
+
+
+def _show(tree, is_shown, sources):
+    """An output for EEVEE of the nodes of these names by socket, those that there are, or none."""
+    output = tree.nodes.get(SHOWN)
+    if output is not None and not is_shown:
+        tree.nodes.remove(output)
+    elif output is None and is_shown:
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        output.name = output.label = SHOWN
+        output.target = "EEVEE"
+        for socket, name in sources.items():
+            if name in tree.nodes:
+                tree.links.new(tree.nodes[name].outputs[0], output.inputs[socket])
+                output.location = tree.nodes[name].location.x + 200, tree.nodes[name].location.y
+        output.is_active_output = True
 
 
 def _set(node, colour):

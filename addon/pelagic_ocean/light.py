@@ -168,7 +168,7 @@ def _put_sky(world, sky):
     global _put
     picture, disc = (world.node_tree.nodes.get(name) for name in (PICTURE, DISC))
     if picture is not None and (picture.image is None or _put != (picture.image.name_full, sky)):
-        picture.image = sky_image(picture.image, sky)
+        picture.image = _sky_image(picture.image, sky)
         _put = picture.image.name_full, sky
     if disc is not None:
         disc.inputs["Direction"].default_value = sky.sun_direction
@@ -196,7 +196,7 @@ def _disc(tree, asked):
     return {"Radiance": asked["Radiance"] * (inside * tree.add("ShaderNodeLightPath", output="Is Camera Ray"))}
 
 
-def sky_image(image, sky):
+def _sky_image(image, sky):
     return packed_image("Pelagic Sky", sky.image(SKY_WIDTH), image)
 
 

@@ -13,8 +13,8 @@ def first_ocean(bpy_scene):
 
 
 def camera_depth_m(obj, bpy_scene, depsgraph=None):
-    """How far below an ocean's level at rest the scene's camera is, to a centimetre, ≥ 0; None where it isn't below the surface, as that plays
-    just now; at rest where there is no sea yet."""
+    """How far below an ocean's level at rest the scene's camera is, to a centimetre and two digits, ≥ 0: its light changes little with less,
+    and is made anew for each. None where it isn't below the surface, as that plays just now; at rest where there is no sea yet."""
     if obj.pelagic.surface.kind == "cage" or obj.pelagic.own_mesh:  # whose water may lie anywhere
         return None
     pinhole = ocean.pinhole_of(obj, bpy_scene, depsgraph)
@@ -26,7 +26,7 @@ def camera_depth_m(obj, bpy_scene, depsgraph=None):
         surface = 0.0
     else:
         surface = Water(obj, bpy_scene).heights([(x, y)])[0]
-    return round(max(-z, 0.0), 2) if z < surface else None
+    return float(f"{round(max(-z, 0.0), 2):.2g}") if z < surface else None
 
 
 class Water:

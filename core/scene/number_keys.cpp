@@ -46,7 +46,9 @@ Scene scene_at(const Scene& scene, double frame) {
     Scene made = scene;
     for (const KeyedNumber& number : scene.keyed) {
         const Key& key = key_of(number.path);
-        key.set(made, value_at(number.keys, key.is_angle, frame));
+        double value = value_at(number.keys, key.is_angle, frame);
+        if (key.is_angle && !key.range->holds(value)) value -= std::copysign(360.0, value);
+        key.set(made, value);
     }
     return made;
 }

@@ -151,7 +151,7 @@ Preset beaufort(int number) {
     add(preset, "effects.whitecap_amount", force.foam);
     add_storm(preset, storm_of(number));
     // What amounts of foam add to the law's is drifting streaks, which have no bubbles below.
-    preset.values.push_back({"water.bubbles", 1.0 / force.foam, 3});
+    preset.values.push_back({"water.bubbles", std::round(100.0 / force.foam) / 100.0, 3});
     for (const auto& [path, value] : values_of(force.day)) add(preset, path, value);
     add_framing(preset, force.framing);
     return preset;

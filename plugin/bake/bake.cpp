@@ -25,6 +25,8 @@
 namespace pelagic {
 namespace {
 
+constexpr double kMostSkies = 10000.0;
+
 // The stage has one material, the record one foam and a map of the floor one light for all frames.
 std::vector<Problem> unbaked_keys(const Scene& scene) {
     const auto asks = [&](MapKind map) {
@@ -36,8 +38,12 @@ std::vector<Problem> unbaked_keys(const Scene& scene) {
         const bool is_foam = number.path.starts_with("effects.foam_"),
                    is_camera = number.path.starts_with("camera.");
         const bool is_plankton = number.path == "water.chlorophyll_mg_m3";
+        const auto [first, last] = light_keys(scene);
+        const bool is_endless = scene.output.mesh != MeshFormat::None && number.path.starts_with("light.") &&
+                                static_cast<double>(last) - first > kMostSkies;
         const char* what =
-            is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
+            is_endless ? "changes over more than ten thousand frames, and a bake's stage has a sky for each"
+            : is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
                 ? "changes over the shot, and what a bake says of water and foam is one for all frames"
             : !is_foam && !is_camera && asks(MapKind::Floor)
                 ? "changes over the shot, and a map of the floor has one light for all frames"
@@ -62,7 +68,12 @@ void refuse_own_sky(const Scene& scene, const std::filesystem::path& out) {
     if (scene.output.mesh == MeshFormat::None || scene.light.sky == Light{}.sky) return;
     const std::filesystem::path ours = out / usd::sky_file(scene.shot.name);
     std::error_code error;
-    if (std::filesystem::equivalent(ours, scene.light.sky, error))
+    const std::filesystem::path picture = scene.light.sky;
+    const std::string name = picture.filename().string();
+    const bool is_of_a_frame =
+        name.starts_with(scene.shot.name + ".sky.") && name.ends_with(".exr") &&
+        std::filesystem::equivalent(out, picture.has_parent_path() ? picture.parent_path() : ".", error);
+    if (is_of_a_frame || std::filesystem::equivalent(ours, picture, error))
         throw std::invalid_argument(
             "light.sky = \"" + scene.light.sky +
             "\" is the file that this bake writes its stage's sky to: give the picture "

@@ -247,6 +247,19 @@ std::size_t camera_layer_bytes(const Scene& scene) {
     return bytes;
 }
 
+std::pair<int, int> light_keys(const Scene& scene) {
+    std::pair<int, int> frames{scene.shot.first_frame, scene.shot.first_frame};
+    bool is_first = true;
+    for (const KeyedNumber& number : scene.keyed) {
+        if (!number.path.starts_with("light.")) continue;
+        const auto& keys = number.keys.keys;
+        frames = {is_first ? keys.front().frame : std::min(frames.first, keys.front().frame),
+                  is_first ? keys.back().frame : std::max(frames.second, keys.back().frame)};
+        is_first = false;
+    }
+    return frames;
+}
+
 void prepare_light(const Scene& scene) {
     light_of(scene_at(scene, scene.shot.first_frame));
 }
@@ -258,8 +271,10 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
     const bool is_changing = has_changing_light(scene);
     std::vector<usd::FrameLight> light;
     std::optional<Scene> lit;
-    for (int frame = scene.shot.first_frame;
-         frame <= (is_changing ? scene.shot.last_frame : scene.shot.first_frame); ++frame) {
+    const auto [first_key, last_key] = light_keys(scene);
+    const int last = is_changing ? std::min(scene.shot.last_frame, last_key) : scene.shot.first_frame;
+    for (int frame = scene.shot.first_frame; frame <= std::max(last, scene.shot.first_frame);
+         frame = std::max(frame + 1, std::min(first_key, last))) {
         Scene now = scene_at(scene, frame);
         if (lit && same_sky(*lit, now)) continue;
         lit = std::move(now);

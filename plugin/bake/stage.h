@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "core/plan/plan.h"
 #include "pelagic/scene.h"
@@ -14,6 +15,9 @@ namespace pelagic {
 // Finds the light that the stage will have, before anything else is done: a picture of a sky may be no such thing.
 // Throws as make_sky() does. write_stage() takes it from here.
 void prepare_light(const Scene& scene);
+
+// The first and the last frame at which light has keys; the shot's first where it has none. Between them a stage has a sky for each frame.
+std::pair<int, int> light_keys(const Scene& scene);
 
 // How large the camera's layer becomes [bytes].
 std::size_t camera_layer_bytes(const Scene& scene);

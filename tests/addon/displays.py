@@ -66,6 +66,7 @@ for preset, elevation_deg, azimuth_deg in SHOTS if at_night() else SHOTS[:2]:
     scene = pelagic.Scene()
     scene.apply_preset(preset)
     scene.shot.name, scene.shot.frames = preset, (1, 1)
+    scene.effects.spray = False  # the veil before the sea, which Blender has as a bake's volume
     scene.light.sun_elevation_deg, scene.light.sun_azimuth_deg = elevation_deg, azimuth_deg
     scene.camera.position_m, scene.camera.look_at_m = (0.0, 0.0, 8.0), (0.0, 100.0, 0.0)
     shot = FOLDER / f"{preset}.toml"

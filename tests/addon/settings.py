@@ -228,6 +228,7 @@ with checking("the settings of every example go in and come out the same"):
     assert len(examples) > 5
     for path in examples:
         shot = pelagic.Scene.from_file(path)
+        shot = shot.at(shot.shot.frames[0])  # Blender has no keys of numbers yet
         ocean.set_from(obj, shot)
         again = ocean.scene_of(obj, scene)
         for field in properties.FIELDS:

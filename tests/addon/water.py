@@ -211,3 +211,18 @@ with checking("a dive: deep water is a volume while the camera is below its surf
             assert np.allclose(around[0].mean(0), down, rtol=0.03), (around[0].mean(0), down)  # rows from the bottom
     above, below = (False, 0, 0.0, False), (True, 1, 1.0, True)
     assert found == [above, below, above, below, above], (surface, found)
+
+with checking("a dive with See Through by hand in water without a body, and one under another world's sky"):
+    fresh_file()
+    obj, camera = add_ocean(horizon=True), bpy.context.scene.camera
+    obj.pelagic.see_through = True
+    camera.location = (0.0, 0.0, -12.345)
+    bpy.context.view_layer.update()
+    nodes = obj.data.materials[0].node_tree.nodes
+    assert diving.SHOWN in nodes and obj[depths.UNDER] == 12.0, obj.get(depths.UNDER)
+    bpy.context.scene.world = bpy.data.worlds.new("Somebody's")
+    change(obj, light__sun_elevation_deg=33.0)
+    assert nodes[diving.SKY].image.name.startswith(diving.OWN_SKY), nodes[diving.SKY].image
+    change(obj, water__body=False)
+    assert diving.SHOWN not in nodes
+    assert not any(node.name == diving.SHOWN for child in obj.children for node in child.data.materials[0].node_tree.nodes)

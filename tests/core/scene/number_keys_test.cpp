@@ -40,6 +40,23 @@ TEST(NumberKeys, GoTheShortWayRound) {
     }
 }
 
+TEST(NumberKeys, OfAnAngleStayInItsRange) {
+    const Key& key = key_of("light.sun_azimuth_deg");
+    for (const double sign : {1.0, -1.0}) {
+        Scene scene;
+        ASSERT_FALSE(
+            set_value(scene, key, NumberKeys{{{1, sign * 999990.0}, {6, sign * 999720.0}}, kLinear}));
+        for (const double frame : {1.0, 2.0, 3.5, 5.9, 6.0}) {
+            EXPECT_TRUE(validate(scene_at(scene, frame)).empty()) << frame;
+            EXPECT_NEAR(std::remainder(scene_at(scene, frame).light.sun_azimuth_deg -
+                                           sign * (999990.0 + 18.0 * (frame - 1.0)),
+                                       360.0),
+                        0.0, 1e-6)
+                << frame;
+        }
+    }
+}
+
 // Smooth: monotone between keys, so never beyond them, and without a jump of its slope, the ends' frames included.
 TEST(NumberKeys, AreSmoothAndNeverBeyondTheirValues) {
     std::mt19937 random(7);

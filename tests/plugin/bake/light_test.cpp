@@ -182,9 +182,9 @@ class StageLightTest : public ::testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    std::string baked(const Scene& scene) const {
+    std::string baked(const Scene& scene, const std::vector<int>& frames = {}) const {
         const RunReport report =
-            bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
+            bake(scene, {.out = folder_, .frames = frames, .progress = {}, .cancel = nullptr});
         EXPECT_EQ(report.foreign, std::vector<std::string>{});
         return text_of(report.root);
     }
@@ -350,6 +350,28 @@ TEST_F(StageLightTest, KeysThatABakeCantSayAreRefused) {
     EXPECT_NE(refusal("water.caustics", true).find("a map of the floor has one light for all frames"),
               std::string::npos);
     EXPECT_NE(refusal("light.sun_elevation_deg", true).find("a map of the floor"), std::string::npos);
+}
+
+// Of a long range only the frames between keys are looked at, and there mustn't be endlessly many.
+TEST_F(StageLightTest, KeysOverALongRangeCostWhatChanges) {
+    Scene scene = small_scene();
+    scene.shot.first_frame = -10'000'000;
+    scene.shot.last_frame = 10'000'000;
+    set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {3, 4.0}}});
+    EXPECT_NE(baked(scene, {2}).find("a-b.sky.0003.exr"), std::string::npos);
+    set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {20'000, 4.0}}});
+    EXPECT_THROW(baked(scene, {2}), std::invalid_argument);
+    EXPECT_LT(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 20);
+}
+
+TEST_F(StageLightTest, DoesNotReplaceThePictureThatItsSkiesAreMadeOf) {
+    Scene scene = small_scene();
+    scene.light.sky = folder_ / "a-b.sky.0003.exr";
+    write_sky(scene.light.sky, 1.0f);
+    set_value(scene, key_of("light.sky_gain"), NumberKeys{{{1, 1.0}, {4, 0.5}}});
+    const std::string before = text_of(scene.light.sky);
+    EXPECT_THROW(baked(scene), std::invalid_argument);
+    EXPECT_TRUE(text_of(scene.light.sky) == before);
 }
 
 // What the last light was made of is asked before it is used again: all that makes it must be in the answer.

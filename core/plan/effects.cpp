@@ -103,10 +103,8 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .plan =
          [](Plan& plan) {
              if (asks_for(plan, foam_products()))
-                 // What broke is summed by cells of the mesh's breaking, in pictures too.
                  plan.foam =
-                     plan_foam(plan.from->scene, breaking_of(plan.from->scene, plan.filter).footprint_m,
-                               plan.knobs.foam_steps_a_period);
+                     plan_foam(plan.from->scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
              // Nobody but pictures looks at them.
              const auto is_picture = [](const PlannedQuery& planned) { return planned.query.is_picture; };
              if (plan.foam && has_bubbles(plan.from->scene) && std::ranges::any_of(plan.queries, is_picture))

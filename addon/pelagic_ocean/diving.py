@@ -24,7 +24,8 @@ PICTURE, OWN_SKY = "Pelagic Water", "Pelagic Sky from Below"  # images, the seco
 LETS_THROUGH = 0.5  # kFoamLetsThrough of below.glsl
 WIDTH = 256  # of the picture: what it has of the sun is wide
 SUN_WIDTH = 0.03  # by how much the sun behind a facet is blurred [rad]: of its disc next to no sample would find any
-FOG_AT_M, DEEPEST_M = 5.0, 10e3
+FOG_AT_M = 5.0  # one decay for all distances: that of what is so far away, where a diver sees
+DEEPEST_M = 10e3  # of pelagic.water_radiance()
 
 
 def add_surface(tree, part, foam, above):

@@ -60,11 +60,11 @@ void for_each_bake_file(const fs::path& folder, const std::function<void(const s
             const std::string extension = entry.path().extension().string();
             // Pictures and whatever people keep beside their bakes are none of a bake's business.
             const bool is_bakes =
-                *below != '\0' ? extension == ".usda" || extension == ".usdc" || extension == ".exr" ||
-                                     extension == ".vdb"
-                               : extension == ".usda" || extension == ".json" ||
-                                     name.ends_with(".camera.usdc") || name.ends_with(".sky.exr") ||
-                                     (name.ends_with(".exr") && name.find(".sky.") != std::string::npos);
+                *below != '\0'
+                    ? extension == ".usda" || extension == ".usdc" || extension == ".exr" ||
+                          extension == ".vdb"
+                    : extension == ".usda" || extension == ".json" || name.ends_with(".camera.usdc") ||
+                          (name.ends_with(".exr") && name.find(".sky.") != std::string::npos);
             if (is_bakes && !name.starts_with('.')) take(below + name);
         }
     }

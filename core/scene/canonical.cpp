@@ -27,11 +27,7 @@ std::string content_text(const MeasuredSpectrum& measured) {
 std::string canonical(const Scene& scene, KeyPartSet parts) {
     std::string text;
     for (const Key& key : keys()) {
-        if ((key.key_parts & parts).none()) continue;
-        // Waves that are added up one by one have neither.
-        if (scene.waves.model == WaveModel::Trochoid &&
-            (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
-            continue;
+        if (!has_say(scene, key, parts)) continue;
         std::string value;
         if (key.type == KeyType::DataFile) {
             if (scene.sea.measured && key.path == kSpectrumFile) value = content_text(*scene.sea.measured);

@@ -8,7 +8,7 @@
 
 namespace pelagic {
 
-// Every key that has a value and that one of these parts depends on: one "key = value" a line, in the order of the
+// Every key that has a value and a say in one of these parts: one "key = value" a line, in the order of the
 // table of keys, numbers in their shortest exact form. A measured spectrum stands with all its bins in the line of
 // its file, whose path does not count. Scenes with the same text are the same as far as these parts are concerned.
 std::string canonical(const Scene& scene, KeyPartSet parts);

@@ -285,10 +285,18 @@ std::variant<double, std::string> DescribedKey::number_or_text() const {
     return text;
 }
 
+bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
+    // Waves that are added up one by one have neither.
+    if (scene.waves.model == WaveModel::Trochoid &&
+        (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
+        return false;
+    return (key.key_parts & parts).any();
+}
+
 std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts) {
     std::vector<DescribedKey> out;
     for (const Key& key : keys()) {
-        if ((key.key_parts & parts).none()) continue;
+        if (!has_say(scene, key, parts)) continue;
         if (key.type == KeyType::DataFile) {
             if (const auto& cage = scene.surface.cage; cage && key.path == kCageFile)
                 out.push_back({"surface.cage", cage->content(), quoted_text(cage->content())});

@@ -195,7 +195,10 @@ struct DescribedKey {
     std::variant<double, std::string> number_or_text() const;
 };
 
-// The keys that these parts depend on and that have a value. A measured spectrum is described by its station and
+// Whether one of these parts depends on the key in this scene. What has none is neither in a fingerprint nor in a header: a
+// file that is kept must be the one that would be made again.
+bool has_say(const Scene& scene, const Key& key, KeyPartSet parts);
+// The keys that have a say in these parts and a value. A measured spectrum is described by its station and
 // time, a cage by its content (Cage::content), not by their files.
 std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts);
 // The same as attributes of a file's header: {"pelagic.sea.fetch_m", a number or a text}.

@@ -160,7 +160,10 @@ std::string explain(const Plan& plan) {
                        is_on && row.about ? ("; " + row.about(plan)).c_str() : "");
     }
 
-    if (plan.trains) page += "\nWave trains\n" + trains_text(plan);
+    if (plan.trains && plan.trains->count > 0) page += "\nWave trains\n" + trains_text(plan);
+    if (plan.trains && plan.trains->hero_trains > 0)
+        page += format("\nHero waves\n  %zu, of %d trains of their own, summed at each point\n",
+                       plan.from->scene.waves.heroes.size(), plan.trains->hero_trains);
 
     page += "\nCascades and their transforms\n";
     if (plan.cascades.empty())

@@ -41,7 +41,7 @@ std::string plan_text(const Plan& plan, int query_index) {
     // Until the law did, the cube of the wind said how much each place has.
     if (has_foam && plan.gusts && !query.only_cascade) text += "gusts by the law\n";
     const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';
-    if (plan.trains && !query.only_cascade)
+    if (plan.trains && plan.trains->count > 0 && !query.only_cascade)
         text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +
                 ' ' + number_text(plan.trains->shortest_m) + '\n';
     if (query.lattice)

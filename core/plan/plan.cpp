@@ -382,7 +382,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
         if (!query.is_view) trains_finest_m = std::min(trains_finest_m, own_m);
     }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
-    if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(prepared, trains_finest_m);
+    plan.trains = resolve_trains(prepared, trains_finest_m);
     const auto sizes = resolve_cascades(prepared, finest_footprint_m, plan.filter);
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);

@@ -113,8 +113,9 @@ struct Plan {
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
-    std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
-    double lean_rad = 0.0;             // by which the horizontal displacement runs ahead
+    std::optional<TrainsPlan>
+        trains;             // the second wave model, where cascades begin where its waves end, and heroes
+    double lean_rad = 0.0;  // by which the horizontal displacement runs ahead
     double second_order_gain = 0.0;
     std::optional<FoamPlan> foam;        // with persistent foam, where a query asks for any of it
     std::optional<GustsPlan> gusts;      // where the wind varies over the surface

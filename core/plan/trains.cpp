@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/constants.h"
 #include "core/plan/fields.h"
@@ -66,12 +67,14 @@ std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
     // and the weight in breaking; its moments alone and in both running sums, and the eight that a pixel hides, alone and in
     // one sum. A sum has one entry more than there are trains.
     constexpr std::size_t kUnresolved = 8;
-    const auto trains = static_cast<std::size_t>(count);
+    const auto trains = static_cast<std::size_t>(count + hero_trains);
     return trains * (7 * sizeof(double) + (kFieldCount + 2) * scalar) +
            (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kUnresolved * scalar;
 }
 
-TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint_m) {
+namespace {
+
+TrainsPlan model_trains(const PreparedScene& prepared, double finest_footprint_m) {
     const Waves& waves = prepared.scene.waves;
     const DirectionalSpectrum& spectrum = prepared.spectrum;
     const double nyquist_m = FootprintFilter{}.n_min * finest_footprint_m;
@@ -99,6 +102,20 @@ TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint
         plan.wavelengths_m.push_back(mean_wavelength_m(spectrum, plan.edge_m(i), plan.edge_m(i + 1)));
         plan.below_pixel += plan.wavelengths_m.back() < nyquist_m;
     }
+    return plan;
+}
+
+}  // namespace
+
+std::optional<TrainsPlan> resolve_trains(const PreparedScene& prepared, double finest_footprint_m) {
+    const Waves& waves = prepared.scene.waves;
+    const bool has_heroes = !waves.heroes.empty() && !prepared.spectrum.empty();
+    if (waves.model != WaveModel::Trochoid && !has_heroes) return std::nullopt;
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    TrainsPlan plan = waves.model == WaveModel::Trochoid
+                          ? model_trains(prepared, finest_footprint_m)
+                          : TrainsPlan{.longest_m = kInfinite, .shortest_m = kInfinite};
+    if (has_heroes) plan.hero_trains = kHeroTrains;
     return plan;
 }
 

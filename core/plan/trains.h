@@ -9,11 +9,15 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/plan/prepared_scene.h"
 
 namespace pelagic {
+
+// Of all heroes of a sea together. Far from them they are 1/√(2 kHeroTrains) of a hero's height, rms.
+inline constexpr int kHeroTrains = 200;
 
 struct TrainsPlan {
     int count = 0;
@@ -23,6 +27,8 @@ struct TrainsPlan {
     // Bin i, 0 … count − 1, longest first: its longer edge (edge_m(count) is shortest_m), and its train.
     double edge_m(int i) const;
     std::vector<double> wavelengths_m{};
+
+    int hero_trains = 0;  // besides those: of waves.heroes
 
     // What a Sea holds of them (Trains<T>, core/waves/trains.h).
     std::size_t sea_bytes(bool double_precision) const;
@@ -37,6 +43,8 @@ struct TrainsPlan {
 // A scene that gives one end keeps it, and the other stays a factor of ten away. A given range may leave
 // fewer than ten trains, or none, below the pixel: then what a pixel hides is mostly the integrated
 // remainder. finest_footprint_m ≥ 0, of all queries; 0 (nothing is filtered) or infinite: nobody looks, 2 cm.
-TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint_m);
+// With the fft model only heroes have trains: count is 0, and both edges are infinite, so that all of the spectrum is outside.
+// None: the scene has neither.
+std::optional<TrainsPlan> resolve_trains(const PreparedScene& prepared, double finest_footprint_m);
 
 }  // namespace pelagic

@@ -13,10 +13,16 @@
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
+#include "core/waves/hero_waves.h"
 #include "core/waves/whitecaps.h"
 
 namespace pelagic {
 namespace {
+
+// 1 − J at a hero's top beyond which its sides cross.
+constexpr double kSteepestHero = 0.9;
+// In deviations: one crest in exp(½·5²) ≈ 270 000 waves is higher.
+constexpr double kHighestHero = 5.0;
 
 // Of a sea with these moments, whose displacement gradient is multiplied by `gain`.
 double share_of(const SpectralMoments& all, double gain) {
@@ -165,6 +171,36 @@ std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
             " m (effects.breaking_from_m), have no choppiness; waves.cascades[].choppiness gives them some"};
 }
 
+std::vector<std::string> hero_warning(const PreparedScene& prepared) {
+    const std::vector<HeroWave>& heroes = prepared.scene.waves.heroes;
+    if (heroes.empty()) return {};
+    if (prepared.spectrum.empty())
+        return {"the sea is calm and has no wave to raise: waves.heroes has nothing to stand in"};
+    std::vector<std::string> warnings;
+    const auto tenths = [](double value) { return number_text(std::floor(10.0 * value) / 10.0); };
+    const double deviation_m = std::sqrt(prepared.spectrum.m0()),
+                 folds_m = kSteepestHero / (Choppiness::asked(prepared.scene).largest() *
+                                            hero_steepness_per_m(prepared.spectrum));
+    const std::vector<HeroTrain> trains = hero_trains(prepared, std::vector<LocalWaves>(heroes.size()));
+    for (std::size_t h = 0; h < heroes.size(); ++h) {
+        const HeroWave& hero = heroes[h];
+        const std::string name =
+            "waves.heroes[" + std::to_string(h) + "].height_m = " + number_text(hero.height_m) + ": ";
+        const double stands_m =
+            local_waves(trains, {hero.east_m, hero.north_m}, hero_time_s(prepared.scene, hero)).height_m;
+        if (std::abs(stands_m - hero.height_m) > 0.05 * std::abs(hero.height_m))
+            warnings.push_back(name + "other heroes are too near, in place and time, and make it " +
+                               tenths(stands_m) + " m high");
+        if (hero.height_m > folds_m)
+            warnings.push_back(name + "the crest folds over itself at its top; at most " + tenths(folds_m) +
+                               " m in this sea, or a lower waves.choppiness");
+        else if (std::abs(hero.height_m) > kHighestHero * deviation_m)
+            warnings.push_back(name + "no such sea has one as high; at most " +
+                               tenths(kHighestHero * deviation_m) + " m is met, or a higher sea");
+    }
+    return warnings;
+}
+
 }  // namespace
 
 double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
@@ -173,8 +209,8 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more :
-         {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning})
+    for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
+                       &hero_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
         warnings.push_back(std::move(thin));

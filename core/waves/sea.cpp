@@ -4,14 +4,18 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <complex>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <mutex>
 #include <utility>
 
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
+#include "core/plan/random_tiling.h"
 #include "core/spectrum/cell_energies.h"
 #include "core/waves/breaking_rate.h"
+#include "core/waves/hero_waves.h"
 #include "core/waves/level_sums.h"
 #include "core/waves/mode_kernels.h"
 #include "core/waves/whitecaps.h"
@@ -82,6 +86,79 @@ Cascade<T> empty_cascade(const CascadePlan& planned, bool has_gradients) {
 
 }  // namespace
 
+// What a cascade's waves have at a place at rest: a sum over its modes for each tile that is blended there.
+template <class T>
+LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, uint tiling_key,
+                       double lean_rad, const Dispersion& dispersion, glm::dvec2 place_m, double time_s) {
+    LocalWaves sum;
+    if (cascade.radius == 0) return sum;
+    struct Tile {
+        std::int64_t cell;
+        double weight, slope_per_m;
+    };
+    const auto tiles = [&](double at_m) {
+        const TilePlace place = tile_place(at_m / cascade.size_m);
+        if (!planned.has_random_tiling) return std::vector<Tile>{{0, 1.0, 0.0}};
+        const double side = place.from_middle < 0.0 ? -1.0 : 1.0;
+        const BlendWeights<double> weights = blend_weights(std::abs(place.from_middle));
+        const double rate_per_m = side * weights.rate / cascade.size_m;
+        std::vector<Tile> found{{place.cell, weights.own, -weights.next * rate_per_m}};
+        if (weights.next > 0.0)
+            found.push_back(
+                {place.cell + static_cast<std::int64_t>(side), weights.next, weights.own * rate_per_m});
+        return found;
+    };
+    const double step = kTwoPi / cascade.size_m;
+    const std::complex<double> leaning = std::polar(1.0, lean_rad);
+    for (const Tile& x : tiles(place_m.x))
+        for (const Tile& y : tiles(place_m.y)) {
+            const TileOffset<double> offset =
+                planned.has_random_tiling
+                    ? tile_offset<double>(tiling_key, static_cast<uint>(x.cell), static_cast<uint>(y.cell))
+                    : TileOffset<double>(0.0, 0.0);
+            const auto part_of_turn = [](double turns) { return kTwoPi * (turns - std::floor(turns)); };
+            const double at_x = part_of_turn(place_m.x / cascade.size_m + offset.x),
+                         at_y = part_of_turn(place_m.y / cascade.size_m + offset.y);
+            std::vector<LocalWaves> columns(static_cast<std::size_t>(cascade.radius));
+            tbb::parallel_for(0, cascade.radius, [&](int mx) {
+                LocalWaves& column = columns[static_cast<std::size_t>(mx)];
+                const int height = half_height(cascade.radius, mx);
+                for (int my = -height; my <= height; ++my) {
+                    if (!counts_as_wave(mx, my)) continue;
+                    const std::size_t mode = cascade.middle(mx) + my;
+                    const double turns = cascade.cycles_per_s[mode] * time_s;
+                    const std::complex<double> turn = std::polar(1.0, -part_of_turn(turns)),
+                                               forward(cascade.forward_re[mode], cascade.forward_im[mode]),
+                                               backward(cascade.backward_re[mode], cascade.backward_im[mode]),
+                                               place = std::polar(2.0, mx * at_x + my * at_y);
+                    const std::complex<double> wave = (forward * turn + backward * std::conj(turn)) * place,
+                                               later = (forward * turn * std::conj(leaning) +
+                                                        backward * std::conj(turn) * leaning) *
+                                                       place,
+                                               rate = std::complex<double>(
+                                                          0.0, kTwoPi * cascade.cycles_per_s[mode]) *
+                                                      (backward * std::conj(turn) - forward * turn) * place;
+                    const glm::dvec2 k = step * glm::dvec2(mx, my);
+                    const double length = glm::length(k),
+                                 chop = planned.choppiness * dispersion.horizontal_ratio(length) / length;
+                    column += {.height_m = wave.real(),
+                               .slope = -wave.imag() * k,
+                               .rate_mps = rate.real(),
+                               .displacement_m = -chop * later.imag() * k};
+                }
+            });
+            LocalWaves tile;
+            for (const LocalWaves& column : columns) tile += column;
+            const double weight = x.weight * y.weight;
+            sum += {.height_m = weight * tile.height_m,
+                    .slope = weight * tile.slope +
+                             tile.height_m * glm::dvec2(x.slope_per_m * y.weight, x.weight * y.slope_per_m),
+                    .rate_mps = weight * tile.rate_mps,
+                    .displacement_m = weight * tile.displacement_m};
+        }
+    return sum;
+}
+
 // Counts finished work and reports it.
 template <class T>
 class Sea<T>::Progress {
@@ -145,6 +222,25 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
         for (std::size_t i = 0; i < to.resolved_next.size(); ++i)
             to.resolved_next[i].take_gradients(breaking[q].resolved_next[i]);
     }
+    if (plan_.trains && plan_.trains->hero_trains > 0) add_heroes();
+}
+
+template <class T>
+void Sea<T>::add_heroes() {
+    const Scene& scene = plan_.from->scene;
+    const Dispersion& dispersion = plan_.from->spectrum.dispersion();
+    const auto seed = static_cast<std::uint64_t>(scene.shot.seed);
+    std::vector<LocalWaves> around;
+    for (const HeroWave& hero : scene.waves.heroes) {
+        const glm::dvec2 place_m(hero.east_m, hero.north_m);
+        const double time_s = hero_time_s(scene, hero);
+        LocalWaves there = local_waves(trains_, place_m, time_s);
+        for (int c = 0; c < static_cast<int>(cascades_.size()); ++c)
+            there += local_waves(cascades_[c], plan_.cascades[c], tiling_key(seed, c), plan_.lean_rad,
+                                 dispersion, place_m, time_s);
+        around.push_back(there);
+    }
+    pelagic::add_heroes(trains_, hero_trains(*plan_.from, around), plan_.filter, plan_.breaking, dispersion);
 }
 
 template <class T>

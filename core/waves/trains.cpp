@@ -5,13 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 #include "core/base/constants.h"
 #include "core/base/number.h"
 #include "core/base/random.h"
 #include "core/plan/breaking.h"
-#include "core/spectrum/gauss.h"
+#include "core/spectrum/energy_shares.h"
 #include "core/waves/loop.h"
 
 namespace pelagic {
@@ -21,47 +23,6 @@ namespace {
 
 // The last word of the random counter. Cascades use 0; trains use "TRAN".
 constexpr std::uint32_t kTrainStream = 0x5452414Eu;
-
-// A bin of the spectrum, k_lo ≤ k < k_hi: its energy and its inverse cumulative distribution.
-class Bin {
-  public:
-    Bin(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
-        const auto& rule = GaussLegendre<8>::rule();
-        spectrum.for_panels(k_lo, k_hi, [&](double from, double to) {
-            const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
-            for (std::size_t i = 0; i < rule.node.size(); ++i) {
-                const double k = middle + half * rule.node[i];
-                energy_ += half * rule.weight[i] * spectrum.omnidirectional(k);
-                nodes_.push_back({k, energy_});
-            }
-        });
-    }
-    double energy() const { return energy_; }
-    // The quadrature node at which the cumulated energy reaches `share`, in [0, 1). Requires energy > 0.
-    double wavenumber(double share) const {
-        const auto at = std::upper_bound(nodes_.begin(), nodes_.end(), share * energy_,
-                                         [](double sum, const Node& node) { return sum < node.sum; });
-        return at != nodes_.end() ? at->k : nodes_.back().k;
-    }
-
-  private:
-    struct Node {
-        double k, sum;
-    };
-    double energy_ = 0.0;
-    std::vector<Node> nodes_;
-};
-
-// The inverse cumulative distribution of direction at wavenumber k, counted from −π.
-double direction(const DirectionalSpectrum& spectrum, double k, double share) {
-    const double wanted = share * spectrum.arc(k, -kPi, kPi);
-    double low = -kPi, high = kPi;
-    for (int i = 0; i < 60; ++i) {  // to the last bit of an angle
-        const double middle = 0.5 * (low + high);
-        (spectrum.arc(k, -kPi, middle) <= wanted ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-}
 
 // Uniform in [0, 1), from two words of random bits or from one.
 double uniform(std::uint32_t high, std::uint32_t low) {
@@ -140,15 +101,60 @@ double fraction_of_product(double a, double b) {
     return (product - std::round(product)) + std::fma(a, b, -product);
 }
 
+struct Train {
+    double wavelength_m;
+    glm::dvec2 direction;
+    double cycles_per_s, start_cycles;
+    double height_m, horizontal_m, breaking_m;  // the last: the horizontal one of what breaks
+};
+
+// All but its moments and its weight in breaking.
+template <class T>
+void add_train(Trains<T>& trains, const Train& train) {
+    const double x = train.direction.x, y = train.direction.y, k = kTwoPi / train.wavelength_m;
+    trains.wavelength_m.push_back(train.wavelength_m);
+    trains.wavelength.push_back(static_cast<T>(train.wavelength_m));
+    trains.kx_cycles_per_m.push_back(x / train.wavelength_m);
+    trains.ky_cycles_per_m.push_back(y / train.wavelength_m);
+    trains.cycles_per_s.push_back(train.cycles_per_s);
+    trains.start_cycles.push_back(train.start_cycles);
+    trains.height_m.push_back(train.height_m);
+    trains.horizontal_m.push_back(train.horizontal_m);
+
+    const auto factor = [&](Field field, double value) {
+        trains.amplitude[index(field)].push_back(static_cast<T>(value));
+    };
+    const double omega = kTwoPi * train.cycles_per_s;
+    factor(Field::Height, train.height_m);
+    factor(Field::Dx, x * train.horizontal_m);
+    factor(Field::Dy, y * train.horizontal_m);
+    factor(Field::SlopeX, k * x * train.height_m);
+    factor(Field::SlopeY, k * y * train.height_m);
+    factor(Field::Dxx, -k * train.breaking_m * x * x);
+    factor(Field::Dyy, -k * train.breaking_m * y * y);
+    factor(Field::Dxy, -k * train.breaking_m * x * y);
+    factor(Field::VelocityX, omega * x * train.horizontal_m);
+    factor(Field::VelocityY, omega * y * train.horizontal_m);
+    factor(Field::VelocityZ, -omega * train.height_m);
+}
+
+template <class T>
+T weight_in_breaking(double wavelength_m, const FootprintFilter& filter, const Breaking& breaking) {
+    return wavelength_m > breaking.from_m
+               ? static_cast<T>(filter.weight(kTwoPi / wavelength_m, breaking.footprint_m))
+               : T(0);
+}
+
 // The sums over all trains before and from each.
 template <class T>
 void add_up(Trains<T>& trains) {
-    trains.before.resize(trains.count() + 1);
+    trains.before.assign(trains.count() + 1, {});
     for (std::size_t i = 0; i < trains.count(); ++i)
         (trains.before[i + 1] = trains.before[i]) += trains.alone[i];
     trains.from.resize(trains.count() + 1);
     trains.from.back() = trains.outside;
     for (std::size_t i = trains.count(); i-- > 0;) (trains.from[i] = trains.from[i + 1]) += trains.alone[i];
+    trains.unresolved_from.clear();
     for (const SpectralMoments& moments : trains.from)
         trains.unresolved_from.push_back(unresolved_moments<T>(moments));
 }
@@ -167,12 +173,13 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {
-        const Bin bin(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1));
+        const EnergyShares bin(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1));
         const double wavelength_m = plan.wavelengths_m[i], k = kTwoPi / wavelength_m;
         const auto bits = philox({static_cast<std::uint32_t>(i), 0, 0, kTrainStream}, scene.shot.seed);
-        const double theta = bin.energy() > 0.0 ? direction(spectrum, bin.wavenumber(uniform(bits[2])),
-                                                            direction_share(i, scene.shot.seed))
-                                                : 0.0;
+        const double theta = bin.energy() > 0.0
+                                 ? direction_of_share(spectrum, bin.wavenumber(uniform(bits[2])),
+                                                      direction_share(i, scene.shot.seed))
+                                 : 0.0;
         const double height_m = std::sqrt(2.0 * bin.energy());
         const auto horizontal = [&](double by) {
             return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
@@ -182,29 +189,13 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
-        trains.wavelength_m.push_back(wavelength_m);
-        trains.kx_cycles_per_m.push_back(x / wavelength_m);
-        trains.ky_cycles_per_m.push_back(y / wavelength_m);
-        trains.cycles_per_s.push_back(cycles_per_s);
-        trains.start_cycles.push_back(uniform(bits[3]));
-        trains.height_m.push_back(height_m);
-        trains.horizontal_m.push_back(horizontal_m);
-
-        const auto factor = [&](Field field, double value) {
-            trains.amplitude[index(field)].push_back(static_cast<T>(value));
-        };
-        const double omega = kTwoPi * cycles_per_s;
-        factor(Field::Height, height_m);
-        factor(Field::Dx, x * horizontal_m);
-        factor(Field::Dy, y * horizontal_m);
-        factor(Field::SlopeX, k * x * height_m);
-        factor(Field::SlopeY, k * y * height_m);
-        factor(Field::Dxx, -k * breaking_m * x * x);
-        factor(Field::Dyy, -k * breaking_m * y * y);
-        factor(Field::Dxy, -k * breaking_m * x * y);
-        factor(Field::VelocityX, omega * x * horizontal_m);
-        factor(Field::VelocityY, omega * y * horizontal_m);
-        factor(Field::VelocityZ, -omega * height_m);
+        add_train(trains, {.wavelength_m = wavelength_m,
+                           .direction = {x, y},
+                           .cycles_per_s = cycles_per_s,
+                           .start_cycles = uniform(bits[3]),
+                           .height_m = height_m,
+                           .horizontal_m = horizontal_m,
+                           .breaking_m = breaking_m});
 
         SpectralMoments alone = moments_of({.k = {k * x, k * y},
                                             .energy = bin.energy(),
@@ -212,14 +203,13 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
                                             .chop = height_m > 0.0 ? breaking_m / (k * height_m) : 0.0});
         // Of the displacement gradient, the part that is resolved at best; the rest counts with the waves outside.
         const bool breaks = wavelength_m > breaking.from_m;
-        trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));
+        trains.breaking.push_back(weight_in_breaking<T>(wavelength_m, filter, breaking));
         const double most = static_cast<double>(trains.breaking.back());
         SpectralMoments unseen, seen = alone;
         unseen.take_gradients(alone);
         trains.outside += unseen.scale_gradients(breaks ? unresolved_part(most) : 0.0);
         alone.take_gradients(seen.scale_gradients(most * most));
         trains.alone.push_back(alone);
-        trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.unresolved_alone.push_back(unresolved_moments<T>(alone));
         SpectralMoments beyond = beyond_train(
             moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
@@ -233,6 +223,41 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
                                             std::numeric_limits<double>::infinity(), breaking);
     add_up(trains);
     return trains;
+}
+
+template <class T>
+void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const FootprintFilter& filter,
+                const Breaking& breaking, const Dispersion& dispersion) {
+    for (const HeroTrain& hero : heroes) {
+        const HeroMode& mode = hero.mode;
+        const double k = kTwoPi / mode.wavelength_m;
+        add_train(trains,
+                  {.wavelength_m = mode.wavelength_m,
+                   .direction = mode.direction,
+                   .cycles_per_s = mode.cycles_per_s,
+                   .start_cycles = hero.start_cycles,
+                   .height_m = hero.height_m,
+                   .horizontal_m = mode.horizontal_ratio * hero.height_m,
+                   .breaking_m = breaking.choppiness.at(k) * dispersion.horizontal_ratio(k) * hero.height_m});
+        trains.breaking.push_back(weight_in_breaking<T>(mode.wavelength_m, filter, breaking));
+        trains.alone.emplace_back();
+        trains.unresolved_alone.push_back(unresolved_moments<T>({}));
+    }
+    std::vector<std::size_t> order(trains.count());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return trains.wavelength_m[i]; });
+    const auto sort = [&](auto&... all) {
+        const auto sort_one = [&](auto& values) {
+            const auto from = values;
+            for (std::size_t i = 0; i < order.size(); ++i) values[i] = from[order[i]];
+        };
+        (sort_one(all), ...);
+    };
+    sort(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
+         trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.breaking,
+         trains.unresolved_alone, trains.wavelength);
+    for (std::vector<T>& amplitude : trains.amplitude) sort(amplitude);
+    add_up(trains);
 }
 
 template <class T>
@@ -283,15 +308,34 @@ Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter,
 }
 
 template <class T>
+LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s) {
+    LocalWaves sum;
+    const std::vector<double> cycles = phases_at(trains, place_m, reduced_time_s);
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        const double sine = std::sin(kTwoPi * cycles[i]);
+        const glm::dvec2 across(trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]);
+        sum += {.height_m = trains.height_m[i] * std::cos(kTwoPi * cycles[i]),
+                .slope = kTwoPi * trains.height_m[i] * sine * across,
+                .rate_mps = -kTwoPi * trains.cycles_per_s[i] * trains.height_m[i] * sine,
+                .displacement_m = trains.horizontal_m[i] * sine * trains.wavelength_m[i] * across};
+    }
+    return sum;
+}
+
+double phase_at(glm::dvec2 cycles_per_m, double cycles_per_s, double start_cycles, glm::dvec2 place_m,
+                double reduced_time_s) {
+    const double phase = start_cycles + fraction_of_product(cycles_per_s, reduced_time_s) -
+                         fraction_of_product(cycles_per_m.x, place_m.x) -
+                         fraction_of_product(cycles_per_m.y, place_m.y);
+    return phase - std::round(phase);
+}
+
+template <class T>
 std::vector<double> phases_at(const Trains<T>& trains, glm::dvec2 origin_m, double reduced_time_s) {
     std::vector<double> cycles(trains.count());
-    for (std::size_t i = 0; i < trains.count(); ++i) {
-        const double phase = trains.start_cycles[i] +
-                             fraction_of_product(trains.cycles_per_s[i], reduced_time_s) -
-                             fraction_of_product(trains.kx_cycles_per_m[i], origin_m.x) -
-                             fraction_of_product(trains.ky_cycles_per_m[i], origin_m.y);
-        cycles[i] = phase - std::round(phase);
-    }
+    for (std::size_t i = 0; i < trains.count(); ++i)
+        cycles[i] = phase_at({trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]}, trains.cycles_per_s[i],
+                             trains.start_cycles[i], origin_m, reduced_time_s);
     return cycles;
 }
 
@@ -299,6 +343,10 @@ template Trains<float> make_trains(const PreparedScene&, const TrainsPlan&, cons
                                    const std::optional<Breaking>&);
 template Trains<double> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&,
                                     const std::optional<Breaking>&);
+template void add_heroes(Trains<float>&, std::span<const HeroTrain>, const FootprintFilter&, const Breaking&,
+                         const Dispersion&);
+template void add_heroes(Trains<double>&, std::span<const HeroTrain>, const FootprintFilter&, const Breaking&,
+                         const Dispersion&);
 template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);
@@ -307,6 +355,8 @@ template SpectralMoments unresolved(const Trains<float>&, const FootprintFilter&
 template SpectralMoments unresolved(const Trains<double>&, const FootprintFilter&, double);
 template Realisation realisation(const Trains<float>&, const FootprintFilter&, const Footprints&);
 template Realisation realisation(const Trains<double>&, const FootprintFilter&, const Footprints&);
+template LocalWaves local_waves(const Trains<float>&, glm::dvec2, double);
+template LocalWaves local_waves(const Trains<double>&, glm::dvec2, double);
 template std::vector<double> phases_at(const Trains<float>&, glm::dvec2, double);
 template std::vector<double> phases_at(const Trains<double>&, glm::dvec2, double);
 

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/plan/breaking.h"
@@ -20,6 +21,7 @@
 #include "core/plan/trains.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/spectral_moments.h"
+#include "core/waves/hero_waves.h"
 #include "core/waves/realisation.h"
 #include "pelagic/scene.h"
 
@@ -76,6 +78,12 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan,
                       const FootprintFilter& filter = {},
                       const std::optional<Breaking>& breaking = {});  // the plan's; none: the scene's
 
+// Adds the trains of hero waves. They are no part of the random sea: their moments are 0, so that nothing is hidden of it or
+// counted twice.
+template <class T>
+void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const FootprintFilter& filter,
+                const Breaking& breaking, const Dispersion& dispersion);
+
 // The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and
 // include choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's is. Where a
 // trochoid's own crest is compressed (appendix A: (kh)²/(1 + √(1 − k²H²)) by area of sea), that is counted with the
@@ -101,6 +109,13 @@ struct Footprints {
 template <class T>
 Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter, const Footprints& footprints);
 
+// What all trains have at a place and a time, none filtered.
+template <class T>
+LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s);
+
+// θ/2π at a place and time, reduced to ±½; the products are not rounded before.
+double phase_at(glm::dvec2 cycles_per_m, double cycles_per_s, double start_cycles, glm::dvec2 place_m,
+                double reduced_time_s);
 // Each train's phase θ/2π at a place and time, reduced to ±½; the products are not rounded before.
 // reduced_time_s: time within the loop, where there is one (core/waves/loop.h).
 template <class T>

@@ -23,10 +23,12 @@ namespace {
 
 const ProductSet kShape = products(Product::Position, Product::Normal);
 
-// The shot as a sum of waves: without blended tiles, pairs of waves and lean, which grids read as they read all else.
+// The shot as a sum of waves: without blended tiles, pairs of waves and lean, which grids read as they read all else, and without
+// heroes, which no grid holds.
 Scene plain_waves(Scene shot) {
     shot.waves.tiling = Tiling::Periodic;
     shot.waves.second_order = shot.waves.lean_deg = 0.0;
+    shot.waves.heroes.clear();
     return shot;
 }
 

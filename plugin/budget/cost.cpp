@@ -50,7 +50,7 @@ void add_points(const Plan& plan, const PlannedQuery& planned, WorkDone& work) {
         if (grids > 0.0) at(work, Work::Reads) += points * reads * std::min(1.0, levels_read / grids);
     }
     if (plan.trains && !planned.query.only_cascade) {
-        int shown = 0;
+        int shown = plan.trains->hero_trains;
         for (const double length_m : plan.trains->wavelengths_m)
             shown += plan.filter.weight(kTwoPi / length_m, planned.query.pixel_m.front()) > 0.0;
         at(work, Work::Trains) += points * shown;

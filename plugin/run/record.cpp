@@ -341,7 +341,7 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     planned["sea_bytes"] = plan.sea_bytes();
     planned["frame_bytes"] = plan.frame_bytes();
     planned["output_bytes"] = plan.output_bytes();
-    if (plan.trains)
+    if (plan.trains && plan.trains->count > 0)
         planned["trains"] = {{"count", plan.trains->count},
                              {"longest_m", plan.trains->longest_m},
                              {"shortest_m", plan.trains->shortest_m}};

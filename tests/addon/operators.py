@@ -141,6 +141,24 @@ with checking("list_add and list_remove"):
     bpy.context.view_layer.update()
     assert np.array_equal(numbers(sea.data), calm)
 
+with checking("a hero wave stands at the cursor in the current frame"):
+    sea, scene = add_ocean(), bpy.context.scene
+    sea.pelagic.waves.second_order = 0.0
+    sea.location, sea.rotation_euler[2] = (5.0, 2.0, 0.0), 0.5
+    scene.frame_set(30)
+    scene.cursor.location = (16.0, -9.0, 3.0)
+    bpy.ops.pelagic.list_add(path="waves.heroes")
+    hero, = sea.pelagic.waves.heroes
+    bpy.context.view_layer.update()
+    assert hero.frame == 30 and 1.0 < hero.height_m < 4.0, hero.height_m
+    spots = numbers(sea.data) @ np.array(sea.matrix_world.to_3x3()).T + np.array(sea.location)
+    near = np.hypot(spots[:, 0] - 16.0, spots[:, 1] + 9.0) < 1.0
+    highest = spots[near, 2].max()
+    assert abs(highest - hero.height_m) < 0.05 * hero.height_m, (highest, hero.height_m)
+    scene.frame_set(70)
+    later = (numbers(sea.data)[:, 2])[near].max()
+    assert later < 0.8 * hero.height_m, later
+
 with checking("a new ocean brings water, sun and sky; a world of the artist's own stays unless the operator is asked"):
     fresh_file()
     scene = bpy.context.scene

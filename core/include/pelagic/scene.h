@@ -134,6 +134,13 @@ struct BandGain {
     double gain = 1.0;                 // of amplitudes, ≥ 0
 };
 
+// A crest that stands where and when a director wants it (core/waves/hero_waves.h).
+struct HeroWave {
+    double frame = 1.0;                  // when, on the shot's own clock
+    double east_m = 0.0, north_m = 0.0;  // where
+    double height_m = 5.0;               // of the crest over the mean level; below 0 a trough
+};
+
 struct CascadeSize {
     double size_m = 400.0;               // period, > 0
     int resolution = 512;                // even, 16 … 8192
@@ -153,6 +160,7 @@ struct Waves {
     std::vector<CascadeSize> cascades;
     Tiling tiling = Tiling::Random;    // of the cascades (core/plan/random_tiling.h)
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
+    std::vector<HeroWave> heroes;
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
     int trains = 250;  // 1 … 10000

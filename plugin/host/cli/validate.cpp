@@ -37,7 +37,8 @@ std::string summary(const Scene& scene, const Plan& plan) {
                 " m/s";
     }
     text += ": ";
-    if (plan.trains) text += count_text(plan.trains->count, "wave train, ", "wave trains, ");
+    if (plan.trains && plan.trains->count > 0)
+        text += count_text(plan.trains->count, "wave train, ", "wave trains, ");
     return text + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
            bytes_text(bake_memory(plan, kFramesInFlight, tbb::this_task_arena::max_concurrency()).bytes());
 }

@@ -46,6 +46,11 @@ Scene trains_and_cascade() {
     scene.waves.cascades = {{.size_m = 60.0, .resolution = 128}};
     return scene;
 }
+Scene hero() {
+    Scene scene;
+    scene.waves.heroes = {{.frame = 20.0, .height_m = 2.5}};
+    return scene;
+}
 Scene without_choppiness() {
     Scene scene;
     scene.waves.choppiness = 0.0;
@@ -57,6 +62,7 @@ std::vector<Case> cases() {
             {"default sea on several levels", Scene(), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0}},
             {"shallow storm", storm(), {1.0}},
             {"no choppiness", without_choppiness(), {1.0}},
+            {"a hero", hero(), {0.5, 1.0, 2.0}},
             {"60 trains", trains(60), {0.5}},
             {"400 trains", trains(400), {0.5}},
             {"trains and a cascade on several levels", trains_and_cascade(), {0.25, 0.5, 1.0, 2.0}}};

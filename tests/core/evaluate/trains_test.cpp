@@ -39,7 +39,7 @@ Scene sea(double choppiness = 0.9) {
 
 template <class T>
 Trains<T> trains_of(const Scene& scene) {
-    return make_trains<T>(*prepare(scene), resolve_trains(*prepare(scene), 0.0));
+    return make_trains<T>(*prepare(scene), *resolve_trains(*prepare(scene), 0.0));
 }
 
 // Rest points within ± 100 m, the same for both precisions.

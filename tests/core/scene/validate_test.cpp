@@ -83,6 +83,10 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) {
              s.waves.cascades = {{400.0, 64, v}};
          }},
+        {"waves.heroes[0].frame", limits::kFrame,
+         [](Scene& s, double v) { s.waves.heroes = {{.frame = v}}; }},
+        {"waves.heroes[0].height_m", limits::kHeroHeight_m,
+         [](Scene& s, double v) { s.waves.heroes = {{.frame = 1.0, .height_m = v}}; }},
         {"waves.shortest_m", limits::kTrain_m,
          [](Scene& s, double v) {
              s.waves.model = WaveModel::Trochoid;

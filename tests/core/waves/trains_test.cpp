@@ -23,7 +23,7 @@ Scene trochoid() {
 }
 
 Trains<double> trains_of(const Scene& scene, double footprint_m = 0.0) {
-    return make_trains<double>(*prepare(scene), resolve_trains(*prepare(scene), footprint_m));
+    return make_trains<double>(*prepare(scene), *resolve_trains(*prepare(scene), footprint_m));
 }
 
 // One train of given steepness kh, 10 m long, from a swell whose whole spectrum is within the range.
@@ -62,7 +62,7 @@ std::vector<Scene> many_seas() {
 
 TEST(TrainsPlan, DefaultRangeHoldsTheSea) {
     for (const Scene& scene : many_seas()) {
-        const TrainsPlan plan = resolve_trains(*prepare(scene), 0.0);
+        const TrainsPlan plan = *resolve_trains(*prepare(scene), 0.0);
         EXPECT_EQ(plan.count, 250);
         EXPECT_LE(plan.shortest_m, 0.02);
         const DirectionalSpectrum spectrum(scene.sea);
@@ -76,7 +76,7 @@ TEST(TrainsPlan, TenTrainsAreBelowThePixel) {
     Scene scene = trochoid();
     scene.sea.short_waves = ShortWaves::None;  // Elfouhaily's end at some millimetres
     for (const double footprint_m : {0.005, 0.02, 0.1, 1.0, 30.0, 1000.0}) {
-        const TrainsPlan plan = resolve_trains(*prepare(scene), footprint_m);
+        const TrainsPlan plan = *resolve_trains(*prepare(scene), footprint_m);
         EXPECT_GE(plan.below_pixel, 10) << footprint_m;
         EXPECT_LE(plan.shortest_m, 0.02);
         int below = 0;
@@ -84,42 +84,42 @@ TEST(TrainsPlan, TenTrainsAreBelowThePixel) {
             below += wavelength_m < 2.0 * footprint_m;
         EXPECT_EQ(below, plan.below_pixel);
     }
-    EXPECT_LT(resolve_trains(*prepare(scene), 0.005).shortest_m,
+    EXPECT_LT(resolve_trains(*prepare(scene), 0.005)->shortest_m,
               0.01);  // or all trains would be visible
     Scene few = scene;
     few.waves.trains = 8;
-    EXPECT_GE(resolve_trains(*prepare(few), 0.5).below_pixel, 4);
+    EXPECT_GE(resolve_trains(*prepare(few), 0.5)->below_pixel, 4);
 }
 
 TEST(TrainsPlan, AGivenRangeIsKept) {
     Scene scene = trochoid();
     scene.waves.longest_m = 30.0;
     scene.waves.shortest_m = 0.02;
-    TrainsPlan plan = resolve_trains(*prepare(scene), 1e-3);
+    TrainsPlan plan = *resolve_trains(*prepare(scene), 1e-3);
     EXPECT_EQ(plan.longest_m, 30.0);
     EXPECT_EQ(plan.shortest_m, 0.02);
     EXPECT_EQ(plan.below_pixel, 0);
     scene.waves.longest_m.reset();
     scene.waves.shortest_m = 5000.0;  // longer than any wave of this sea
-    plan = resolve_trains(*prepare(scene), 1.0);
+    plan = *resolve_trains(*prepare(scene), 1.0);
     EXPECT_EQ(plan.shortest_m, 5000.0);
     EXPECT_EQ(plan.longest_m, 50000.0);
     scene.waves.longest_m = 0.005;
     scene.waves.shortest_m.reset();
-    EXPECT_EQ(resolve_trains(*prepare(scene), 1.0).shortest_m, 0.0005);
+    EXPECT_EQ(resolve_trains(*prepare(scene), 1.0)->shortest_m, 0.0005);
 }
 
 TEST(TrainsPlan, CascadesTakeOverWhereTheirLargestTileCan) {
     Scene scene = trochoid();
     scene.waves.cascades = {{80.0, 256}, {20.0, 256}};
-    EXPECT_EQ(resolve_trains(*prepare(scene), 0.1).shortest_m, 10.0);  // eight of them fit into the tile
+    EXPECT_EQ(resolve_trains(*prepare(scene), 0.1)->shortest_m, 10.0);  // eight of them fit into the tile
 }
 
 // Bins of equal ratio, a train in each, at the mean wavenumber of the bin's energy.
 TEST(Trains, AreTheMeansOfAGeometricProgression) {
     Scene scene = trochoid();
     scene.waves.trains = 60;
-    const TrainsPlan plan = resolve_trains(*prepare(scene), 0.5);
+    const TrainsPlan plan = *resolve_trains(*prepare(scene), 0.5);
     const auto trains = trains_of(scene, 0.5);
     ASSERT_EQ(trains.count(), 60u);
     const double ratio = std::pow(plan.longest_m / plan.shortest_m, 1.0 / 60.0);
@@ -144,7 +144,7 @@ TEST(Trains, HoldTheEnergyOfTheirRange) {
         for (const int count : {1, 7, 60, 1000}) {
             Scene with = scene;
             with.waves.trains = count;
-            const TrainsPlan plan = resolve_trains(*prepare(with), 0.0);
+            const TrainsPlan plan = *resolve_trains(*prepare(with), 0.0);
             const double m0 =
                 moments(DirectionalSpectrum(with.sea), kTwoPi / plan.longest_m, kTwoPi / plan.shortest_m).m0;
             double sum = 0.0;
@@ -168,7 +168,7 @@ TEST(Trains, TakeThePlansBytes) {
     Scene scene = trochoid();
     scene.waves.trains = 7;
     const auto prepared = prepare(scene);
-    const TrainsPlan plan = resolve_trains(*prepared, 0.0);
+    const TrainsPlan plan = *resolve_trains(*prepared, 0.0);
     EXPECT_EQ(bytes(make_trains<float>(*prepared, plan)), plan.sea_bytes(false));
     EXPECT_EQ(bytes(make_trains<double>(*prepared, plan)), plan.sea_bytes(true));
 }
@@ -375,7 +375,7 @@ TEST(Trains, PhasesAreUniform) {
     constexpr int kSeeds = 100;
     for (int seed = 1; seed <= kSeeds; ++seed) {
         scene.shot.seed = static_cast<std::uint64_t>(seed);
-        const TrainsPlan plan = resolve_trains(*prepare(scene), 0.0);
+        const TrainsPlan plan = *resolve_trains(*prepare(scene), 0.0);
         Scene calm = scene;  // no energy, so directions needn't be computed
         calm.sea.wind_speed_mps = 0.0;
         for (const double cycles : make_trains<double>(*prepare(calm), plan).start_cycles)

@@ -232,6 +232,14 @@ TEST(QueryOnTheGpu, OfTrainsAndCascadesTogetherIsEvaluates) {
     scene.waves.cascades = {{20.0, 128}};
     compare(scene, picture_query(), {});
 }
+TEST(QueryOnTheGpu, OfHeroesIsEvaluates) {
+    for (Scene scene :
+         {scene_of_model(WaveModel::Fft), scene_of_model(WaveModel::Trochoid), copied(WaveModel::Fft)}) {
+        scene.waves.heroes = {{.frame = 20.0, .height_m = 3.0},
+                              {.frame = 1.0, .east_m = 20.0, .height_m = 2.0}};
+        compare(scene, picture_query(), {}, 5000);
+    }
+}
 TEST(QueryOnTheGpu, OfFourTapsAndTwoMomentsIsEvaluates) {
     Scene scene = scene_of_model(WaveModel::Fft);
     scene.quality.level = QualityLevel::Draft;

@@ -1,0 +1,188 @@
+// waves.heroes: each stands where it is asked for, in any sea, and has the shape that the spectrum gives it.
+#include "core/waves/hero_waves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/waves/folding.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+// A moderate sea over a swell, with blended tiles; pairs of waves are no part of what is asked for.
+Scene sea_with(std::vector<HeroWave> heroes, int seed = 1) {
+    Scene scene;
+    scene.shot.seed = seed;
+    scene.sea.wind_speed_mps = 14.0;
+    scene.sea.swell = {{1.0, 12.0, 40.0}};
+    scene.waves.cascades = {{700.0, 256}, {90.0, 128}};
+    scene.waves.second_order = 0.0;
+    scene.waves.heroes = std::move(heroes);
+    return scene;
+}
+
+double time_of(const Scene& scene, const HeroWave& hero) {
+    return scene.shot.time_s(hero.frame);
+}
+
+// Where the surface is, and its velocity, of points at rest round a place.
+struct Shown {
+    std::vector<glm::dvec3> position_m, velocity_mps;
+};
+Shown shown(const Scene& scene, glm::dvec2 place_m, const std::vector<glm::dvec2>& rest_m, double time_s) {
+    const auto frame =
+        frame_of<double>(scene, {unfiltered(products(Product::Position, Product::Velocity))}, time_s);
+    Shown out{std::vector<glm::dvec3>(rest_m.size()), std::vector<glm::dvec3>(rest_m.size())};
+    Results<double> results;
+    results.set(Product::Position, {out.position_m.data(), sizeof(glm::dvec3)});
+    results.set(Product::Velocity, {out.velocity_mps.data(), sizeof(glm::dvec3)});
+    evaluate(frame, 0, {.origin_m = place_m, .count = rest_m.size(), .rest_m = {rest_m.data()}}, results);
+    return out;
+}
+glm::dvec3 top(const Scene& scene, const HeroWave& hero) {
+    return shown(scene, {hero.east_m, hero.north_m}, {{0.0, 0.0}}, time_of(scene, hero)).position_m.front();
+}
+
+TEST(HeroWaves, StandWhereTheyAreAskedForInAnySea) {
+    const HeroWave hero{.frame = 60.0, .east_m = 37.0, .north_m = -412.0, .height_m = 6.0};
+    for (int seed = 1; seed <= 12; ++seed) {
+        Scene scene = sea_with({hero}, seed);
+        if (seed % 4 == 1) scene.waves.tiling = Tiling::Periodic;
+        if (seed % 4 == 2) scene.waves.lean_deg = 0.0;
+        if (seed % 4 == 3) scene.shot.loop_s = 30.0;
+        if (seed % 3 == 0) {
+            scene.waves.model = WaveModel::Trochoid;
+            scene.waves.cascades.clear();
+        }
+        if (seed == 5) scene.sea.depth_m = 15.0;
+        const glm::dvec3 found = top(scene, hero);
+        EXPECT_NEAR(found.z, hero.height_m, 0.01 * hero.height_m) << seed;
+        EXPECT_NEAR(found.x, 0.0, 0.05) << seed;
+        EXPECT_NEAR(found.y, 0.0, 0.05) << seed;
+    }
+}
+
+// It is a crest: no point near it is higher, neither there nor then.
+TEST(HeroWaves, AreTheHighestRoundThemInPlaceAndTime) {
+    std::vector<glm::dvec2> around{{0.0, 0.0}};
+    for (const double radius_m : {1.0, 3.0, 8.0, 16.0})
+        for (int i = 0; i < 16; ++i)
+            around.push_back(radius_m * glm::dvec2(std::cos(i * kPi / 8.0), std::sin(i * kPi / 8.0)));
+    for (int seed = 1; seed <= 5; ++seed) {
+        const HeroWave hero{.frame = 31.0, .east_m = 5.0, .north_m = 9.0, .height_m = 7.0};
+        const Scene scene = sea_with({hero}, seed);
+        double highest_m = 0.0;
+        for (const double later_s : {-1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0})
+            for (const glm::dvec3& at :
+                 shown(scene, {hero.east_m, hero.north_m}, around, time_of(scene, hero) + later_s).position_m)
+                highest_m = std::max(highest_m, at.z);
+        EXPECT_NEAR(highest_m, hero.height_m, 0.02 * hero.height_m) << seed;
+    }
+}
+
+// In calm surroundings it is A times the sea's correlation: ∬ Ψ cos(k·x − ωt)/m0.
+TEST(HeroWaves, HaveTheShapeOfTheSeasCorrelation) {
+    const HeroWave hero{.frame = 1.0, .height_m = 8.0};
+    const auto prepared = prepare(sea_with({hero}));
+    const DirectionalSpectrum& spectrum = prepared->spectrum;
+    const auto trains = hero_trains(*prepared, std::vector<LocalWaves>(1));
+    const auto expected = [&](glm::dvec2 x_m, double t_s) {
+        double sum = 0.0;
+        constexpr int kTurns = 720;
+        spectrum.for_panels(0.0, 8.0, [&](double from, double to) {
+            const double k = 0.5 * (from + to);
+            for (int i = 0; i < kTurns; ++i) {
+                const double theta = kTwoPi * (i + 0.5) / kTurns;
+                sum += (to - from) * spectrum.polar(k, theta) * (kTwoPi / kTurns) *
+                       std::cos(k * (std::cos(theta) * x_m.x + std::sin(theta) * x_m.y) -
+                                spectrum.dispersion().omega(k) * t_s);
+            }
+        });
+        return hero.height_m * sum / spectrum.m0();
+    };
+    double worst_m = 0.0;
+    for (const double t_s : {-3.0, 0.0, 2.0})
+        for (const double x_m : {-60.0, -30.0, -10.0, 0.0, 10.0, 30.0, 60.0})
+            for (const double y_m : {-30.0, 0.0, 30.0})
+                worst_m = std::max(worst_m, std::abs(local_waves(trains, {x_m, y_m}, t_s).height_m -
+                                                     expected({x_m, y_m}, t_s)));
+    std::printf("shape: worst %.3f m of %.1f\n", worst_m, hero.height_m);
+    EXPECT_LT(worst_m, 0.05 * hero.height_m);
+}
+
+TEST(HeroWaves, ManyStandTogetherAlsoInTroughsAndFarAway) {
+    const std::vector<HeroWave> heroes{{.frame = 20.0, .east_m = 0.0, .north_m = 0.0, .height_m = 6.0},
+                                       {.frame = 20.0, .east_m = 90.0, .north_m = 40.0, .height_m = -4.0},
+                                       {.frame = 90.5, .east_m = 30.0, .north_m = 0.0, .height_m = 5.0},
+                                       {.frame = 20.0, .east_m = 9e5, .north_m = -7e5, .height_m = 3.0}};
+    const Scene scene = sea_with(heroes);
+    for (const HeroWave& hero : heroes) {
+        EXPECT_NEAR(top(scene, hero).z, hero.height_m, 0.02 * std::abs(hero.height_m));
+        EXPECT_NEAR(glm::length(glm::dvec2(top(scene, hero))), 0.0, 0.1);
+    }
+}
+
+TEST(HeroWaves, MoveAsTheirVelocitySays) {
+    const HeroWave hero{.frame = 24.0, .height_m = 7.0};
+    const Scene scene = sea_with({hero});
+    const std::vector<glm::dvec2> rest{{0.0, 0.0}, {7.0, 3.0}, {-20.0, 11.0}};
+    const double t_s = time_of(scene, hero), step_s = 1e-3;
+    const auto now = shown(scene, {}, rest, t_s), before = shown(scene, {}, rest, t_s - step_s),
+               after = shown(scene, {}, rest, t_s + step_s);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        EXPECT_LT(
+            glm::length((after.position_m[i] - before.position_m[i]) / (2.0 * step_s) - now.velocity_mps[i]),
+            2e-3);
+}
+
+TEST(HeroWaves, OfACalmAreNoneAndItIsSaid) {
+    Scene scene = sea_with({{.frame = 1.0, .height_m = 3.0}});
+    scene.sea.wind_speed_mps = 0.0;
+    scene.sea.swell.clear();
+    EXPECT_EQ(top(scene, scene.waves.heroes.front()).z, 0.0);
+    const auto warnings = sea_warnings(*prepare(scene));
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings.front().find("calm"), std::string::npos);
+}
+
+// Nothing but a sea of one direction, or without choppiness, leaves a demand open; two in one place leave one.
+TEST(HeroWaves, OfSeasThatLeaveADemandOpenStayFinite) {
+    const HeroWave hero{.frame = 10.0, .height_m = 2.0};
+    Scene flat = sea_with({hero});
+    flat.waves.choppiness = 0.0;
+    EXPECT_NEAR(top(flat, hero).z, 2.0, 0.02);
+    Scene one = sea_with({hero});
+    one.sea.wind_speed_mps = 0.0;
+    one.sea.directionality = 20.0;
+    EXPECT_NEAR(top(one, hero).z, 2.0, 0.05);
+    const Scene twins = sea_with({hero, {.frame = 10.0, .east_m = 1e-6, .height_m = 5.0}});
+    const double stands_m = top(twins, hero).z;
+    EXPECT_TRUE(std::isfinite(stands_m));
+    EXPECT_TRUE(std::abs(stands_m - 2.0) < 0.1 || std::abs(stands_m - 5.0) < 0.1) << stands_m;
+    const auto warnings = sea_warnings(*prepare(twins));
+    EXPECT_TRUE(std::ranges::any_of(
+        warnings, [](const std::string& warning) { return warning.find("too near") != std::string::npos; }));
+}
+
+TEST(HeroWaves, ThatFoldOrAreTooHighAreWarnedOf) {
+    const auto said = [](double height_m) {
+        std::string all;
+        for (const std::string& warning :
+             sea_warnings(*prepare(sea_with({{.frame = 1.0, .height_m = height_m}}))))
+            all += warning + '\n';
+        return all;
+    };
+    EXPECT_EQ(said(5.0).find("heroes"), std::string::npos) << said(5.0);
+    EXPECT_NE(said(8.0).find("no such sea"), std::string::npos) << said(8.0);
+    EXPECT_NE(said(30.0).find("folds over"), std::string::npos) << said(30.0);
+}
+
+}  // namespace
+}  // namespace pelagic

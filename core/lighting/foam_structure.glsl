@@ -231,15 +231,16 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     float all = 0.0f;
     float lace_shown = 0.0f;
     float lace_variance = 0.0f;
-    for (int k = max(int(floor(octave)) - 3, 0); k <= int(floor(octave)) + 1; ++k) {
+    for (int k = max(int(floor(octave)) - 4, -2); k <= int(floor(octave)) + 1; ++k) {
         float finer = octave - float(k);
         float weight = max(1.0f - abs(finer), 0.0f) + 0.6f * max(1.0f - abs(finer - 1.0f), 0.0f) +
-                       0.42f * max(1.0f - abs(finer - 2.0f), 0.0f) + 0.3f * max(1.0f - abs(finer - 3.0f), 0.0f);
+                       0.42f * max(1.0f - abs(finer - 2.0f), 0.0f) + 0.3f * max(1.0f - abs(finer - 3.0f), 0.0f) +
+                       0.25f * max(1.0f - abs(finer - 4.0f), 0.0f);
         all += weight * weight;
-        float size_m = 0.125f * float(1 << k);
+        float size_m = 0.03125f * float(1 << (k + 2));
         float through = weight * foam_weight(size_m, footprint_m);
         if (through > 0.0f) {
-            lace_shown += through * foam_holes(foam_cell(cells, rest, 8 - k, bent / size_m, k % 2 == 1), uint(k));
+            lace_shown += through * foam_holes(foam_cell(cells, rest, 8 - k, bent / size_m, (k & 1) == 1), uint(k));
             lace_variance += through * through;
         }
     }
@@ -285,7 +286,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 // How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
 // beyond its bubbles.
 float foam_softness(float age_s) {
-    return 0.55f + 0.3f * age_s / (age_s + 4.0f);
+    return 0.36f + 0.24f * age_s / (age_s + 4.0f);
 }
 
 // What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place

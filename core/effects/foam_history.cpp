@@ -120,7 +120,8 @@ class FoamHistory<T>::Locator {
     Locator(const FoamHistory& history, const Points<T>& points, int query)
         : points_(points), foam_(history.foam_), kernels_(history.kernels_) {
         const auto& asked = history.sea_->plan().queries.at(static_cast<std::size_t>(query)).query;
-        whole_ = foam_level_blend(foam_, static_cast<float>(asked.pixel_m.front()));
+        whole_m_ = static_cast<float>(asked.pixel_m.front());
+        whole_ = foam_level_blend(foam_, whole_m_);
         for (int level = 0; level < FoamPlan::kLevels; ++level)
             cells_[static_cast<std::size_t>(level)] = {
                 .per_m = 1.0 / foam_.cell_of(level),
@@ -148,7 +149,7 @@ class FoamHistory<T>::Locator {
         else
             take(points_.rest_m);
         for (std::size_t i = 0; points_.pixel_m && i < count; ++i) {
-            const FoamLevelBlend blend = level_blend_of(first + i);
+            const FoamLevelBlend blend = foam_level_blend(foam_, footprint_m(first + i));
             part.level[i] = blend.level;
             part.t[i] = blend.t;
         }
@@ -170,15 +171,16 @@ class FoamHistory<T>::Locator {
         }
     }
 
-  private:
-    FoamLevelBlend level_blend_of(std::size_t i) const {
+    float footprint_m(std::size_t i) const {
+        if (!points_.pixel_m) return whole_m_;
         const auto width_m = static_cast<float>(points_.pixel_m[i]);
-        if (!points_.pixel_axis_m) return foam_level_blend(foam_, width_m);
+        if (!points_.pixel_axis_m) return width_m;
         const glm::vec<2, T> axis = points_.pixel_axis_m[i];
         const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
-        return foam_level_blend(foam_, foam_footprint_m(width_m, length_m));
+        return foam_footprint_m(width_m, length_m);
     }
 
+  private:
     template <class Use>
     void for_tiles(int level, std::size_t first, std::size_t last, Part& part, const Use& use) const {
         const Cells& cells = cells_[static_cast<std::size_t>(level)];
@@ -194,6 +196,7 @@ class FoamHistory<T>::Locator {
     const Points<T>& points_;
     const FoamPlan& foam_;
     const FoamKernels& kernels_;
+    float whole_m_ = 0.0f;
     FoamLevelBlend whole_;
     struct Cells {
         double per_m = 0.0;
@@ -593,14 +596,20 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults<T
         }
         return;
     }
+    const Locator locate(*this, points, query);
+    const auto past_m = static_cast<float>(foam_.past_m), breaking_m = static_cast<float>(foam_.breaking_m);
     for_parts(points, query, {0, 1, mean_, mean_ * mean_age_s_}, watch,
               [&](std::size_t first, std::span<const float> foam, std::span<const float> aged) {
                   const std::size_t count = foam.size();
-                  alignas(64) std::array<float, kPart> breaking, all, age_s;
-                  for (std::size_t i = 0; i < count; ++i)
+                  alignas(64) std::array<float, kPart> breaking, under, all, age_s;
+                  for (std::size_t i = 0; i < count; ++i) {
                       breaking[i] = static_cast<float>(results.breaking[first + i]);
+                      under[i] = share_under_breaking(locate.footprint_m(first + i), past_m, breaking_m);
+                  }
                   std::fill(breaking.begin() + count, breaking.end(), 0.0f);
-                  kernels_.add({foam.data(), aged.data()}, breaking.data(), count, all.data(), age_s.data());
+                  std::fill(under.begin() + count, under.end(), 0.0f);
+                  kernels_.add({foam.data(), aged.data()}, breaking.data(), under.data(), count, all.data(),
+                               age_s.data());
                   for (std::size_t i = 0; results.coverage && i < count; ++i)
                       results.coverage[first + i] = static_cast<T>(all[i]);
                   for (std::size_t i = 0; results.age_s && i < count; ++i)

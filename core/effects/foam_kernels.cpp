@@ -77,11 +77,12 @@ void Between(const ResidualFoam& tile, const FoamAxis& x, const FoamAxis& y, std
     }
 }
 
-void Add(const ResidualFoam& left, const float* breaking, std::size_t count, float* all, float* age_s) {
+void Add(const ResidualFoam& left, const float* breaking, const float* under, std::size_t count, float* all,
+         float* age_s) {
     const D d;
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         const N active(hn::LoadU(d, breaking + i)), foam(hn::LoadU(d, left.foam + i));
-        const N residual = residual_foam(foam, active), total = active + residual;
+        const N residual = residual_foam(foam, active, N(hn::LoadU(d, under + i))), total = active + residual;
         const auto is_left = residual > N(0);
         const N age = residual / select<D>(is_left, total, N(1)) *
                       (N(hn::LoadU(d, left.aged + i)) / select<D>(is_left, foam, N(1)));

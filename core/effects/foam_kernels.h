@@ -42,8 +42,9 @@ struct FoamKernels {
     void (*between)(const ResidualFoam&, const FoamAxis& x, const FoamAxis& y, std::size_t first,
                     std::size_t end, float* foam, float* aged);
     // Combines foam that is left with foam that breaks: all foam, 0 … 1, and its mean age, breaking foam counting as
-    // 0 [s]. All five arrays hold `count` numbers rounded up to a whole 16.
-    void (*add)(const ResidualFoam&, const float* breaking, std::size_t count, float* all, float* age_s);
+    // 0 [s]. under: share_under_breaking(). All six arrays hold `count` numbers rounded up to a whole 16.
+    void (*add)(const ResidualFoam&, const float* breaking, const float* under, std::size_t count, float* all,
+                float* age_s);
     // y of Φ(y) = P(J < threshold), by node, limited to ± kFarthestFoamDeviate. Arrays as long as y's, or Buffers.
     void (*deviates)(const float* mean, const float* variance, const float* third, const float* threshold,
                      bool third_moment, std::span<float> y);

@@ -180,20 +180,32 @@ FoamNoise foam_image_noise(FoamPattern pattern, float along, float across, float
     return FoamNoise(sqrt(picture) * shown + sqrt(kClouds) * through * clouds, picture * variance + kClouds * through * through);
 }
 
-// rest_m: relative to the origin that the pattern was made for. footprint_m: on the water at rest.
-FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float age_s) {
+// Where in the pattern a point is.
+struct PatternPlace {
+    vec2 wind_m;  // along the wind and across it, from the origin that the pattern was made for
+    vec3 cell;    // as FoamPattern's
+    vec3 rest;
+};
+
+// rest_m: relative to that origin.
+PatternPlace pattern_place(FoamPattern pattern, vec2 rest_m) {
     float along = pattern.axes.x * rest_m.x + pattern.axes.y * rest_m.y;
     float across = pattern.axes.x * rest_m.y - pattern.axes.y * rest_m.x;
     vec3 place = pattern.rest + vec3(pattern.axes.z * along, pattern.axes.w * along, across / float(kFoamCell_m));
     vec3 whole = floor(place);
-    place -= whole;
     vec3 cell = pattern.cell + whole;
-    cell -= 65536.0f * floor(cell / 65536.0f);
-    vec2 cells = vec2(cell.x, cell.z);
-    vec2 rest = vec2(place.x, place.z);
+    return PatternPlace(vec2(along, across), cell - 65536.0f * floor(cell / 65536.0f), place - whole);
+}
+
+// footprint_m: on the water at rest.
+FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float age_s) {
+    PatternPlace at = pattern_place(pattern, rest_m);
+    vec2 cells = vec2(at.cell.x, at.cell.z);
+    vec2 rest = vec2(at.rest.x, at.rest.z);
 
     if (pattern.image.x > 0.0f)
-        return foam_image_noise(pattern, along, across, footprint_m, foam_clouds(foam_cell(cells, rest, 0, vec2(0.0f), false), 70u));
+        return foam_image_noise(pattern, at.wind_m.x, at.wind_m.y, footprint_m,
+                                foam_clouds(foam_cell(cells, rest, 0, vec2(0.0f), false), 70u));
 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
@@ -209,8 +221,8 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
         ivec3 halvings = ivec3(4, 6, 7);  // 2, 1/2 and 1/4 m
         vec3 reach_m = vec3(0.34f, 0.1f, 0.045f);
         for (int k = 0; k < 3; ++k) {
-            FoamCell at = foam_cell(cells, rest, halvings[k], vec2(0.0f), false);
-            bent += reach_m[k] * vec2(foam_clouds(at, uint(101 + 2 * k)), foam_clouds(at, uint(102 + 2 * k)));
+            FoamCell cell = foam_cell(cells, rest, halvings[k], vec2(0.0f), false);
+            bent += reach_m[k] * vec2(foam_clouds(cell, uint(101 + 2 * k)), foam_clouds(cell, uint(102 + 2 * k)));
         }
     }
     // Holes of one size, and smaller ones between. The largest begin at 1/4 m, and grow by 0.8 octaves for each doubling of
@@ -219,15 +231,16 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     float all = 0.0f;
     float lace_shown = 0.0f;
     float lace_variance = 0.0f;
-    for (int k = max(int(floor(octave)) - 3, 0); k <= int(floor(octave)) + 1; ++k) {
+    for (int k = max(int(floor(octave)) - 4, -2); k <= int(floor(octave)) + 1; ++k) {
         float finer = octave - float(k);
         float weight = max(1.0f - abs(finer), 0.0f) + 0.6f * max(1.0f - abs(finer - 1.0f), 0.0f) +
-                       0.42f * max(1.0f - abs(finer - 2.0f), 0.0f) + 0.3f * max(1.0f - abs(finer - 3.0f), 0.0f);
+                       0.42f * max(1.0f - abs(finer - 2.0f), 0.0f) + 0.3f * max(1.0f - abs(finer - 3.0f), 0.0f) +
+                       0.25f * max(1.0f - abs(finer - 4.0f), 0.0f);
         all += weight * weight;
-        float size_m = 0.125f * float(1 << k);
+        float size_m = 0.03125f * float(1 << (k + 2));
         float through = weight * foam_weight(size_m, footprint_m);
         if (through > 0.0f) {
-            lace_shown += through * foam_holes(foam_cell(cells, rest, 8 - k, bent / size_m, k % 2 == 1), uint(k));
+            lace_shown += through * foam_holes(foam_cell(cells, rest, 8 - k, bent / size_m, (k & 1) == 1), uint(k));
             lace_variance += through * through;
         }
     }
@@ -261,8 +274,8 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
             float through = foam_weight(size_m, footprint_m);
             if (part * through > 0.0f) {
                 float aside_m = bent.y + (k == 2 ? 0.5f : 1.0f) * meander_m;
-                FoamCell at = foam_cell(vec2(cell.y, cell.z), vec2(place.y, place.z), 2 * k, vec2(0.0f, aside_m / size_m), false);
-                noise.shown += sqrt(part) * through * foam_clouds(at, uint(50 + k));
+                FoamCell cell = foam_cell(vec2(at.cell.y, at.cell.z), vec2(at.rest.y, at.rest.z), 2 * k, vec2(0.0f, aside_m / size_m), false);
+                noise.shown += sqrt(part) * through * foam_clouds(cell, uint(50 + k));
                 noise.variance += part * through * through;
             }
         }
@@ -273,7 +286,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
 // How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
 // beyond its bubbles.
 float foam_softness(float age_s) {
-    return 0.55f + 0.3f * age_s / (age_s + 4.0f);
+    return 0.36f + 0.24f * age_s / (age_s + 4.0f);
 }
 
 // What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place
@@ -304,23 +317,17 @@ const float kTonePixels = 5.0f;
 const float kTone = 0.4f;
 
 float foam_tone(FoamPattern pattern, vec2 rest_m, float footprint_m) {
-    float along = pattern.axes.x * rest_m.x + pattern.axes.y * rest_m.y;
-    float across = pattern.axes.x * rest_m.y - pattern.axes.y * rest_m.x;
-    vec3 place = pattern.rest + vec3(pattern.axes.z * along, pattern.axes.w * along, across / float(kFoamCell_m));
-    vec3 whole = floor(place);
-    place -= whole;
-    vec3 cell = pattern.cell + whole;
-    cell -= 65536.0f * floor(cell / 65536.0f);
     float octave = log2(float(kFoamCell_m) / (kTonePixels * footprint_m));
     float fade = smoothstep(0.2f, 0.8f, footprint_m) * smoothstep(-1.5f, 0.0f, octave);
     if (!(fade > 0.0f)) return 0.0f;
+    PatternPlace at = pattern_place(pattern, rest_m);
     octave = clamp(octave, 0.0f, 7.0f);
     int coarse = min(int(octave), 6);
     float t = octave - float(coarse);
     float sum = 0.0f;
     for (int k = coarse; k < coarse + 2; ++k)
         sum += (k == coarse ? 1.0f - t : t) *
-               foam_clouds(foam_cell(vec2(cell.x, cell.z), vec2(place.x, place.z), k, vec2(0.0f), k % 2 == 1), uint(80 + k));
+               foam_clouds(foam_cell(vec2(at.cell.x, at.cell.z), vec2(at.rest.x, at.rest.z), k, vec2(0.0f), k % 2 == 1), uint(80 + k));
     return fade * (2.0f * normal_below(sum * inversesqrt((1.0f - t) * (1.0f - t) + t * t)) - 1.0f);
 }
 

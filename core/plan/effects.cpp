@@ -102,9 +102,13 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .adds_to = [](const Query& query) { return query.asks_for_past() ? foam_products() : ProductSet(); },
      .plan =
          [](Plan& plan) {
-             if (asks_for(plan, foam_products()))
+             if (asks_for(plan, foam_products())) {
+                 // In pictures too what broke is that of a mesh: their wider edge is what breaks now.
                  plan.foam =
-                     plan_foam(plan.from->scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
+                     plan_foam(plan.from->scene, breaking_of(plan.from->scene, plan.filter).footprint_m,
+                               plan.knobs.foam_steps_a_period);
+                 plan.foam->breaking_m = plan.breaking.footprint_m;
+             }
              // Nobody but pictures looks at them.
              const auto is_picture = [](const PlannedQuery& planned) { return planned.query.is_picture; };
              if (plan.foam && has_bubbles(plan.from->scene) && std::ranges::any_of(plan.queries, is_picture))

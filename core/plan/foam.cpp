@@ -97,6 +97,7 @@ FoamPlan plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
     foam.decay_s = effects.foam_decay_s;
     foam.window_s = kWindow * foam.decay_s;
     foam.cell_m = std::max(kCell * finest_m, kFinestCell_m);
+    foam.past_m = finest_m;
     foam.step_s = std::sqrt(kTwoPi * 2.0 * foam.cell_m / kGravity) / steps_a_period;
     const double towards = scene.sea.wind_direction_deg * kPi / 180.0;
     foam.drift_mps =

@@ -22,9 +22,10 @@ struct FoamPlan {
     glm::dvec2 drift_mps{0.0};  // of the foam over the water at rest
     double step_s =
         0.0;  // of the lattice of times; a whole number of steps makes a loop, or of very short loops a step
-    double window_s = 0.0;   // nothing older counts
-    double cell_m = 0.0;     // of the finest level; each further one has cells twice as large
-    double loop_s = 0.0;     // of the sea; 0: none
+    double window_s = 0.0;                  // nothing older counts
+    double cell_m = 0.0;                    // of the finest level; each further one has cells twice as large
+    double loop_s = 0.0;                    // of the sea; 0: none
+    double past_m = 0.0, breaking_m = 0.0;  // the finest footprints of what broke, and of what breaks now
     double bubbles_m = 0.0;  // e-folding depth of the bubbles that breaking leaves; 0: nobody sees them
 
     // Levels with cells; beyond the last, foam is the sea's mean.

@@ -275,6 +275,7 @@ Problem unknown_preset(const std::string& key, const std::string& name) {
 }
 
 PresetPart preset_part(std::string_view path) {
+    if (path == "water.bubbles") return PresetPart::Sea;
     const std::string_view table = path.substr(0, path.find('.'));
     if (table == "light") return PresetPart::Light;
     if (table == "camera") return PresetPart::Camera;

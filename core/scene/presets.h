@@ -17,12 +17,12 @@ enum class PresetGroup { Beaufort, Sea };
 // "beaufort", "sea".
 std::string_view word_of(PresetGroup group);
 
-// What of a look a preset gives: the sea with its waves and effects, the light, the camera, the water.
+// What of a look a preset gives: the sea with its waves, effects and bubbles, the light, the camera, the water.
 enum class PresetPart { Sea, Light, Camera, Water };
 inline constexpr std::array<std::string_view, 4> kPresetParts{"sea", "light", "camera",
                                                               "water"};  // their names
 using PresetParts = std::bitset<kPresetParts.size()>;
-// The part that a key belongs to, by its table.
+// The part that a key belongs to, by its table. Bubbles are as many as there is foam: they go with the sea's.
 PresetPart preset_part(std::string_view path);
 
 struct PresetValue {

@@ -140,9 +140,24 @@ inline T coverage(JacobianMoments<T> j, T threshold, bool third_moment) {
 // … 0.5).
 inline constexpr double kUnderBreaking = 0.42;
 
+// That share where what breaks is seen through a wider footprint than what it has left, as in pictures (Plan::breaking): the foam
+// there shows half of it by itself, and the less so the nearer the two. With it all foam is as much as on meshes: at 14 and 24 m/s
+// within 1 % at decays of 4 and 8 s, 1.5 % at 0.5 s (without 1.3 and 5 %). For the same footprint it is the whole share, to the bit.
+template <class T>
+inline T share_under_breaking(T footprint_m, T past_m, T breaking_m) {
+    T own = maximum(footprint_m, T(1e-6));
+    T ratio = maximum(own, past_m) / maximum(own, breaking_m);
+    T square = ratio * ratio;
+    return T(kUnderBreaking) * (T(0.5) + T(0.5) * square * square);
+}
+
 // The share of a footprint that is residual foam: what earlier breaking has left (core/effects/foam_history.h) and
 // present breaking doesn't cover.
 template <class T>
+inline T residual_foam(T left, T breaking, T under) {
+    return minimum(maximum(left - under * breaking, T(0)), T(1)) * (T(1) - breaking);
+}
+template <class T>
 inline T residual_foam(T left, T breaking) {
-    return minimum(maximum(left - T(kUnderBreaking) * breaking, T(0)), T(1)) * (T(1) - breaking);
+    return residual_foam(left, breaking, T(kUnderBreaking));
 }

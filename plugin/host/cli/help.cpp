@@ -293,7 +293,7 @@ const char* const kKeysFooter =
 const char* const kPresets =
     "List the named seas, or print one.\n"
     "A shot file that begins with preset = \"NAME\" lies on top of it: sea, light, camera and water, or those that\n"
-    "preset_parts = [\"sea\", …] beside it names.";
+    "preset_parts = [\"sea\", …] beside it names; water.bubbles is of the sea, as foam is.";
 const char* const kPresetName = "Print this one's keys, as a shot file has them";
 const char* const kPresetSheet = "Draw a small picture of each into this file";
 const char* const kPresetsFooter =

@@ -5,7 +5,7 @@ uniform sampler2D foam_nodes;  // residual foam, that times its age [s], and bub
 uniform sampler2D foam_pages;  // which tile of foam_nodes; -1: none
 // A row for each level. First column: .xy: the origin in the level's cells from its first tile's first node; .z: cells per metre.
 // Second: .xy: its tiles across and along; .z: their first row in foam_pages. After the last level, (foam, foam times its age)
-// beyond it, the finest level's cells per metre, and bubbles beyond it; negative: there are none.
+// beyond it, the finest level's cells per metre, and bubbles beyond it; negative: there are none. And FoamPlan's past_m and breaking_m.
 uniform sampler2D foam_levels;
 
 // Changes nothing and returns false where the tile isn't there.
@@ -28,10 +28,8 @@ bool foam_of_level(int level, vec2 rest_m, inout vec3 foam) {
 }
 
 // Residual foam, that times its age, and bubbles, by the rule of foam_level_blend().
-vec3 foam_left(vec2 rest_m, vec3 pixel) {
+vec3 foam_left(vec2 rest_m, float footprint) {
     vec4 sea = texelFetch(foam_levels, ivec2(0, kFoamLevels), 0);
-    float along = length(pixel.yz);
-    float footprint = along > pixel.x ? sqrt(pixel.x * along) : pixel.x;
     float cells = 2.0 * footprint * sea.z;
     int level = 0;
     for (; level < kFoamLevels && cells >= 2.0; ++level) cells *= 0.5;
@@ -50,8 +48,11 @@ vec3 foam_left(vec2 rest_m, vec3 pixel) {
 }
 
 AllFoam all_foam(vec2 rest_m, vec3 pixel, float breaking) {
-    vec3 left = foam_left(rest_m, pixel);
+    float along = length(pixel.yz);
+    float footprint = along > pixel.x ? sqrt(pixel.x * along) : pixel.x;
+    vec3 left = foam_left(rest_m, footprint);
+    vec2 of = texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).xy;
     bool has_bubbles = texelFetch(foam_levels, ivec2(0, kFoamLevels), 0).w >= 0.0;
-    return AllFoam(breaking + residual_foam(left.x, breaking), breaking, left.x > 0.0 ? left.y / left.x : 0.0,
+    return AllFoam(breaking + residual_foam(left.x, breaking, share_under_breaking(footprint, of.x, of.y)), breaking, left.x > 0.0 ? left.y / left.x : 0.0,
                    has_bubbles ? left.z : -1.0);
 }

@@ -115,6 +115,7 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
     const auto source = frame_of<double>(scene, {filtered(products(Product::JacobianMoments), foam.cell_m)});
     Frame<double> frame(std::make_shared<const Sea<double>>(source.sea().plan()));
     std::vector<double> sum(points.size()), of_age(points.size()), bubbles(points.size());
+    const double under = share_under_breaking(0.2, foam.past_m, foam.breaking_m);
     const double step_s = foam.step_s / 8.0;
     const auto steps = static_cast<int>(std::ceil(foam.window_s / step_s));
     ProductArrays<double> at;
@@ -144,7 +145,7 @@ TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
     std::vector<double> got, wanted;
     double mean_got = 0.0, mean_wanted = 0.0, age_got = 0.0, age_wanted = 0.0;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const double active = seen.active[p], left = residual_foam(sum[p], active);
+        const double active = seen.active[p], left = residual_foam(sum[p], active, under);
         got.push_back(seen.residual()[p]);
         wanted.push_back(left / (1.0 - active));
         mean_got += got.back();
@@ -581,21 +582,26 @@ TEST(LivingFoam, Drifts) {
     EXPECT_LT(correlation(before, residual_at(22.0, {})), 0.6);
 }
 
-// Total coverage over area, of the law's.
-double share_of_law(double footprint_m, int per_side, double spacing_m, double decay_s = 4.0,
-                    Tiling tiling = Tiling::Periodic) {
-    Scene scene = scene_of(decay_s);
-    scene.waves.tiling = tiling;
-    Shown<> shown(sea_of(scene, footprint_m));
-    double foam = 0.0, sea = 0.0;
+// All foam over area.
+double mean_coverage(const std::shared_ptr<const Sea<float>>& sea, int per_side, double spacing_m) {
+    Shown<> shown(sea);
+    double foam = 0.0, all = 0.0;
     const Foam now = shown.at(11.0, square(per_side, spacing_m));
     for (std::size_t i = 0; i < now.total.size(); ++i) {
         const glm::vec3 j = now.jacobian[i];
         const double area = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
         foam += area * now.total[i];
-        sea += area;
+        all += area;
     }
-    return foam / sea / law_coverage(scene_of(4.0));
+    return foam / all;
+}
+
+// Of the law's, on meshes.
+double share_of_law(double footprint_m, int per_side, double spacing_m, double decay_s = 4.0,
+                    Tiling tiling = Tiling::Periodic) {
+    Scene scene = scene_of(decay_s);
+    scene.waves.tiling = tiling;
+    return mean_coverage(sea_of(scene, footprint_m, false), per_side, spacing_m) / law_coverage(scene);
 }
 
 // All foam together has the law's coverage, at any footprint.
@@ -629,6 +635,30 @@ TEST(LivingFoam, HasTheLawsCoverage) {
         EXPECT_NEAR(all, 1.0, 0.03) << decay_s;
         EXPECT_NEAR(fine, 1.0, 0.06) << decay_s;
     }
+}
+
+// Pictures have a mesh's past, to the bit, and as much foam, though the edge of what breaks now is soft in them.
+TEST(LivingFoam, IsAMeshesInPictures) {
+    for (const double decay_s : {0.5, 4.0})
+        for (const double wind_mps : {14.0, 24.0})
+            for (const double footprint_m : {0.02, 1.2}) {
+                const Scene scene = scene_of(decay_s, wind_mps);
+                const auto mesh = sea_of(scene, footprint_m, false), picture = sea_of(scene, footprint_m);
+                ASSERT_GT(picture->plan().breaking.footprint_m, 1.5 * mesh->plan().breaking.footprint_m);
+                const double share = mean_coverage(picture, 120, 1.3) / mean_coverage(mesh, 120, 1.3);
+                std::printf("%g m/s, decay %g s, footprint %4.2f m: %.4f of the mesh's\n", wind_mps, decay_s,
+                            footprint_m, share);
+                EXPECT_NEAR(share, 1.0, decay_s < 1.0 ? 0.015 : 0.01);
+
+                FoamHistory<float> of_mesh(mesh), of_picture(picture);
+                for (FoamHistory<float>* history : {&of_mesh, &of_picture}) {
+                    history->set(11.0);
+                    history->prepare(std::vector<FoamPlace>{{0, 3, -2}});
+                }
+                const FoamNodes a = of_mesh.nodes().at(0), b = of_picture.nodes().at(0);
+                EXPECT_TRUE(std::equal(a.foam, a.foam + FoamPlan::kTileNodes, b.foam));
+                EXPECT_TRUE(std::equal(a.aged, a.aged + FoamPlan::kTileNodes, b.aged));
+            }
 }
 
 // Gusts change where waves break, and not how much foam there is.

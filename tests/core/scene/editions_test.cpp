@@ -81,5 +81,19 @@ TEST(Presets, HaveParts) {
     EXPECT_EQ(shot_text(rest), shot_text(whole));
 }
 
+// A storm's amount of foam is more than its bubbles are of, so that who takes one takes the other.
+TEST(Presets, HaveBubblesWithTheirFoam) {
+    const Preset& storm = *find_preset("beaufort-10");
+    Scene whole, sea, water;
+    apply(storm, whole);
+    apply(storm, sea, PresetParts().set(static_cast<std::size_t>(PresetPart::Sea)));
+    apply(storm, water, PresetParts().set(static_cast<std::size_t>(PresetPart::Water)));
+    ASSERT_NE(whole.water.bubbles, Scene{}.water.bubbles);
+    EXPECT_EQ(sea.water.bubbles, whole.water.bubbles);
+    EXPECT_EQ(sea.effects.whitecap_amount, whole.effects.whitecap_amount);
+    EXPECT_EQ(water.water.bubbles, Scene{}.water.bubbles);
+    EXPECT_EQ(water.effects.whitecap_amount, Scene{}.effects.whitecap_amount);
+}
+
 }  // namespace
 }  // namespace pelagic

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "core/plan/prepared_scene.h"
@@ -23,6 +24,9 @@ struct TrainsPlan {
     // Bin i, 0 … count − 1, longest first: its longer edge (edge_m(count) is shortest_m), and its train.
     double edge_m(int i) const;
     std::vector<double> wavelengths_m{};
+
+    // Whose spectrum's directions they have: of a shot with weather (core/plan/weather.h); null: the sea's own.
+    std::shared_ptr<const PreparedScene> shot{};
 
     // What a Sea holds of them (Trains<T>, core/waves/trains.h).
     std::size_t sea_bytes(bool double_precision) const;

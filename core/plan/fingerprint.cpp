@@ -109,7 +109,7 @@ std::string weather_time_text(const Plan& plan, int query, double t_s) {
     if (!plan.from->weather) return {};
     if (!plan.foam || !plan.queries.at(query).query.asks_for_past()) return weather_text(*plan.from, t_s);
     // Of the lattice of times, with those that an interval is known by.
-    constexpr double kBeside = 8.0;
+    constexpr double kBeside = 5.0;
     const double beside_s = kBeside * plan.foam->step_s;
     return weather_text(*plan.from, t_s, plan.foam->window_s + beside_s, beside_s);
 }

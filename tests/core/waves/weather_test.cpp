@@ -195,7 +195,7 @@ TEST(Weather, HasTheHeightOfItsSpectrumAtEachFrame) {
     for (const Kind& kind : {kKinds[0], kKinds[1]}) {
         SCOPED_TRACE(kind.name);
         Scene scene = rising(kind.model, kind.has_cascades);
-        if (kind.has_cascades) scene.waves.cascades = {{6000.0, 360}, {300.0, 64}};
+        if (kind.has_cascades) scene.waves.cascades = {{6000.0, 360}, {300.0, 128}};
         const auto prepared = prepare(scene);
         const double first = prepared->weather->keys[0].sea->spectrum.m0(),
                      last = prepared->weather->keys[1].sea->spectrum.m0();

@@ -51,20 +51,15 @@ void keep_each_once(std::vector<FoamPlace>& places) {
 
 template <class T>
 struct FoamHistory<T>::Level {
-    // Throws BuildCancelled.
-    Level(const Sea<T>& sea, double cell, const std::atomic<bool>* cancel)
-        : cell_m(cell),
-          frame(std::make_shared<const Sea<T>>(plan_of_foam_level(sea.plan(), cell),
-                                               BuildWatch{.progress = {}, .cancel = cancel},
-                                               sea.spectrum_table())) {
+    Level(Frame<T> of, double cell, const Plan& plan)
+        : cell_m(cell), bytes(plan.sea_bytes() + plan.frame_bytes()), frame(std::move(of)) {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 rest_m.emplace_back(static_cast<T>(x * cell), static_cast<T>(y * cell));
     }
 
-    std::size_t bytes() const { return frame.sea().plan().sea_bytes() + frame.sea().plan().frame_bytes(); }
-
     double cell_m;
+    std::size_t bytes;
     Frame<T> frame;
     std::vector<glm::vec<2, T>> rest_m;  // a tile's nodes, from its first
 };
@@ -228,7 +223,50 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
 }
 
 template <class T>
+FoamHistory<T>::FoamHistory(std::shared_ptr<const SeaOverTime<T>> shot) : FoamHistory(shot->first()) {
+    if (!shot->plan().from->weather) return;
+    shot_ = std::move(shot);
+    most_tiles_ = 0;  // as many as the shot's largest wind shows
+    for (const double count : foam_tiles(shot_->plan()))
+        most_tiles_ += static_cast<std::size_t>(std::ceil(count));
+}
+
+template <class T>
 FoamHistory<T>::~FoamHistory() = default;
+
+template <class T>
+bool FoamHistory<T>::leaves_nothing() const {
+    if (!shot_) return !(sea_->foam_left_per_s() > 0.0);
+    return std::ranges::none_of(weights_, [](const IntervalWeight& weight) { return weight.foam > 0.0f; });
+}
+
+template <class T>
+const Whitecaps& FoamHistory<T>::whitecaps(std::int64_t n) {
+    if (!shot_) return sea_->whitecaps();
+    const auto [found, is_new] = whitecaps_.try_emplace(n);
+    if (is_new) found->second = shot_->whitecaps(static_cast<double>(n) * foam_.step_s);
+    return found->second;
+}
+
+// What all breaking of the past has left, over the whole of a sea that changes.
+template <class T>
+void FoamHistory<T>::find_means() {
+    whitecaps_.erase(whitecaps_.begin(), whitecaps_.lower_bound(first_ - kSamples));
+    whitecaps_.erase(whitecaps_.upper_bound(last_ + kSamples), whitecaps_.end());
+    const double lasting_s = foam_.weight(0.0, foam_.window_s).foam_s;
+    double foam = 0.0, aged = 0.0, bubbles = 0.0;
+    for (std::int64_t n = first_; n <= last_; ++n) {
+        const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
+        const double left = 0.5 * (whitecaps(n).left_coverage + whitecaps(n + 1).left_coverage) / lasting_s;
+        const FoamPlan::Weight weight = foam_.weight(since_s - foam_.step_s, since_s);
+        foam += left * weight.foam_s;
+        aged += left * weight.age_s2;
+        bubbles += left * foam_.bubbles_weight_s(since_s - foam_.step_s, since_s);
+    }
+    mean_ = static_cast<float>(std::min(foam, 1.0));
+    mean_age_s_ = foam > 0.0 ? static_cast<float>(aged / foam) : 0.0f;
+    mean_bubbles_ = static_cast<float>(bubbles);
+}
 
 template <class T>
 void FoamHistory<T>::set(double t_s) {
@@ -244,17 +282,25 @@ void FoamHistory<T>::set(double t_s) {
     for (std::int64_t n = first_; n <= last_; ++n) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
         const FoamPlan::Weight weight = foam_.weight(since_s - foam_.step_s, since_s);
-        weights_.push_back({static_cast<float>(sea_->foam_left_per_s() * weight.foam_s),
-                            static_cast<float>(sea_->foam_left_per_s() * weight.age_s2),
-                            static_cast<float>(sea_->foam_left_per_s() *
-                                               foam_.bubbles_weight_s(since_s - foam_.step_s, since_s))});
+        const double left_per_s =
+            shot_ ? 0.5 * (whitecaps(n).left_per_s + whitecaps(n + 1).left_per_s) : sea_->foam_left_per_s();
+        weights_.push_back(
+            {static_cast<float>(left_per_s * weight.foam_s), static_cast<float>(left_per_s * weight.age_s2),
+             static_cast<float>(left_per_s * foam_.bubbles_weight_s(since_s - foam_.step_s, since_s))});
     }
+    if (shot_) find_means();
 }
 
 template <class T>
 typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atomic<bool>* cancel) {
     std::unique_ptr<Level>& level = levels_[static_cast<std::size_t>(index)];
-    if (!level) level = std::make_unique<Level>(*sea_, foam_.cell_of(index), cancel);
+    if (level) return *level;
+    const double cell_m = foam_.cell_of(index);
+    const BuildWatch watch{.progress = {}, .cancel = cancel};
+    Plan plan = plan_of_foam_level(shot_ ? shot_->plan() : sea_->plan(), cell_m);
+    Frame<T> frame = shot_ ? Frame<T>(std::make_shared<const SeaOverTime<T>>(plan, watch, shot_.get()))
+                           : Frame<T>(std::make_shared<const Sea<T>>(plan, watch, sea_->spectrum_table()));
+    level = std::make_unique<Level>(std::move(frame), cell_m, plan);
     return *level;
 }
 
@@ -536,8 +582,9 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
             if (due.empty()) continue;
             if (is_cancelled()) throw BuildCancelled();
             level(l, watch.cancel).frame.set(static_cast<double>(n) * foam_.step_s);
+            const Whitecaps& now = whitecaps(n);
             tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) {
-                if (!is_cancelled()) sample(*due[i], n);
+                if (!is_cancelled()) sample(*due[i], n, now);
             });
             if (is_cancelled()) throw BuildCancelled();
         }
@@ -547,7 +594,7 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
 }
 
 template <class T>
-void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
+void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) const {
     const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
     const double tile_m = level.cell_m * FoamPlan::kTileCells;
     const double t_s = static_cast<double>(n) * foam_.step_s;
@@ -561,11 +608,10 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
     // Where it waits for its parts, this thread takes up no other tile: the arrays are its own.
     const Points<T> points{.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}};
     tbb::this_task_arena::isolate([&] { evaluate(level.frame, 0, points, results); });
-    if (sea_->gusts())
-        whitecap_thresholds<T>(*sea_->gusts(), level.frame.time_within_loop_s(), points, level.cell_m,
-                               threshold);
+    if (now.gusts)
+        whitecap_thresholds<T>(*now.gusts, level.frame.time_within_loop_s(), points, level.cell_m, threshold);
     else
-        std::fill(threshold.begin(), threshold.end(), static_cast<float>(sea_->whitecap_threshold()));
+        std::fill(threshold.begin(), threshold.end(), static_cast<float>(now.threshold));
     for (std::size_t i = 0; i < kNodes; ++i) {
         mean[i] = static_cast<float>(moments[i].x);
         variance[i] = static_cast<float>(moments[i].y);
@@ -632,7 +678,7 @@ std::size_t FoamHistory<T>::held_bytes() const {
     std::size_t bytes = 0;
     for (const auto& [place, tile] : tiles_) bytes += tile->bytes();
     for (const auto& level : levels_)
-        if (level) bytes += level->bytes();
+        if (level) bytes += level->bytes;
     return bytes;
 }
 

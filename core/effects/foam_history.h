@@ -15,6 +15,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -57,6 +58,8 @@ class FoamHistory {
   public:
     // Of a sea whose plan has persistent foam (std::invalid_argument otherwise).
     explicit FoamHistory(std::shared_ptr<const Sea<T>> sea);
+    // Of one that may change: each past time has its own waves, threshold, and foam that a breaking leaves.
+    explicit FoamHistory(std::shared_ptr<const SeaOverTime<T>> sea);
     ~FoamHistory();
 
     // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what earlier calls have computed for it, which is most
@@ -109,7 +112,10 @@ class FoamHistory {
     };
     class Locator;  // of points among the nodes
 
-    bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
+    bool leaves_nothing() const;  // where no wave breaks
+    // Of the whole sea at a time of the lattice.
+    const Whitecaps& whitecaps(std::int64_t n);
+    void find_means();
     // Two of a tile's sums, with what they are beyond all tiles.
     struct Sums {
         std::size_t first, second;
@@ -126,10 +132,12 @@ class FoamHistory {
     void make_room(std::size_t count, long round);
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
-    void sample(Tile& tile, std::int64_t n) const;
+    void sample(Tile& tile, std::int64_t n, const Whitecaps& whitecaps) const;
     Level& level(int index, const std::atomic<bool>* cancel);
 
-    std::shared_ptr<const Sea<T>> sea_;
+    std::shared_ptr<const Sea<T>> sea_;            // of a sea that changes the first key's
+    std::shared_ptr<const SeaOverTime<T>> shot_;   // null: the sea is one
+    std::map<std::int64_t, Whitecaps> whitecaps_;  // of a sea that changes, by times of the lattice
     FoamPlan foam_;
     FoamKernels kernels_;
     std::size_t most_tiles_ = 0;                                    // that the plan has room for

@@ -53,6 +53,11 @@ SeaAtTime<T>::SeaAtTime(std::shared_ptr<const Sea<T>> sea) : frame_(std::move(se
 }
 
 template <class T>
+SeaAtTime<T>::SeaAtTime(std::shared_ptr<const SeaOverTime<T>> shot) : frame_(shot) {
+    if (shot->plan().foam) history_.emplace(shot);
+}
+
+template <class T>
 bool SeaAtTime<T>::has_past(int query) const {
     return history_ && sea().plan().queries.at(static_cast<std::size_t>(query)).query.asks_for_past();
 }

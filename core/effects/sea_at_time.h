@@ -21,6 +21,8 @@ template <class T>
 class SeaAtTime {
   public:
     explicit SeaAtTime(std::shared_ptr<const Sea<T>> sea);
+    // sea() is then that of the time that was set last.
+    explicit SeaAtTime(std::shared_ptr<const SeaOverTime<T>> sea);
 
     // As Frame's. Foam's past is gone through where somebody asks for it, not here.
     void set(double t_s, const std::atomic<bool>* cancel = nullptr) {

@@ -235,11 +235,6 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
             }
             coarsest_weight_.push_back(plan.filter.weight(k, cells_.coarsest_m));
         }
-        for (std::size_t f = 0; f < kFields.size(); ++f) {
-            const std::vector<T>& amplitude = trains.amplitude[index(kFields[f])];
-            train_amplitudes_[f].assign(amplitude.begin(), amplitude.begin() + std::ssize(finest_weight_));
-            if (plan.dropped[index(kFields[f])]) train_amplitudes_[f].assign(finest_weight_.size(), 0.0);
-        }
     }
     refresh();
 }
@@ -248,6 +243,13 @@ template <class T>
 void FrameBounds<T>::refresh() {
     if (!frame_->is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
     const Plan& plan = frame_->sea().plan();
+    planned_ = &plan.queries.at(query_);
+    if (const Trains<T>& trains = frame_->sea().trains(); !finest_weight_.empty())
+        for (std::size_t f = 0; f < kFields.size(); ++f) {
+            const std::vector<T>& amplitude = trains.amplitude[index(kFields[f])];
+            train_amplitudes_[f].assign(amplitude.begin(), amplitude.begin() + std::ssize(finest_weight_));
+            if (plan.dropped[index(kFields[f])]) train_amplitudes_[f].assign(finest_weight_.size(), 0.0);
+        }
     struct Place {
         int cascade, grid;
         bool operator==(const Place&) const = default;

@@ -116,12 +116,10 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                                 glm::dvec2 origin_m, const Whitecaps* whitecaps)
     : frame_(&frame),
       query_(query_index),
-      planned_(&frame.sea().plan().queries.at(query_index)),
-      statistics_(&frame.sea().statistics(query_index)),
-      ellipses_(&frame.sea().ellipses(query_index)),
       wanted_(wanted),
       kernels_(evaluate_kernels<T>()),
-      whitecaps_(whitecaps ? whitecaps : &frame.sea().whitecaps()) {
+      given_whitecaps_(whitecaps) {
+    take_sea();
     const Plan& plan = frame.sea().plan();
     const Query& query = planned_->query;
     ProductSet held = query.products & ~lasting_products();
@@ -137,15 +135,6 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                          std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                      [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
     breaks_ = (wanted & breaking_products()).any();
-    // A cascade's own tile is periodic and only a part of the sea: it has no gusts.
-    if (whitecaps_->gusts && !query.only_cascade && (wanted & gusty_products()).any())
-        gusts_ = &*whitecaps_->gusts;
-    if ((wanted & unresolved_products()).any())
-        unresolved_ = unresolved_at<T>(
-            *statistics_, {0, T(0)},
-            unresolved_moments<double>(
-                has_trains_ ? unresolved(frame.sea().trains(), plan.filter, query.pixel_m.front())
-                            : statistics_->whole));
     for (const std::vector<int>* levels :
          {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels})
         for (const int level : *levels)
@@ -159,9 +148,30 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
 }
 
 template <class T>
+void PreparedQuery<T>::take_sea() {
+    const Sea<T>& sea = frame_->sea();
+    planned_ = &sea.plan().queries.at(query_);
+    statistics_ = &sea.statistics(query_);
+    ellipses_ = &sea.ellipses(query_);
+    whitecaps_ = given_whitecaps_ ? given_whitecaps_ : &sea.whitecaps();
+}
+
+template <class T>
 void PreparedQuery<T>::refresh() {
     if (!frame_->is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
+    take_sea();
     const Plan& plan = frame_->sea().plan();
+    const Query& query = planned_->query;
+    // A cascade's own tile is periodic and only a part of the sea: it has no gusts.
+    gusts_ = whitecaps_->gusts && !query.only_cascade && (wanted_ & gusty_products()).any()
+                 ? &*whitecaps_->gusts
+                 : nullptr;
+    if ((wanted_ & unresolved_products()).any())
+        unresolved_ = unresolved_at<T>(
+            *statistics_, {0, T(0)},
+            unresolved_moments<double>(
+                has_trains_ ? unresolved(frame_->sea().trains(), plan.filter, query.pixel_m.front())
+                            : statistics_->whole));
     FieldSet needed = fields_of(wanted_) & ~plan.dropped;
     if (breaks_) needed |= displacement_gradient_fields();
     if (has_random_tiling_) needed |= gradient_fields(needed);

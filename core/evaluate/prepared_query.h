@@ -93,6 +93,8 @@ class PreparedQuery {
     // What an ellipse leaves unresolved of the cascades' waves beyond a round footprint of its width.
     UnresolvedMoments<double> beside_round(const Footprint<T>& pixel) const;
 
+    void take_sea();  // the frame's, which may be another at each time
+
     const Frame<T>* frame_;
     int query_;
     const PlannedQuery* planned_;
@@ -102,6 +104,7 @@ class PreparedQuery {
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
     bool has_trains_ = false, has_random_tiling_ = false, breaks_ = false;
+    const Whitecaps* given_whitecaps_;  // null: the sea's
     const Whitecaps* whitecaps_;
     const Gusts* gusts_ = nullptr;       // none, or nothing that they change is wanted
     UnresolvedMoments<T> unresolved_{};  // of pixels that are all the query's first

@@ -237,6 +237,7 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
     const bool rise = wants(Field::VelocityZ), drift = wants(Field::VelocityX, Field::VelocityY);
     const bool slope = wants(Field::SlopeX, Field::SlopeY),
                gradient = wants(Field::Dxx, Field::Dyy, Field::Dxy);
+    const bool grows = !trains.growth[0].empty();
     const bool cell_wanted = height || horizontal || rise || drift,
                pixel_wanted = slope || gradient || args.breaking;
 
@@ -281,6 +282,15 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                 if (horizontal) add(sum, s, Field::Dx, Field::Dy);
                 if (drift) add(sum, c, Field::VelocityX, Field::VelocityY);
                 if (rise) add(sum, s, Field::VelocityZ);
+                if (grows) {
+                    const auto grow = [&](Field field, std::size_t axis, V wave) HWY_ATTR {
+                        sum[index(field)] =
+                            hn::MulAdd(hn::Set(d, trains.growth[axis][i]), wave, sum[index(field)]);
+                    };
+                    grow(Field::VelocityX, 0, s);
+                    grow(Field::VelocityY, 1, s);
+                    grow(Field::VelocityZ, 2, c);
+                }
             }
             if (i < pixel_end) {
                 V s = sine, c = cosine, most = hn::Set(d, trains.breaking[i]);

@@ -16,6 +16,7 @@
 #include "core/plan/products.h"
 #include "core/plan/random_tiling.h"
 #include "core/plan/unresolved_slopes.h"
+#include "core/plan/weather.h"
 #include "core/scene/names.h"
 #include "core/spectrum/viscous_cutoff.h"
 
@@ -93,7 +94,7 @@ std::string cost_text(const Plan& plan, const EffectRow& row) {
     const auto from = std::make_shared<PreparedScene>(*plan.from);
     row.turn_off(from->scene);
     if (!is_on(Effect::SecondOrder, from->scene)) from->second_order = {};
-    from->extent = extent_of(from->scene, from->spectrum, from->second_order);
+    if (!from->weather) from->extent = extent_of(from->scene, from->spectrum, from->second_order);
     std::vector<Query> queries;
     for (const PlannedQuery& planned : plan.queries)
         queries.push_back(with_effects(from->scene, planned.query));
@@ -118,10 +119,25 @@ std::string explain(const Plan& plan) {
     const Scene& scene = plan.from->scene;
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
     std::string page = format("Sea, with the defaults of edition %d\n", scene.shot.edition);
-    page += format("  wind %g m/s towards %g°, spectrum %s, Hs %.3g m", scene.sea.wind_speed_mps,
-                   scene.sea.wind_direction_deg, std::string(word_of(scene.sea.spectrum)).c_str(),
-                   4.0 * std::sqrt(spectrum.m0()));
-    if (!spectrum.empty()) page += format(", peak wavelength %.4g m", kTwoPi / spectrum.peak_wavenumber());
+    const auto add_sea = [&](const SeaState& sea, const DirectionalSpectrum& of) {
+        page += format("wind %g m/s towards %g°, spectrum %s, Hs %.3g m", sea.wind_speed_mps,
+                       sea.wind_direction_deg, std::string(word_of(sea.spectrum)).c_str(),
+                       4.0 * std::sqrt(of.m0()));
+        if (!of.empty()) page += format(", peak wavelength %.4g m", kTwoPi / of.peak_wavenumber());
+    };
+    if (const Weather* weather = plan.from->weather.get()) {
+        page += format(
+            "  changes from key to key, by variance and with the same phases, %s in the sea's time; planned for the mean of its "
+            "keys",
+            weather->is_smooth ? "smooth" : "linear");
+        for (const Weather::Key& key : weather->keys) {
+            page += format("\n  frame %d: ", key.frame);
+            add_sea(key.sea->scene.sea, key.sea->spectrum);
+        }
+    } else {
+        page += "  ";
+        add_sea(scene.sea, spectrum);
+    }
     page += format("\n  capillary-gravity dispersion, viscous cutoff at %g rad/m\n", kViscousWavenumber);
 
     page += "\nOutputs\n";

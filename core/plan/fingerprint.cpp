@@ -1,7 +1,9 @@
 #include "core/plan/fingerprint.h"
 
 #include "core/plan/products.h"
+#include "core/plan/weather.h"
 #include "core/scene/canonical.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -81,13 +83,49 @@ std::string pose_text(const View& view) {
            number_text(view.shift.y);
 }
 
+std::string weather_plan_text(const Plan& plan, bool by_extent) {
+    if (!plan.from->weather) return {};
+    std::string text = "weather, breaking " + number_text(plan.breaking.footprint_m);
+    for (const CascadePlan& cascade : plan.cascades)
+        if (const auto& second = cascade.second_order)
+            for (const double value :
+                 {1.0 * second->radius, second->difference, second->sum, second->shallow})
+                text += ' ' + number_text(value);
+    if (plan.gusts || plan.foam)  // they drift with one wind
+        text += " wind " + number_text(plan.from->scene.sea.wind_speed_mps) + ' ' +
+                number_text(plan.from->scene.sea.wind_direction_deg);
+    if (plan.foam) text += " bubbles " + number_text(plan.foam->bubbles_m);
+    if (plan.trains)  // their lengths and directions are those of the mean
+        for (const Weather::Key& key : plan.from->weather->keys) text += weather_text(*plan.from, key.time_s);
+    if (by_extent) {
+        const Extent& extent = plan.from->extent;
+        text += " extent " + number_text(extent.height_m) + ' ' + number_text(extent.reach_m);
+        for (const double deviation_m : extent.unresolved.deviation_m) text += ' ' + number_text(deviation_m);
+    }
+    return text;
+}
+
+std::string weather_time_text(const Plan& plan, int query, double t_s) {
+    if (!plan.from->weather) return {};
+    if (!plan.foam || !plan.queries.at(query).query.asks_for_past()) return weather_text(*plan.from, t_s);
+    // Of the lattice of times, with those that an interval is known by.
+    constexpr double kBeside = 5.0;
+    const double beside_s = kBeside * plan.foam->step_s;
+    return weather_text(*plan.from, t_s, plan.foam->window_s + beside_s, beside_s);
+}
+
 std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
-    return Fingerprint()
-        .add(plan.queries[output.query].query.name)
+    const Scene& scene = plan.from->scene;
+    Fingerprint hash;
+    hash.add(plan.queries[output.query].query.name)
         .add("revision " + std::to_string(output.row->revision))
-        .add(canonical(plan.from->scene, output.key_parts))
-        .add(plan_text(plan, output.query))
-        .text();
+        .add(canonical(plan.from->weather ? without_keyed(scene) : scene, output.key_parts))
+        .add(plan_text(plan, output.query));
+    if (plan.from->weather) {
+        const bool is_of_camera = output.has_surface && !plan.surface->is_constant();
+        hash.add(weather_plan_text(plan, is_of_camera || output.volume));
+    }
+    return hash.text();
 }
 
 std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole,
@@ -97,6 +135,7 @@ std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, con
     // Which time of a loop a frame shows isn't in any key.
     const Shot& shot = plan.from->scene.shot;
     if (shot.loop_s > 0.0) hash.add("time " + number_text(shot.time_s(frame)));
+    if (plan.from->weather) hash.add(weather_time_text(plan, output.query, shot.time_s(frame)));
     if (output.has_surface)
         if (const auto view = plan.surface->shaped_by(frame)) hash.add(pose_text(*view));
     return hash.text();

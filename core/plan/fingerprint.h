@@ -35,6 +35,12 @@ std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, con
 // same points. The levels of a view's footprints are not in it: they are the same in every plan that has them.
 std::string plan_text(const Plan& plan, int query);
 
+// What a plan of a shot with weather has of all its keys: a key that changes none of it changes no other frames. Empty without.
+// `by_extent`: whether the query's points depend on how far the sea goes.
+std::string weather_plan_text(const Plan& plan, bool by_extent);
+// And what a query's answers at a time have of the keys round it, the past of its foam included. Empty without.
+std::string weather_time_text(const Plan& plan, int query, double t_s);
+
 // A pose, exact.
 std::string pose_text(const View& view);
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/plan/weather.h"
 #include "core/scene/lens.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/dispersion.h"
@@ -81,6 +82,14 @@ double breaker_height_m(const Scene& scene, const DirectionalSpectrum& spectrum)
     const double m0 =
         scene.sea.swell.empty() ? spectrum.m0() : DirectionalSpectrum(wind, scene.waves.band_gains).m0();
     return kBreakerOverHs * 4.0 * std::sqrt(m0);
+}
+
+double highest_breaker_m(const PreparedScene& prepared) {
+    if (!prepared.weather) return breaker_height_m(prepared.scene, prepared.spectrum);
+    double highest_m = 0.0;
+    for (const Weather::Key& key : prepared.weather->keys)
+        highest_m = std::max(highest_m, breaker_height_m(key.sea->scene, key.sea->spectrum));
+    return highest_m;
 }
 
 double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum) {

@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "core/plan/prepared_scene.h"
 #include "core/plan/query.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "pelagic/scene.h"
@@ -62,6 +63,8 @@ bool has_bubbles(const Scene& scene);
 // Of what breaks most, the height [m], and how deep bubbles are under it, e-folding: `spectrum` is the scene's.
 double breaker_height_m(const Scene& scene, const DirectionalSpectrum& spectrum);
 double bubbles_depth_m(const Scene& scene, const DirectionalSpectrum& spectrum);
+// Of the key of a sea that changes which has the highest.
+double highest_breaker_m(const PreparedScene& prepared);
 
 // Of a scene that has persistent foam. steps_a_period: Knobs::foam_steps_a_period. `finest_m`: no breaking is resolved
 // below it.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "core/plan/quality.h"
 #include "core/plan/random_tiling.h"
 #include "core/plan/taps.h"
+#include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
@@ -365,7 +367,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     constexpr double kRollerOverHeight = 2.0 / 3.0;
     if (std::ranges::any_of(queries, [](const Query& query) { return query.is_picture; }))
         plan.breaking.footprint_m =
-            plan.breaking.footprint_of(kRollerOverHeight * breaker_height_m(scene, prepared.spectrum));
+            plan.breaking.footprint_of(kRollerOverHeight * highest_breaker_m(prepared));
     for (const Query& query : queries) add_query(plan, query);
     for (const EffectRow& row : effect_table())
         if (!row.is_on(scene))
@@ -383,6 +385,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
     plan.trains = resolve_trains(prepared, trains_finest_m);
+    if (plan.trains && prepared.weather) plan.trains->shot = plan.from;
     const auto sizes = resolve_cascades(prepared, finest_footprint_m, plan.filter);
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);
@@ -516,7 +519,22 @@ long Plan::lines_per_frame() const {
     return count;
 }
 
+// The seas of its keys, and that of a frame, which changes: it has its modes' rates as well.
+static std::size_t weather_bytes(const Plan& plan) {
+    std::set<const PreparedScene*> seas;
+    for (const Weather::Key& key : plan.from->weather->keys) seas.insert(key.sea.get());
+    Plan one = plan;
+    one.from = plan.from->weather->keys.front().sea;
+    std::size_t rates = 0;
+    for (const CascadePlan& cascade : plan.cascades)
+        if (cascade.moves())
+            rates += lattice_modes(cascade.amplitude_radius()) * 4 *
+                     (plan.knobs.double_precision ? sizeof(double) : sizeof(float));
+    return (seas.size() + 1) * one.sea_bytes() + rates;
+}
+
 std::size_t Plan::sea_bytes() const {
+    if (from->weather) return weather_bytes(*this);
     std::size_t bytes = trains ? trains->sea_bytes(knobs.double_precision) : 0;
     for (const CascadePlan& cascade : cascades)
         bytes += lattice_modes(cascade.amplitude_radius()) *

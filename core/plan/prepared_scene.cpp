@@ -1,12 +1,15 @@
 #include "core/plan/prepared_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "core/plan/effects.h"
+#include "core/plan/weather.h"
 #include "core/scene/budget.h"
+#include "core/scene/number_keys.h"
 
 namespace pelagic {
 
@@ -16,6 +19,8 @@ std::shared_ptr<const PreparedScene> prepare(Scene scene) {
             std::string(scene.quality.max_error ? "quality.max_error" : "quality.frame_ms") +
             " isn't resolved yet: a plan takes settings, which a host chooses for a budget before it (pelagic explain "
             "says which)");
+    scene = without_still_keys(std::move(scene));
+    if (std::ranges::any_of(scene.keyed, is_of_sea)) return prepare_weather(std::move(scene));
     DirectionalSpectrum spectrum(scene.sea, scene.waves.band_gains);
     const SecondOrder second =
         is_on(Effect::SecondOrder, scene) ? pelagic::second_order(spectrum) : SecondOrder();

@@ -11,11 +11,15 @@
 
 namespace pelagic {
 
+struct Weather;  // core/plan/weather.h
+
 struct PreparedScene {
     Scene scene;
     DirectionalSpectrum spectrum;  // of scene.sea, with the gains of scene.waves
     SecondOrder second_order;      // of the spectrum; all 0 without the effect
     Extent extent;                 // extent_of()
+    // Of a scene whose sea has keys, and the spectrum is then their mean; else null.
+    std::shared_ptr<const Weather> weather{};
 };
 
 // Of a scene and what was worked out for it: of the spectrum's waves at the scene's choppiness, with crests to second order.

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct TrainsPlan {
     std::vector<double> wavelengths_m{};
 
     int hero_trains = 0;  // besides those: of waves.heroes
+    // Whose spectrum's directions they have: of a shot with weather (core/plan/weather.h); null: the sea's own.
+    std::shared_ptr<const PreparedScene> shot{};
 
     // What a Sea holds of them (Trains<T>, core/waves/trains.h).
     std::size_t sea_bytes(bool double_precision) const;

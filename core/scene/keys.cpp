@@ -108,7 +108,8 @@ void add_sea(Built& out) {
                                         .unit = "m/s",
                                         .range = limits::kWindSpeed_mps,
                                         .soft = SoftRange{0.0, 40.0},
-                                        .key_parts = kWaves}),
+                                        .key_parts = kWaves,
+                                        .may_have_keys = true}),
         row<&SeaState::wind_direction_deg>({.name = "wind_direction_deg",
                                             .help = "blowing towards, counter-clockwise from +x (east)",
                                             .unit = "degrees",
@@ -121,7 +122,8 @@ void add_sea(Built& out) {
              .unit = "m",
              .range = limits::kFetch_m,
              .soft = SoftRange{1e3, 3e6, true},
-             .key_parts = kWaves}),
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         row<&SeaState::depth_m>({.name = "depth_m",
                                  .help = "of the water",
                                  .unit = "m",
@@ -182,7 +184,8 @@ void add_sea(Built& out) {
              .unit = "m",
              .range = limits::kSignificantHeight_m,
              .soft = SoftRange{0.0, 15.0},
-             .key_parts = kWaves}),
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         row<&SeaState::spreading>(
             {.name = "spreading", .help = "how it is shared among the directions", .key_parts = kWaves}),
         row<&SeaState::directionality>(
@@ -192,7 +195,8 @@ void add_sea(Built& out) {
                  "each, and the rest from all directions alike",
              .range = limits::kDirectionality,
              .soft = SoftRange{0.1, 10.0, true},
-             .key_parts = kWaves}),
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         row<&SeaState::gust_strength>(
             {.name = "gust_strength",
              .help =

@@ -62,6 +62,29 @@ void refuse_keys(const Scene& scene, std::string_view table) {
                 "frame (in Python scene.at(frame), in C++ scene_at())");
 }
 
+bool is_of_sea(const KeyedNumber& number) {
+    return number.path.starts_with("sea.") || number.path.starts_with("waves.");
+}
+
+void refuse_keyed_sea(const Scene& scene) {
+    for (const KeyedNumber& number : scene.keyed)
+        if (is_of_sea(number))
+            throw std::invalid_argument(
+                number.path +
+                " has keys, and here the sea is one for the whole shot; accepted: a number; pelagic "
+                "render and pelagic bake show it with keys");
+}
+
+Scene without_still_keys(Scene scene) {
+    for (const std::vector<KeyedNumber> keyed = scene.keyed; const KeyedNumber& number : keyed) {
+        const auto& keys = number.keys.keys;
+        const auto is_first = [&](const NumberKeys::Key& key) { return key.value == keys.front().value; };
+        if (is_of_sea(number) && !keys.empty() && std::ranges::all_of(keys, is_first))
+            key_of(number.path).set(scene, keys.front().value);
+    }
+    return scene;
+}
+
 Scene without_keyed(Scene scene) {
     for (const std::vector<KeyedNumber> keyed = scene.keyed; const KeyedNumber& number : keyed) {
         const Key& key = key_of(number.path);

@@ -18,6 +18,15 @@ Scene scene_at(const Scene& scene, double frame);
 // any) has keys.
 void refuse_keys(const Scene& scene, std::string_view table = {});
 
+// Of numbers that the sea is made of.
+bool is_of_sea(const KeyedNumber& number);
+
+// For what has one sea for the whole shot: as refuse_keys(), of those.
+void refuse_keyed_sea(const Scene& scene);
+
+// Where all of a sea's keys give the same number: the number.
+Scene without_still_keys(Scene scene);
+
 // A shot's text without its numbers that have keys, and theirs at a frame as lines of their own: a frame's fingerprint depends on no
 // other frame's values.
 Scene without_keyed(Scene scene);

@@ -16,6 +16,7 @@
 #include "core/scene/lens.h"
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -529,7 +530,25 @@ void check_water(SceneChecker& check, const Scene& scene) {
          number_text(Water{}.chlorophyll_mg_m3) + ", or water.type = \"ocean\", \"coastal\", \"turbid\""});
 }
 
+// What goes by the sea of all times.
+void check_keyed_sea(SceneChecker& check, const Scene& scene) {
+    const Effects& effects = scene.effects;
+    for (const KeyedNumber& number : without_still_keys(scene).keyed) {
+        if (!is_of_sea(number)) continue;
+        const auto refuse = [&](const std::string& problem, const std::string& accepted) {
+            check.refuse({number.path, value_text(key_of(number.path), number.keys), problem, accepted});
+        };
+        if (scene.shot.time_scale == 0.0)
+            refuse("changes with the sea's time, which stands still",
+                   "a number, or a shot.time_scale above 0");
+        if (effects.whitecaps && effects.spray)
+            refuse("changes, and spray flies with one wind", "a number, or effects.spray = false");
+        return;
+    }
+}
+
 void check_keyed(SceneChecker& check, const Scene& scene) {
+    check_keyed_sea(check, scene);
     if (scene.shot.loop_s == 0.0) return;
     for (const KeyedNumber& number : scene.keyed)
         check.refuse({number.path, value_text(key_of(number.path), number.keys),

@@ -20,6 +20,17 @@ DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const Ba
     }
     if (!gains.empty())
         for (WaveSystem& system : systems_) system = system.gained(BandGains(gains), dispersion_);
+    add_up();
+}
+
+DirectionalSpectrum::DirectionalSpectrum(std::span<const Part> parts)
+    : dispersion_(parts.front().sea->dispersion()) {
+    for (const Part& part : parts)
+        for (const WaveSystem& system : part.sea->systems()) systems_.push_back(system.scaled(part.share));
+    add_up();
+}
+
+void DirectionalSpectrum::add_up() {
     std::erase_if(systems_, [](const WaveSystem& system) { return !(system.m0() > 0.0); });
 
     for (const WaveSystem& system : systems_) {

@@ -25,6 +25,13 @@ class DirectionalSpectrum {
     // SeaState that validate() accepts gives a finite spectrum. No wind and no swell: empty().
     explicit DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains = {});
 
+    // The sum of these shares (≥ 0) of seas of one depth; at least one.
+    struct Part {
+        const DirectionalSpectrum* sea;
+        double share;
+    };
+    explicit DirectionalSpectrum(std::span<const Part> parts);
+
     bool empty() const { return systems_.empty(); }
     double m0() const { return m0_; }  // [m²], over all wavenumbers, to 1e-6
 
@@ -74,6 +81,8 @@ class DirectionalSpectrum {
     static constexpr double kCalmPeakWavenumber = 1.0;  // rad/m: a finite answer where there is no wave
 
   private:
+    void add_up();  // what follows from the systems
+
     Dispersion dispersion_;
     std::vector<WaveSystem> systems_;
     std::vector<double> panels_;

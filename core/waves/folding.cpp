@@ -10,6 +10,7 @@
 
 #include "core/plan/breaking.h"
 #include "core/plan/random_tiling.h"
+#include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
@@ -207,7 +208,39 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
     return share_of(all_of(spectrum, choppiness), 1.0);
 }
 
+namespace {
+
+// Of a sea that changes: those of its keys, and keys between which it changes faster than seas do.
+std::vector<std::string> weather_warnings(const Weather& weather) {
+    constexpr double kPeriods =
+        10.0;  // of the longest peak: 6 % of the water's speed is then the amplitudes' own change
+    std::vector<std::string> warnings;
+    for (const Weather::Key& key : weather.keys)
+        for (const std::string& warning : sea_warnings(*key.sea))
+            warnings.push_back("at frame " + std::to_string(key.frame) + ' ' + warning);
+    for (std::size_t i = 0; i + 1 < weather.keys.size(); ++i) {
+        const Weather::Key &key = weather.keys[i], &next = weather.keys[i + 1];
+        if (key.sea == next.sea) continue;
+        double period_s = 0.0;
+        for (const DirectionalSpectrum* of : {&key.sea->spectrum, &next.sea->spectrum})
+            if (!of->empty())
+                period_s = std::max(period_s, kTwoPi / of->dispersion().omega(of->longest_peak_wavenumber()));
+        const double lasts_s = next.time_s - key.time_s;
+        if (lasts_s < kPeriods * period_s)
+            warnings.push_back("from frame " + std::to_string(key.frame) + " to " +
+                               std::to_string(next.frame) + " the sea changes within " +
+                               number_text(std::round(10.0 * lasts_s) / 10.0) +
+                               " s of its time, faster than waves of " + number_text(std::round(period_s)) +
+                               " s grow; keys " + number_text(std::ceil(kPeriods * period_s)) +
+                               " s apart look like weather");
+    }
+    return warnings;
+}
+
+}  // namespace
+
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
+    if (prepared.weather) return weather_warnings(*prepared.weather);
     std::vector<std::string> warnings = folding_warning(prepared);
     for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
                        &hero_warning})

@@ -47,6 +47,20 @@ bool leans(const Plan& plan, int cascade) {
                        [](const Grid& grid) { return (grid.fields & horizontal_fields()).any(); });
 }
 
+// A wave that runs ahead by an angle is cosine times itself plus later() times its rate.
+template <class T>
+struct Turned {
+    T cosine, sine;
+    T later(double cycles_per_s) const {
+        const T omega = static_cast<T>(kTwoPi * cycles_per_s);
+        return omega > T(0) ? sine / omega : T(0);  // (0, 0) is no wave
+    }
+};
+template <class T>
+Turned<T> turned_by(double angle_rad) {
+    return {static_cast<T>(std::cos(angle_rad)), static_cast<T>(std::sin(angle_rad))};
+}
+
 // Calls work(item) for each item, one item per task, and returns the sum of the results.
 template <class Item, class Work>
 long sum_of_each(const std::vector<Item>& items, Work&& work) {
@@ -68,6 +82,7 @@ template <class T>
 struct Frame<T>::Scratch {
     // By mode of a block: of the waves, with what pairs of them add, and as their horizontal displacement has them.
     Heights waves, vertical, leaning;
+    Heights growing;  // with their amplitudes' rates in the place of their amplitudes
     Buffer<T> through, chop_through;
     Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
 };
@@ -134,6 +149,11 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
 }
 
 template <class T>
+Frame<T>::Frame(std::shared_ptr<const SeaOverTime<T>> shot) : Frame(shot->first()) {
+    if (shot->plan().from->weather) shot_ = std::move(shot);
+}
+
+template <class T>
 void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
@@ -142,6 +162,10 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     is_set_ = false;  // stays so if a task throws
     ++times_set_;
     time_s_ = t_s;
+    if (shot_) {
+        sea_ = shot_->at(t_s);
+        if (second_order_) second_order_->take(sea_);
+    }
     time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
     if (second_order_) {
         stop_if(cancel);
@@ -180,6 +204,7 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
         want_heights(scratch.waves, moves || plan.lean_rad > 0.0);
         if (second_order_) want_heights(scratch.vertical, moves);
         if (plan.lean_rad > 0.0) want_heights(scratch.leaning, moves);
+        if (shot_ && moves) want_heights(scratch.growing, true);
         want({&scratch.lines}, kBlockColumns * line_values_);
         want({&scratch.line}, line_values_);  // allocated last: the check above relies on it
     }
@@ -204,6 +229,34 @@ void Frame<T>::advance(const Block& block, Scratch& at) const {
                       .height_im = at.waves.im.data(),
                       .rate_re = has_rates ? at.waves.rate_re.data() : nullptr,
                       .rate_im = has_rates ? at.waves.rate_im.data() : nullptr});
+}
+
+template <class T>
+void Frame<T>::grow(const Block& block, Scratch& at) const {
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const std::size_t first = cascade.columns[block.first_mx];
+    const std::size_t count = cascade.columns[block.first_mx + block.columns] - first;
+    kernels_.advance({.forward_re = cascade.growth[0].data() + first,
+                      .forward_im = cascade.growth[1].data() + first,
+                      .backward_re = cascade.growth[2].data() + first,
+                      .backward_im = cascade.growth[3].data() + first,
+                      .cycles_per_s = cascade.cycles_per_s.data() + first,
+                      .time_s = time_within_loop_s_,
+                      .count = count,
+                      .height_re = at.growing.re.data(),
+                      .height_im = at.growing.im.data(),
+                      .rate_re = at.growing.rate_re.data(),
+                      .rate_im = at.growing.rate_im.data()});
+    const Turned<T> turned = turned_by<T>(sea_->plan().lean_rad);
+    const bool is_leaning = leans(sea_->plan(), block.cascade);
+    for (std::size_t i = 0; i < count; ++i) {
+        at.waves.rate_re[i] += at.growing.re[i];
+        at.waves.rate_im[i] += at.growing.im[i];
+        if (!is_leaning) continue;
+        const T later = turned.later(cascade.cycles_per_s[first + i]);
+        at.leaning.rate_re[i] += turned.cosine * at.growing.re[i] + later * at.growing.rate_re[i];
+        at.leaning.rate_im[i] += turned.cosine * at.growing.im[i] + later * at.growing.rate_im[i];
+    }
 }
 
 template <class T>
@@ -238,13 +291,13 @@ void Frame<T>::lean(const Block& block, Scratch& at) const {
     const Cascade<T>& cascade = sea_->cascades()[block.cascade];
     const std::size_t first = cascade.columns[block.first_mx];
     const std::size_t count = cascade.columns[block.first_mx + block.columns] - first;
-    const T cosine = static_cast<T>(std::cos(sea_->plan().lean_rad)),
-            sine = static_cast<T>(std::sin(sea_->plan().lean_rad));
+    const Turned<T> turned = turned_by<T>(sea_->plan().lean_rad);
+    const T cosine = turned.cosine, sine = turned.sine;
     const Heights& from = at.waves;
     Heights& to = at.leaning;
     for (std::size_t i = 0; i < count; ++i) {
         const T omega = static_cast<T>(kTwoPi * cascade.cycles_per_s[first + i]);
-        const T later = omega > T(0) ? sine / omega : T(0);  // (0, 0) is no wave
+        const T later = turned.later(cascade.cycles_per_s[first + i]);
         to.re[i] = cosine * from.re[i] + later * from.rate_re[i];
         to.im[i] = cosine * from.im[i] + later * from.rate_im[i];
         if (to.rate_re.empty()) continue;
@@ -262,10 +315,11 @@ long Frame<T>::transform_columns(const Block& block) {
     const CascadePlan& planned = plan.cascades[block.cascade];
     Scratch& at = scratch();
     advance(block, at);
-    const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
-    if (has_pairs) add_second_order(block, at);
     const bool is_leaning = leans(plan, block.cascade);
     if (is_leaning) lean(block, at);
+    if (!cascade.growth[0].empty()) grow(block, at);
+    const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
+    if (has_pairs) add_second_order(block, at);
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
     long lines = 0;
     for (std::size_t g = 0; g < planned.grids.size(); ++g) {

@@ -13,6 +13,7 @@
 #include "core/waves/kernels.h"
 #include "core/waves/realisation.h"
 #include "core/waves/sea.h"
+#include "core/waves/sea_over_time.h"
 #include "core/waves/second_order.h"
 #include "core/waves/transform.h"
 
@@ -23,6 +24,8 @@ template <class T>
 class Frame {
   public:
     explicit Frame(std::shared_ptr<const Sea<T>>);
+    // sea() is then that of the frame's time, and each set() gives another where the sea changes.
+    explicit Frame(std::shared_ptr<const SeaOverTime<T>>);
     ~Frame();
     Frame(Frame&&) noexcept;
     Frame& operator=(Frame&&) noexcept;
@@ -91,11 +94,14 @@ class Frame {
     void add_second_order(const Block&, Scratch&) const;
     // Turns their phases by Plan::lean_rad for the horizontal displacement.
     void lean(const Block&, Scratch&) const;
+    // Adds what the amplitudes' own rates are of theirs, leaning where they do.
+    void grow(const Block&, Scratch&) const;
     // Both return the number of 1-D transforms.
     long transform_columns(const Block&);
     long transform_rows(const Rows&);
 
     std::shared_ptr<const Sea<T>> sea_;
+    std::shared_ptr<const SeaOverTime<T>> shot_;  // null: the sea is one
     Kernels<T> kernels_;
     std::vector<std::vector<GridState>> grids_;  // by cascade
     std::optional<SecondOrderWaves<T>> second_order_;

@@ -4,6 +4,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <complex>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -13,6 +15,7 @@
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/random_tiling.h"
+#include "core/scene/number_keys.h"
 #include "core/spectrum/cell_energies.h"
 #include "core/waves/breaking_rate.h"
 #include "core/waves/hero_waves.h"
@@ -25,6 +28,8 @@ namespace {
 
 // Columns that a task builds: enough for its sums and arrays to be worth making.
 constexpr int kTaskColumns = 16;
+// Modes that one blends.
+constexpr std::size_t kTaskModes = 4096;
 
 // Of one column at a time.
 struct ColumnScratch {
@@ -82,6 +87,76 @@ Cascade<T> empty_cascade(const CascadePlan& planned, bool has_gradients) {
     cascade.cycles_per_s = Buffer<double>::uncleared(count);
     if (has_gradients) cascade.chop = Buffer<T>::uncleared(count);
     return cascade;
+}
+
+// A mode's random numbers are those of both seas: each amplitude is the root of the energies' blend, with their sign. In double,
+// so that no square is lost.
+template <class T>
+Cascade<T> blended(const Cascade<T>& first, const Cascade<T>& second, double share, double rate_per_s,
+                   bool has_rates) {
+    Cascade<T> cascade;
+    cascade.size_m = first.size_m;
+    cascade.radius = first.radius;
+    cascade.columns = first.columns;
+    const auto copy = []<class V>(const Buffer<V>& from) {
+        Buffer<V> to = Buffer<V>::uncleared(from.size());
+        std::copy_n(from.data(), from.size(), to.data());
+        return to;
+    };
+    if (!first.chop.empty()) cascade.chop = copy(first.chop);
+    cascade.cycles_per_s = copy(first.cycles_per_s);
+    constexpr std::array kAmplitudes{&Cascade<T>::forward_re, &Cascade<T>::forward_im,
+                                     &Cascade<T>::backward_re, &Cascade<T>::backward_im};
+    const std::size_t count = first.modes();
+    for (std::size_t part = 0; part < kAmplitudes.size(); ++part) {
+        (cascade.*kAmplitudes[part]) = Buffer<T>::uncleared(count);
+        if (has_rates) cascade.growth[part] = Buffer<T>::uncleared(count);
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kTaskModes), [&](const auto& range) {
+        for (std::size_t part = 0; part < kAmplitudes.size(); ++part) {
+            const T *a = (first.*kAmplitudes[part]).data(), *b = (second.*kAmplitudes[part]).data();
+            T* to = (cascade.*kAmplitudes[part]).data();
+            T* rates = has_rates ? cascade.growth[part].data() : nullptr;
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const double of_first = static_cast<double>(a[i]), of_second = static_cast<double>(b[i]);
+                const double before = of_first * of_first, after = of_second * of_second;
+                const double root =
+                    std::copysign(std::sqrt((1.0 - share) * before + share * after), of_first + of_second);
+                to[i] = static_cast<T>(root);
+                if (rates)
+                    rates[i] =
+                        root != 0.0 ? static_cast<T>(0.5 * rate_per_s * (after - before) / root) : T(0);
+            }
+        }
+    });
+    return cascade;
+}
+
+SpectralMoments between(SpectralMoments first, SpectralMoments second, double share) {
+    return (first *= 1.0 - share) += second *= share;
+}
+
+// Of a sea whose moments are these.
+Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const FoamLife& life) {
+    const bool third = plan.knobs.third_moment;
+    const double law = law_coverage(plan.from->scene),
+                 choppiness = mean_choppiness(plan.from->spectrum, plan.breaking);
+    Whitecaps found{.threshold = calibrated_threshold(total, law, choppiness, third, life)};
+    const auto j = jacobian_moments<double>(0.0, 0.0, 0.0, 0.0,
+                                            {total.xxxx, total.xxxy, total.xxyy, total.xyyy, total.yyyy});
+    double left = 0.0;
+    if (life.lasting_s > 0.0 && std::isfinite(found.threshold)) {
+        const double deviate = breaking_deviate(j, found.threshold, third);
+        found.left_per_s = life.left_per_s(deviate);
+        left = found.left_per_s * life.lasting_s;
+        found.left_coverage = pelagic::left_coverage(deviate, left);
+        found.residual_coverage = residual_foam(found.left_coverage, coverage(j, found.threshold, third));
+    }
+    if (plan.gusts)
+        found.gusts =
+            make_gusts(*plan.gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
+                       found.threshold, law_exponent(plan.from->scene));
+    return found;
 }
 
 }  // namespace
@@ -186,6 +261,7 @@ class Sea<T>::Progress {
 template <class T>
 Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTable> table)
     : plan_(std::move(plan)), table_(std::move(table)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
+    if (plan_.from->weather) refuse_keyed_sea(plan_.from->scene);
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     if (!table_) table_ = std::make_shared<const SpectrumTable>(spectrum);
     if (plan_.trains) {
@@ -244,26 +320,49 @@ void Sea<T>::add_heroes() {
 }
 
 template <class T>
-Whitecaps Sea<T>::whitecaps(const FoamLife& life) const {
-    const bool third = plan_.knobs.third_moment;
-    const double law = law_coverage(plan_.from->scene),
-                 choppiness = mean_choppiness(plan_.from->spectrum, plan_.breaking);
-    Whitecaps found{.threshold = calibrated_threshold(total_, law, choppiness, third, life)};
-    const auto j = jacobian_moments<double>(
-        0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
-    double left = 0.0;
-    if (life.lasting_s > 0.0 && std::isfinite(found.threshold)) {
-        const double deviate = breaking_deviate(j, found.threshold, third);
-        found.left_per_s = life.left_per_s(deviate);
-        left = found.left_per_s * life.lasting_s;
-        found.left_coverage = pelagic::left_coverage(deviate, left);
-        found.residual_coverage = residual_foam(found.left_coverage, coverage(j, found.threshold, third));
+Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
+            std::shared_ptr<const PreparedScene> from)
+    : plan_(first.plan_), loop_s_(first.loop_s_) {
+    plan_.from = std::move(from);
+    if (plan_.trains) {
+        trains_ = blended(first.trains_, second.trains_, share, rate_per_s, *plan_.from, plan_.breaking);
+        total_ = pelagic::total(trains_);
+    } else {
+        total_ = between(first.total_, second.total_, share);
     }
-    if (plan_.gusts)
-        found.gusts =
-            make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
-                       found.threshold, law_exponent(plan_.from->scene));
-    return found;
+    whitecaps_ = whitecaps(foam_life(plan_));
+    for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
+        const QueryStatistics &a = first.statistics_[q], &b = second.statistics_[q];
+        QueryStatistics& made = statistics_.emplace_back();
+        made.whole = plan_.queries[q].query.only_cascade ? between(a.whole, b.whole, share) : total_;
+        for (std::size_t i = 0; i < a.resolved.size(); ++i)
+            made.resolved.push_back(between(a.resolved[i], b.resolved[i], share));
+        for (std::size_t i = 0; i < a.resolved_next.size(); ++i)
+            made.resolved_next.push_back(between(a.resolved_next[i], b.resolved_next[i], share));
+        ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share);
+    }
+    for (std::size_t c = 0; c < plan_.cascades.size(); ++c) {
+        cascades_.push_back(
+            blended(first.cascades_[c], second.cascades_[c], share, rate_per_s, plan_.cascades[c].moves()));
+        expected_m0_.push_back((1.0 - share) * first.expected_m0_[c] + share * second.expected_m0_[c]);
+    }
+}
+
+template <class T>
+Whitecaps Sea<T>::whitecaps(const FoamLife& life) const {
+    return whitecaps_of(plan_, total_, life);
+}
+
+template <class T>
+Whitecaps Sea<T>::whitecaps_between(const Sea& first, const Sea& second, double share,
+                                    std::shared_ptr<const PreparedScene> from) {
+    Plan plan = first.plan_;
+    plan.from = std::move(from);
+    const SpectralMoments total =
+        plan.trains
+            ? pelagic::total(blended(first.trains_, second.trains_, share, 0.0, *plan.from, plan.breaking))
+            : between(first.total_, second.total_, share);
+    return whitecaps_of(plan, total, foam_life(plan));
 }
 
 template <class T>

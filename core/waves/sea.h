@@ -2,6 +2,7 @@
 // frames.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,6 +35,8 @@ struct Cascade {
     Buffer<T> forward_re, forward_im, backward_re, backward_im;  // [m]
     Buffer<T> chop;               // choppiness · coth(kd) / k [m] (Breaking's); empty where nobody asks
     Buffer<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
+    // Of amplitudes that change: their rates [m/s], parallel to the four above; empty where they don't, or nobody asks for velocities.
+    std::array<Buffer<T>, 4> growth;
 
     std::size_t modes() const { return cycles_per_s.size(); }
     std::size_t held_bytes() const {
@@ -72,7 +75,11 @@ class Sea {
     // On all threads of the calling arena; the same bits whatever their number. A mode's amplitude depends on
     // the spectrum, the cascade's size and band, and the seed: not on resolutions, nor on what is asked of
     // the sea. Throws BuildCancelled. `table`: of the plan's spectrum, from another sea of the same scene; null: made.
+    // One sea: std::invalid_argument for the plan of a shot with weather, whose sea is a SeaOverTime's (core/waves/sea_over_time.h).
     explicit Sea(Plan, const BuildWatch& watch = {}, std::shared_ptr<const SpectrumTable> table = nullptr);
+    // Between two of one plan, which `from` takes the place of the scene of: energies in shares, that of `second` with its rate [1/s].
+    Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
+        std::shared_ptr<const PreparedScene> from);
 
     const Plan& plan() const { return plan_; }
     const std::shared_ptr<const SpectrumTable>& spectrum_table() const { return table_; }
@@ -92,6 +99,9 @@ class Sea {
     const Whitecaps& whitecaps() const { return whitecaps_; }
     // As they were if foam came and went like this; {}: if none were persistent.
     Whitecaps whitecaps(const FoamLife& life) const;
+    // What a sea between two, as above, has for its own.
+    static Whitecaps whitecaps_between(const Sea& first, const Sea& second, double share,
+                                       std::shared_ptr<const PreparedScene> from);
     double whitecap_threshold() const { return whitecaps_.threshold; }
     const std::optional<Gusts>& gusts() const { return whitecaps_.gusts; }
     double foam_left_per_s() const { return whitecaps_.left_per_s; }

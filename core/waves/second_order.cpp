@@ -92,6 +92,11 @@ void SecondOrderWaves<T>::sum_columns(int first_mx, int end_mx, double time_s) {
     const double step = kTwoPi / cascade.size_m;
     const std::size_t longest = 2 * static_cast<std::size_t>(r) + 1;
     Buffer<T> height_re(longest), height_im(longest), rate_re(longest), rate_im(longest);
+    struct {
+        Buffer<T> re, im, rate_re, rate_im;
+    } growing;  // by the amplitudes' own rates; empty where they stay
+    if (plan().moves && !cascade.growth[0].empty())
+        growing = {Buffer<T>(longest), Buffer<T>(longest), Buffer<T>(longest), Buffer<T>(longest)};
     std::vector<Line<T>> lines, mirrored;  // by sum: of column mx, and of −mx
     for (int sum = 0; sum < sums; ++sum) {
         lines.emplace_back(n);
@@ -111,6 +116,19 @@ void SecondOrderWaves<T>::sum_columns(int first_mx, int end_mx, double time_s) {
                          .height_im = height_im.data(),
                          .rate_re = rate_re.data(),
                          .rate_im = rate_im.data()});
+        const bool grows = !growing.re.empty();
+        if (grows)
+            kernels.advance({.forward_re = cascade.growth[0].data() + at,
+                             .forward_im = cascade.growth[1].data() + at,
+                             .backward_re = cascade.growth[2].data() + at,
+                             .backward_im = cascade.growth[3].data() + at,
+                             .cycles_per_s = cascade.cycles_per_s.data() + at,
+                             .time_s = time_s,
+                             .count = 2 * static_cast<std::size_t>(height) + 1,
+                             .height_re = growing.re.data(),
+                             .height_im = growing.im.data(),
+                             .rate_re = growing.rate_re.data(),
+                             .rate_im = growing.rate_im.data()});
         for (int sum = 0; sum < sums; ++sum) {
             lines[sum].clear();
             mirrored[sum].clear();
@@ -139,6 +157,18 @@ void SecondOrderWaves<T>::sum_columns(int first_mx, int end_mx, double time_s) {
             };
             put(lines, my, height_re[i] + turned_re, height_im[i] + turned_im, T(1));
             if (mx > 0) put(mirrored, -my, height_re[i] - turned_re, turned_im - height_im[i], T(-1));
+            if (!grows) continue;
+            const auto add = [&](std::vector<Line<T>>& to, int row, T re, T im, T sign) {
+                const int j = wrapped(row, n);
+                const T weights[]{root, sign * east, sign * north, slow};
+                for (int sum = 0; sum < of_heights; ++sum) {
+                    to[of_heights + sum].re()[j] += weights[sum] * re;
+                    to[of_heights + sum].im()[j] += weights[sum] * im;
+                }
+            };
+            const T later_re = -growing.rate_im[i] / omega, later_im = growing.rate_re[i] / omega;
+            add(lines, my, growing.re[i] + later_re, growing.im[i] + later_im, T(1));
+            if (mx > 0) add(mirrored, -my, growing.re[i] - later_re, later_im - growing.im[i], T(-1));
         }
         const auto transform = [&](Line<T>& line, Plane& plane, int column) {
             transform_.execute(line.from.data(), line.to.data());

@@ -29,6 +29,9 @@ class SecondOrderWaves {
     // The same bits on any number of threads. Returns how many lines it transformed: SecondOrderPlan::lines().
     long set(double time_within_loop_s);
 
+    // Another sea of the same plan, for the times to come.
+    void take(std::shared_ptr<const Sea<T>> sea) { sea_ = std::move(sea); }
+
     int cascade() const { return cascade_; }
     int radius() const { return plan().radius; }
     PairModes<T> column(int mx) const;  // 0 ≤ mx < radius()

@@ -101,41 +101,16 @@ double fraction_of_product(double a, double b) {
     return (product - std::round(product)) + std::fma(a, b, -product);
 }
 
-struct Train {
-    double wavelength_m;
-    glm::dvec2 direction;
-    double cycles_per_s, start_cycles;
-    double height_m, horizontal_m, breaking_m;  // the last: the horizontal one of what breaks
-};
-
-// All but its moments and its weight in breaking.
+// Where a train goes, and when.
 template <class T>
-void add_train(Trains<T>& trains, const Train& train) {
-    const double x = train.direction.x, y = train.direction.y, k = kTwoPi / train.wavelength_m;
-    trains.wavelength_m.push_back(train.wavelength_m);
-    trains.wavelength.push_back(static_cast<T>(train.wavelength_m));
-    trains.kx_cycles_per_m.push_back(x / train.wavelength_m);
-    trains.ky_cycles_per_m.push_back(y / train.wavelength_m);
-    trains.cycles_per_s.push_back(train.cycles_per_s);
-    trains.start_cycles.push_back(train.start_cycles);
-    trains.height_m.push_back(train.height_m);
-    trains.horizontal_m.push_back(train.horizontal_m);
-
-    const auto factor = [&](Field field, double value) {
-        trains.amplitude[index(field)].push_back(static_cast<T>(value));
-    };
-    const double omega = kTwoPi * train.cycles_per_s;
-    factor(Field::Height, train.height_m);
-    factor(Field::Dx, x * train.horizontal_m);
-    factor(Field::Dy, y * train.horizontal_m);
-    factor(Field::SlopeX, k * x * train.height_m);
-    factor(Field::SlopeY, k * y * train.height_m);
-    factor(Field::Dxx, -k * train.breaking_m * x * x);
-    factor(Field::Dyy, -k * train.breaking_m * y * y);
-    factor(Field::Dxy, -k * train.breaking_m * x * y);
-    factor(Field::VelocityX, omega * x * train.horizontal_m);
-    factor(Field::VelocityY, omega * y * train.horizontal_m);
-    factor(Field::VelocityZ, -omega * train.height_m);
+void add_way(Trains<T>& trains, double wavelength_m, glm::dvec2 direction, double cycles_per_s,
+             double start_cycles) {
+    trains.wavelength_m.push_back(wavelength_m);
+    trains.wavelength.push_back(static_cast<T>(wavelength_m));
+    trains.kx_cycles_per_m.push_back(direction.x / wavelength_m);
+    trains.ky_cycles_per_m.push_back(direction.y / wavelength_m);
+    trains.cycles_per_s.push_back(cycles_per_s);
+    trains.start_cycles.push_back(start_cycles);
 }
 
 template <class T>
@@ -143,6 +118,42 @@ T weight_in_breaking(double wavelength_m, const FootprintFilter& filter, const B
     return wavelength_m > breaking.from_m
                ? static_cast<T>(filter.weight(kTwoPi / wavelength_m, breaking.footprint_m))
                : T(0);
+}
+
+// How far a train moves water to the side: no further than where its surface would fold over.
+double limited_m(double choppiness, double ratio, double height_m, double k) {
+    return std::min(choppiness * ratio * height_m, 1.0 / k);
+}
+
+// A train's numbers that go with its amplitudes: each field's factor, and its moments without those of what is hidden at best.
+struct Raised {
+    double k, x, y;                             // x, y: the way it goes
+    double height_m, horizontal_m, breaking_m;  // breaking_m: as horizontal_m, of the waves that break
+    double omega_of_fields, omega, energy;      // energy: h²/2, but for rounding
+};
+template <class T>
+SpectralMoments add_raised(Trains<T>& trains, const Raised& of) {
+    const auto factor = [&](Field field, double value) {
+        trains.amplitude[index(field)].push_back(static_cast<T>(value));
+    };
+    const double x = of.x, y = of.y, k = of.k;
+    factor(Field::Height, of.height_m);
+    factor(Field::Dx, x * of.horizontal_m);
+    factor(Field::Dy, y * of.horizontal_m);
+    factor(Field::SlopeX, k * x * of.height_m);
+    factor(Field::SlopeY, k * y * of.height_m);
+    factor(Field::Dxx, -k * of.breaking_m * x * x);
+    factor(Field::Dyy, -k * of.breaking_m * y * y);
+    factor(Field::Dxy, -k * of.breaking_m * x * y);
+    factor(Field::VelocityX, of.omega_of_fields * x * of.horizontal_m);
+    factor(Field::VelocityY, of.omega_of_fields * y * of.horizontal_m);
+    factor(Field::VelocityZ, -of.omega_of_fields * of.height_m);
+    trains.height_m.push_back(of.height_m);
+    trains.horizontal_m.push_back(of.horizontal_m);
+    return moments_of({.k = {k * x, k * y},
+                       .energy = of.energy,
+                       .omega = of.omega,
+                       .chop = of.height_m > 0.0 ? of.breaking_m / (k * of.height_m) : 0.0});
 }
 
 // The sums over all trains before and from each.
@@ -173,34 +184,34 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {
-        const EnergyShares bin(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1));
+        const double k_lo = kTwoPi / plan.edge_m(i), k_hi = kTwoPi / plan.edge_m(i + 1);
+        const EnergyShares bin(spectrum, k_lo, k_hi);
         const double wavelength_m = plan.wavelengths_m[i], k = kTwoPi / wavelength_m;
         const auto bits = philox({static_cast<std::uint32_t>(i), 0, 0, kTrainStream}, scene.shot.seed);
-        const double theta = bin.energy() > 0.0
-                                 ? direction_of_share(spectrum, bin.wavenumber(uniform(bits[2])),
-                                                      direction_share(i, scene.shot.seed))
-                                 : 0.0;
-        const double height_m = std::sqrt(2.0 * bin.energy());
-        const auto horizontal = [&](double by) {
-            return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
+        const auto towards = [&](const DirectionalSpectrum& of, const EnergyShares& its) {
+            return its.energy() > 0.0 ? direction_of_share(of, its.wavenumber(uniform(bits[2])),
+                                                           direction_share(i, scene.shot.seed))
+                                      : 0.0;
         };
-        const double horizontal_m = horizontal(choppiness),
-                     breaking_m = horizontal(breaking.choppiness.largest());
+        const double theta = plan.shot
+                                 ? towards(plan.shot->spectrum, EnergyShares(plan.shot->spectrum, k_lo, k_hi))
+                                 : towards(spectrum, bin);
+        const double height_m = std::sqrt(2.0 * bin.energy());
+        const double ratio = dispersion.horizontal_ratio(k), omega = dispersion.omega(k);
         const double x = std::cos(theta), y = std::sin(theta);
-        const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
+        const double cycles_per_s = looped_cycles_per_s(omega, loop_s);
 
-        add_train(trains, {.wavelength_m = wavelength_m,
-                           .direction = {x, y},
-                           .cycles_per_s = cycles_per_s,
-                           .start_cycles = uniform(bits[3]),
-                           .height_m = height_m,
-                           .horizontal_m = horizontal_m,
-                           .breaking_m = breaking_m});
-
-        SpectralMoments alone = moments_of({.k = {k * x, k * y},
-                                            .energy = bin.energy(),
-                                            .omega = dispersion.omega(k),
-                                            .chop = height_m > 0.0 ? breaking_m / (k * height_m) : 0.0});
+        add_way(trains, wavelength_m, {x, y}, cycles_per_s, uniform(bits[3]));
+        SpectralMoments alone =
+            add_raised(trains, {.k = k,
+                                .x = x,
+                                .y = y,
+                                .height_m = height_m,
+                                .horizontal_m = limited_m(choppiness, ratio, height_m, k),
+                                .breaking_m = limited_m(breaking.choppiness.largest(), ratio, height_m, k),
+                                .omega_of_fields = kTwoPi * cycles_per_s,
+                                .omega = omega,
+                                .energy = bin.energy()});
         // Of the displacement gradient, the part that is resolved at best; the rest counts with the waves outside.
         const bool breaks = wavelength_m > breaking.from_m;
         trains.breaking.push_back(weight_in_breaking<T>(wavelength_m, filter, breaking));
@@ -211,9 +222,8 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         alone.take_gradients(seen.scale_gradients(most * most));
         trains.alone.push_back(alone);
         trains.unresolved_alone.push_back(unresolved_moments<T>(alone));
-        SpectralMoments beyond = beyond_train(
-            moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
-            k, dispersion.horizontal_ratio(k), breaks);
+        SpectralMoments beyond =
+            beyond_train(moments_with_breaking(spectrum, k_lo, k_hi, unscaled), k, ratio, breaks);
         trains.outside +=
             beyond.scale_gradients(breaking.choppiness.largest() * breaking.choppiness.largest());
     }
@@ -231,14 +241,17 @@ void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const Foot
     for (const HeroTrain& hero : heroes) {
         const HeroMode& mode = hero.mode;
         const double k = kTwoPi / mode.wavelength_m;
-        add_train(trains,
-                  {.wavelength_m = mode.wavelength_m,
-                   .direction = mode.direction,
-                   .cycles_per_s = mode.cycles_per_s,
-                   .start_cycles = hero.start_cycles,
-                   .height_m = hero.height_m,
-                   .horizontal_m = mode.horizontal_ratio * hero.height_m,
-                   .breaking_m = breaking.choppiness.at(k) * dispersion.horizontal_ratio(k) * hero.height_m});
+        add_way(trains, mode.wavelength_m, mode.direction, mode.cycles_per_s, hero.start_cycles);
+        add_raised(trains,
+                   {.k = k,
+                    .x = mode.direction.x,
+                    .y = mode.direction.y,
+                    .height_m = hero.height_m,
+                    .horizontal_m = mode.horizontal_ratio * hero.height_m,
+                    .breaking_m = breaking.choppiness.at(k) * dispersion.horizontal_ratio(k) * hero.height_m,
+                    .omega_of_fields = kTwoPi * mode.cycles_per_s,
+                    .omega = dispersion.omega(k),
+                    .energy = 0.5 * hero.height_m * hero.height_m});
         trains.breaking.push_back(weight_in_breaking<T>(mode.wavelength_m, filter, breaking));
         trains.alone.emplace_back();
         trains.unresolved_alone.push_back(unresolved_moments<T>({}));
@@ -258,6 +271,53 @@ void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const Foot
          trains.unresolved_alone, trains.wavelength);
     for (std::vector<T>& amplitude : trains.amplitude) sort(amplitude);
     add_up(trains);
+}
+
+template <class T>
+Trains<T> blended(const Trains<T>& first, const Trains<T>& second, double share, double rate_per_s,
+                  const PreparedScene& prepared, const Breaking& breaking) {
+    const Dispersion& dispersion = prepared.spectrum.dispersion();
+    const double choppiness = Choppiness::asked(prepared.scene).built().largest();
+    Trains<T> trains;
+    trains.kx_cycles_per_m = first.kx_cycles_per_m;
+    trains.ky_cycles_per_m = first.ky_cycles_per_m;
+    trains.cycles_per_s = first.cycles_per_s;
+    trains.start_cycles = first.start_cycles;
+    trains.wavelength_m = first.wavelength_m;
+    trains.wavelength = first.wavelength;
+    trains.breaking = first.breaking;
+    for (std::size_t i = 0; i < first.count(); ++i) {
+        const double k = kTwoPi / trains.wavelength_m[i], ratio = dispersion.horizontal_ratio(k);
+        const auto energy = [i](const Trains<T>& of) { return 0.5 * of.height_m[i] * of.height_m[i]; };
+        const double own = (1.0 - share) * energy(first) + share * energy(second),
+                     height_m = std::sqrt(2.0 * own);
+        const double horizontal_m = limited_m(choppiness, ratio, height_m, k),
+                     x = trains.kx_cycles_per_m[i] * trains.wavelength_m[i],
+                     y = trains.ky_cycles_per_m[i] * trains.wavelength_m[i];
+        SpectralMoments alone =
+            add_raised(trains, {.k = k,
+                                .x = x,
+                                .y = y,
+                                .height_m = height_m,
+                                .horizontal_m = horizontal_m,
+                                .breaking_m = limited_m(breaking.choppiness.largest(), ratio, height_m, k),
+                                .omega_of_fields = kTwoPi * trains.cycles_per_s[i],
+                                .omega = dispersion.omega(k),
+                                .energy = own});
+        const double most = static_cast<double>(trains.breaking[i]);
+        trains.alone.push_back(alone.scale_gradients(most * most));
+        trains.unresolved_alone.push_back(unresolved_moments<T>(alone));
+        // ḣ = ∂/∂t √(2E); a train that is as sharp as can be stays so.
+        const double grows = height_m > 0.0 ? rate_per_s * (energy(second) - energy(first)) / height_m : 0.0,
+                     widens = k * horizontal_m < 1.0 ? choppiness * ratio * grows : 0.0;
+        trains.growth[0].push_back(static_cast<T>(x * widens));
+        trains.growth[1].push_back(static_cast<T>(y * widens));
+        trains.growth[2].push_back(static_cast<T>(grows));
+    }
+    SpectralMoments before = first.outside, after = second.outside;
+    (trains.outside = before *= 1.0 - share) += after *= share;
+    add_up(trains);
+    return trains;
 }
 
 template <class T>
@@ -347,6 +407,10 @@ template void add_heroes(Trains<float>&, std::span<const HeroTrain>, const Footp
                          const Dispersion&);
 template void add_heroes(Trains<double>&, std::span<const HeroTrain>, const FootprintFilter&, const Breaking&,
                          const Dispersion&);
+template Trains<float> blended(const Trains<float>&, const Trains<float>&, double, double,
+                               const PreparedScene&, const Breaking&);
+template Trains<double> blended(const Trains<double>&, const Trains<double>&, double, double,
+                                const PreparedScene&, const Breaking&);
 template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);

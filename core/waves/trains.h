@@ -55,6 +55,9 @@ struct Trains {
     // others.
     std::array<std::vector<T>, kFieldCount> amplitude;
 
+    // Of trains whose amplitudes change: what VelocityX and VelocityY have on sin θ, and VelocityZ on cos θ, besides.
+    std::array<std::vector<T>, 3> growth;
+
     // Moments of each train at weight 1; of trains 0 … i − 1; of trains i and up, with those outside the
     // range.
     std::vector<SpectralMoments> alone, before, from;
@@ -83,6 +86,12 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan,
 template <class T>
 void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const FootprintFilter& filter,
                 const Breaking& breaking, const Dispersion& dispersion);
+
+// The trains between two seas of one plan: energies in shares, that of `second` with its rate [1/s] (core/plan/weather.h).
+// `prepared`: of that time.
+template <class T>
+Trains<T> blended(const Trains<T>& first, const Trains<T>& second, double share, double rate_per_s,
+                  const PreparedScene& prepared, const Breaking& breaking);
 
 // The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and
 // include choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's is. Where a

@@ -30,7 +30,7 @@ template <class T>
 class SequenceOf final : public Sequence {
   public:
     SequenceOf(const Plan& plan, const BuildWatch& watch)
-        : sea_(std::make_shared<const Sea<T>>(plan, watch)),
+        : sea_(std::make_shared<const SeaOverTime<T>>(plan, watch)),
           state_(sea_),
           parts_(make_parts(sea_->plan())),
           cancel_(watch.cancel) {}
@@ -90,13 +90,16 @@ class SequenceOf final : public Sequence {
     }
 
     void describe(Record& record) const override {
-        record.describe(sea_->plan(), sea_->total(), sea_->whitecap_threshold(), sea_->residual_coverage());
+        const Shot& shot = sea_->plan().from->scene.shot;
+        const auto sea = sea_->at(shot.time_s(shot.first_frame));
+        record.describe(sea_->plan(), sea->total(), sea->whitecap_threshold(), sea->residual_coverage());
     }
     long executed_transforms() const override { return state_.frame().executed_transforms(); }
 
   private:
     void describe_waves(int frame, FrameRecord& record) const {
-        const Plan& plan = sea_->plan();
+        const Sea<T>& sea = state_.sea();
+        const Plan& plan = sea.plan();
         const Query& first = plan.queries[plan.outputs.front().query].query;
         // A camera's levels are as fine as all frames of the bake need them; the frame's own cells are its own.
         Footprints at{first.cell_m.front(), first.pixel_m.front()};
@@ -107,8 +110,8 @@ class SequenceOf final : public Sequence {
         }
         record.mss_residual = first.is_view
                                   ? unresolved_mean_square_slope(plan.from->spectrum, plan.filter, at.pixel_m)
-                                  : std::max(sea_->total().mss() - sea_->resolved_moments(0).mss(), 0.0);
-        const bool calm = !(sea_->total().m0 > 0.0);
+                                  : std::max(sea.total().mss() - sea.resolved_moments(0).mss(), 0.0);
+        const bool calm = !(sea.total().m0 > 0.0);
         if (plan.transforms_per_frame() == 0 && !plan.trains && !calm) return;  // no wave was computed
         const Realisation sum = state_.frame().realisation(0, at);
         WaveRecord waves;
@@ -121,7 +124,7 @@ class SequenceOf final : public Sequence {
         record.waves = waves;
     }
 
-    std::shared_ptr<const Sea<T>> sea_;
+    std::shared_ptr<const SeaOverTime<T>> sea_;
     SeaAtTime<T> state_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
     const std::atomic<bool>* cancel_;

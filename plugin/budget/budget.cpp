@@ -18,6 +18,7 @@
 #include "core/plan/mesh_error_model.h"
 #include "core/plan/plan.h"
 #include "core/plan/quality.h"
+#include "core/plan/weather.h"
 #include "core/scene/budget.h"
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
@@ -116,11 +117,19 @@ Choice chosen(Choices& from, const Quality& budget) {
     return budget.max_error ? at(from.rows - 1, from.steps - 1) : at(0, 0);
 }
 
+// A sea that changes errs most where it is highest.
+PreparedScene of_highest_key(PreparedScene prepared) {
+    if (!prepared.weather) return prepared;
+    const auto m0 = [](const Weather::Key& key) { return key.sea->spectrum.m0(); };
+    prepared.spectrum = std::ranges::max_element(prepared.weather->keys, {}, m0)->sea->spectrum;
+    return prepared;
+}
+
 // Levels of quality, of surfaces that get finer.
 class Meshes final : public Choices {
   public:
     Meshes(const Scene& scene, const Rates& rates)
-        : prepared_(*prepare(scene)),
+        : prepared_(of_highest_key(*prepare(scene))),
           rates_(rates),
           model_(prepared_),
           frames_(representative_frames(scene, kFrames)),

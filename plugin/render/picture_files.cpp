@@ -155,6 +155,10 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
              " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));
+    if (plan.from->weather) {
+        hash.add(weather_plan_text(plan, true));
+        weather_ = plan;
+    }
     if (const DrawnSea drawn(*plan.from, false); !drawn.made_of().empty()) hash.add(drawn.made_of());
     for (const View& view : metered_views(source.scene))
         hash.add(pose_text(view));  // what the exposure comes from
@@ -167,6 +171,7 @@ std::string PictureFingerprint::of(int frame) const {
     if (!keyed_.keyed.empty()) hash.add(keyed_text(keyed_, parts_beside_the_view(options_), frame));
     for (const PicturePass& pass : passes_of(camera_, frame, options_).all) {
         hash.add(pose_text(view_of(camera_, pass)));
+        if (weather_) hash.add(weather_time_text(*weather_, 0, shot_.time_s(pass.frame)));
         // Which time of a loop a frame shows isn't in any key.
         if (shot_.loop_s > 0.0) hash.add("time " + number_text(shot_.time_s(pass.frame)));
     }

@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/plan/plan.h"
 #include "pelagic/scene.h"
 #include "plugin/render/render.h"
 
@@ -59,7 +61,8 @@ class PictureFingerprint {
     Shot shot_;
     Camera camera_;
     RenderOptions options_;
-    Scene keyed_;  // the shot's numbers that have keys, and nothing else of it
+    std::optional<Plan> weather_;  // of a sea that changes
+    Scene keyed_;                  // the shot's numbers that have keys, and nothing else of it
     std::string source_;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/lighting/background.h"
+#include "core/plan/weather.h"
 #include "core/scene/number_keys.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
@@ -18,15 +19,20 @@ namespace pelagic {
 
 template <class T>
 SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, const BuildWatch& watch)
-    : choice_(choice), sky_(std::move(sky)), sea_(std::make_shared<const Sea<T>>(plan, watch)), state_(sea_) {
+    : choice_(choice),
+      sky_(std::move(sky)),
+      sea_(std::make_shared<const SeaOverTime<T>>(plan, watch)),
+      state_(sea_) {
     foam_.image = make_foam_picture(plan.from->scene);
-    light_by(scene_at(plan.from->scene, plan.from->scene.shot.first_frame));
+    const Shot& shot = plan.from->scene.shot;
+    light_by(scene_at(plan.from->scene, shot.first_frame), shot.time_s(shot.first_frame));
 }
 
 template <class T>
-void SeaLight<T>::light_by(const Scene& scene) {
-    water_ = make_water(scene, plan().from->spectrum);
-    foam_ = make_foam(scene, foam_.image, plan().foam ? active_foam(scene, sea_->residual_coverage()) : 1.0);
+void SeaLight<T>::light_by(const Scene& scene, double time_s) {
+    water_ = make_water(scene, prepared_at(plan().from, time_s)->spectrum);
+    foam_ = make_foam(scene, foam_.image,
+                      plan().foam ? active_foam(scene, sea_->whitecaps(time_s).residual_coverage) : 1.0);
     caustics_ = scene.water.caustics;
 }
 
@@ -35,7 +41,7 @@ bool SeaLight<T>::light_frame(int frame) {
     const Scene& shot = plan().from->scene;
     if (shot.keyed.empty()) return false;
     Scene scene = scene_at(shot, frame);
-    light_by(scene);
+    light_by(scene, shot.shot.time_s(frame));
     floor_lit_.reset();
     // The sky that the renderer was given stays where light has no keys.
     const bool is_other = !same_sky(shot, scene) && !(lit_ && same_sky(*lit_, scene));

@@ -131,7 +131,7 @@ class SeaLight {
     bool foam_lives() const { return state_.has_past(kQuery); }
 
   private:
-    void light_by(const Scene& scene);
+    void light_by(const Scene& scene, double time_s);
     float residual_age_s(std::size_t i) const;
 
     LightingChoice choice_;
@@ -143,7 +143,7 @@ class SeaLight {
     Floor floor_;
     std::optional<double> floor_rest_m_;         // that it is for
     std::optional<FloorLightWanted> floor_lit_;  // as its light is, at the frame's time
-    std::shared_ptr<const Sea<T>> sea_;
+    std::shared_ptr<const SeaOverTime<T>> sea_;
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;
     Values answers_;

@@ -323,17 +323,17 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
         spectrum["measured_at"] = scene.sea.measured->time;
     }
 
-    const auto observed = CoxMunk::at_wind(scene.sea.wind_speed_mps);
+    const Scene first = scene_at(scene, scene.shot.first_frame);  // as `total` is, of a sea that changes
+    const auto observed = CoxMunk::at_wind(first.sea.wind_speed_mps);
     shot["observed"] = {{"cox_munk_1954_mss", observed.total},
                         {"cox_munk_1954_mss_upwind", observed.up},
                         {"cox_munk_1954_mss_crosswind", observed.cross},
                         {"whitecap_law", word_of(scene.effects.whitecap_law)},
-                        {"whitecap_law_coverage", law_coverage(scene)}};
+                        {"whitecap_law_coverage", law_coverage(first)}};
     shot["whitecap_threshold"] = number(whitecap_threshold);
     if (plan.gusts) shot["whitecap_threshold_is"] = "without gusts, which move it from place to place";
     // A bake refuses keys of how foam looks (plugin/bake/bake.cpp).
-    const FoamLook foam =
-        make_foam(scene_at(scene, scene.shot.first_frame), nullptr, active_foam(scene, residual_coverage));
+    const FoamLook foam = make_foam(first, nullptr, active_foam(scene, residual_coverage));
     shot["dense_foam"] = {{"active", foam.fresh_opacity}, {"left", foam.old_opacity}};
 
     Json& planned = shot["plan"];

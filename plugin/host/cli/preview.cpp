@@ -109,7 +109,12 @@ void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
 }
 
 int run(const PreviewArguments& arguments) {
-    Scene scene = load_shot(arguments.shot, check_scene);
+    Scene scene = without_still_keys(load_shot(arguments.shot, check_scene));
+    try {
+        refuse_keyed_sea(scene);
+    } catch (const std::invalid_argument& error) {
+        throw ShotError(placed(arguments.shot, error.what()));
+    }
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)

@@ -217,7 +217,9 @@ double significant_height_of(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
     const OthersMayRun others_may_run;
-    return prepare(without_budget(kept))->extent.significant_height_m;
+    const auto prepared = prepare(without_budget(kept));
+    if (prepared->weather) refuse_keyed_sea(prepared->scene);
+    return prepared->extent.significant_height_m;
 }
 
 std::vector<std::string> warnings_of(const Scene& scene) {
@@ -307,7 +309,8 @@ void add_scene(py::module_& module) {
             "at", [](const Scene& self, double frame) { return scene_at(self, frame); }, py::arg("frame"),
             "The scene of a frame: numbers that change over the shot, such as {\"keys\": [(1, 30.0), (48, 2.0)], "
             "\"interpolation\": \"smooth\"}, as they are there. What has no frame, as Sky, WaterBody and GpuLight, wants "
-            "a scene like that.")
+            "a scene like that. Its sea is that of these numbers alone: of a shot whose sea changes bake() and render() show the waves of a "
+            "frame, which have both keys' in them.")
         .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(
             "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },

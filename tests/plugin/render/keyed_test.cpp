@@ -112,7 +112,7 @@ TEST_F(KeyedPictures, AreThoseOfThePlainNumbers) {
     pictured.light.sky = sky;
     const std::string in_daylight = shown(shot(), {2}, 2), under_picture = shown(pictured, {2}, 2);
     for (const Key& key : keys()) {
-        if (!key.may_have_keys) continue;
+        if (!key.may_have_keys || key.path.starts_with("sea.")) continue;
         SCOPED_TRACE(key.path);
         const bool is_daylight = key.path.starts_with("light.sun_") || key.path == "light.turbidity";
         Scene plain = is_daylight ? shot() : pictured;
@@ -145,6 +145,36 @@ TEST_F(KeyedPictures, AreThoseOfThePlainNumbers) {
         EXPECT_EQ(made_of(number, 2), made_of(other, 2));
         EXPECT_NE(made_of(number, 1), made_of(other, 1));
     }
+}
+
+// The sea's: between keys no plain number has its waves. Foam with a past, the water's waves and the exposure are those of the frame.
+TEST_F(KeyedPictures, OfASeaThatChangesStandForThemselves) {
+    Scene scene = shot(), equal = scene;
+    scene.light.sky = equal.light.sky = sky_picture();
+    const Key& wind = key_of("sea.wind_speed_mps");
+    const NumberKeys rising{{{1, 8.0}, {3, 20.0}}};
+    ASSERT_FALSE(set_value(scene, wind, rising));
+    const std::string second = shown(scene, {1, 2, 3}, 2);
+    EXPECT_TRUE(shown(scene, {2}, 2) == second) << "alone";
+    Scene middle = equal;
+    middle.sea.wind_speed_mps = 14.0;
+    EXPECT_FALSE(shown(middle, {2}, 2) == second);
+    ASSERT_FALSE(set_value(equal, wind, NumberKeys{{{1, 14.0}, {3, 14.0}}}));
+    EXPECT_TRUE(shown(equal, {2}, 2) == shown(middle, {2}, 2)) << "between equal keys";
+    // A key changes the fingerprints of the frames between its neighbours, and no others.
+    scene.waves.second_order = 0.0;  // which is of all keys
+    scene.effects.foam_decay_s = 0.0;
+    scene.effects.breaking_from_m = 1.0;
+    const auto made_of = [&](std::vector<NumberKeys::Key> keys, int frame) {
+        set_value(scene, wind, NumberKeys{std::move(keys)});
+        const RenderOptions options = render_options(scene);
+        return PictureFingerprint({.scene = scene, .options = options, .picture_content = {}}).of(frame);
+    };
+    const std::vector<NumberKeys::Key> keys{{1, 8.0}, {10, 20.0}, {20, 10.0}, {30, 10.0}};
+    std::vector<NumberKeys::Key> other = keys;
+    other[2].value = 12.0;
+    for (const int frame : {1, 5, 10}) EXPECT_EQ(made_of(keys, frame), made_of(other, frame)) << frame;
+    for (const int frame : {11, 20, 25}) EXPECT_NE(made_of(keys, frame), made_of(other, frame)) << frame;
 }
 
 // Of what has no frame.

@@ -47,8 +47,8 @@ class Scene(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "has keys, and this shows one moment"):
                 make(scene)
         pelagic.Sky(scene.at(3))
-        with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps"):
-            scene.sea.wind_speed_mps = {"keys": [(1, 8.0), (9, 22.0)]}
+        with self.assertRaisesRegex(ValueError, "sea.depth_m"):
+            scene.sea.depth_m = {"keys": [(1, 8.0), (9, 22.0)]}
         with self.assertRaisesRegex(ValueError, "smooth"):
             scene.light.turbidity = {"keys": [(1, 2.0)], "interpolation": "smoth"}
         for bad in ({"key": [(1, 2.0)]}, {"keys": [(1, 2.0, 3.0)]}, {"keys": [("a", 2.0)]}):
@@ -59,6 +59,15 @@ class Scene(unittest.TestCase):
         scene.light.turbidity = 2.0
         self.assertEqual(scene.validate(), [])
         self.assertEqual([key["path"] for key in pelagic.keys() if key["may_have_keys"]].count("light.turbidity"), 1)
+
+    def test_a_sea_that_changes_is_no_sea_of_one_moment(self):
+        scene = pelagic.Scene()
+        scene.sea.wind_speed_mps = {"keys": [(1, 8.0), (9, 22.0)]}
+        self.assertEqual(scene.validate(), [])
+        for ask in (lambda: pelagic.Sea(scene, ("position",), cell_m=2.0), scene.significant_height_m):
+            with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps has keys, and here the sea is one for the whole shot"):
+                ask()
+        self.assertIn("faster than waves", " ".join(scene.warnings()))
 
     def test_trains_have_a_range_of_their_own_or_none(self):
         scene = pelagic.Scene()

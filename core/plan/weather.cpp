@@ -1,0 +1,137 @@
+#include "core/plan/weather.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/plan/effects.h"
+#include "core/scene/number_keys.h"
+#include "core/scene/text.h"
+
+namespace pelagic {
+namespace {
+
+double blended(double first, double second, double share) {
+    return (1.0 - share) * first + share * second;
+}
+
+// Of variances that are linear.
+Extent blended(const Extent& first, const Extent& second, double share) {
+    const auto root = [share](double a, double b) { return std::sqrt(blended(a * a, b * b, share)); };
+    Extent extent{.height_m = root(first.height_m, second.height_m),
+                  .reach_m = root(first.reach_m, second.reach_m),
+                  .significant_height_m = root(first.significant_height_m, second.significant_height_m)};
+    for (std::size_t cell = 0; cell < extent.unresolved.deviation_m.size(); ++cell)
+        extent.unresolved.deviation_m[cell] =
+            root(first.unresolved.deviation_m[cell], second.unresolved.deviation_m[cell]);
+    return extent;
+}
+
+void widen(Extent& extent, const Extent& by) {
+    const auto take = [](double& a, double b) { a = std::max(a, b); };
+    take(extent.height_m, by.height_m);
+    take(extent.reach_m, by.reach_m);
+    take(extent.significant_height_m, by.significant_height_m);
+    for (std::size_t cell = 0; cell < extent.unresolved.deviation_m.size(); ++cell)
+        take(extent.unresolved.deviation_m[cell], by.unresolved.deviation_m[cell]);
+}
+
+// What the sea's numbers are at a frame.
+std::string numbers_text(const Scene& scene, double frame) {
+    std::string text;
+    for (const KeyedNumber& number : scene.keyed)
+        if (is_of_sea(number))
+            text += number.path + " = " +
+                    number_text(value_at(number.keys, key_of(number.path).is_angle, frame)) + '\n';
+    return text;
+}
+
+double frame_at(const Shot& shot, double t_s) {
+    return 1.0 + (t_s - shot.time_offset_s) / shot.time_scale * shot.fps;
+}
+
+}  // namespace
+
+Weather::Blend Weather::at(double t_s) const {
+    const auto after = std::upper_bound(keys.begin(), keys.end(), t_s,
+                                        [](double t, const Key& key) { return t < key.time_s; });
+    const auto second = static_cast<std::size_t>(after - keys.begin());
+    if (second == 0) return {};
+    const std::size_t first = second - 1;
+    if (second == keys.size() || t_s == keys[first].time_s || keys[first].sea == keys[second].sea)
+        return {first, first, 0.0, 0.0};
+    const double lasts_s = keys[second].time_s - keys[first].time_s, t = (t_s - keys[first].time_s) / lasts_s;
+    return {first, second, is_smooth ? t * t * (3.0 - 2.0 * t) : t,
+            (is_smooth ? 6.0 * t * (1.0 - t) : 1.0) / lasts_s};
+}
+
+std::shared_ptr<const PreparedScene> prepared_at(const std::shared_ptr<const PreparedScene>& shot,
+                                                 double t_s) {
+    if (!shot->weather) return shot;
+    const Weather& weather = *shot->weather;
+    const Weather::Blend blend = weather.at(t_s);
+    const PreparedScene &first = *weather.keys[blend.first].sea, &second = *weather.keys[blend.second].sea;
+    if (blend.first == blend.second) return weather.keys[blend.first].sea;
+    const std::array parts{DirectionalSpectrum::Part{&first.spectrum, 1.0 - blend.share},
+                           DirectionalSpectrum::Part{&second.spectrum, blend.share}};
+    return std::make_shared<const PreparedScene>(
+        PreparedScene{.scene = scene_at(shot->scene, frame_at(shot->scene.shot, t_s)),
+                      .spectrum = DirectionalSpectrum(parts),
+                      .second_order = shot->second_order,
+                      .extent = blended(first.extent, second.extent, blend.share),
+                      .weather = nullptr});
+}
+
+std::string weather_text(const PreparedScene& shot, double t_s, double past_s, double ahead_s) {
+    if (!shot.weather) return {};
+    const Weather& weather = *shot.weather;
+    const Weather::Blend blend = weather.at(t_s);
+    if (past_s > 0.0) {
+        std::string text = weather.is_smooth ? "smooth" : "linear";
+        const std::size_t last = weather.at(t_s + ahead_s).second;
+        for (std::size_t key = weather.at(t_s - past_s).first; key <= last; ++key)
+            text += " at " + number_text(weather.keys[key].time_s) + '\n' +
+                    numbers_text(shot.scene, weather.keys[key].frame);
+        return text + weather_text(shot, t_s);
+    }
+    std::string text = numbers_text(shot.scene, weather.keys[blend.first].frame);
+    if (blend.first == blend.second) return text;
+    return text + numbers_text(shot.scene, weather.keys[blend.second].frame) +
+           numbers_text(shot.scene, frame_at(shot.scene.shot, t_s)) + number_text(blend.share) + ' ' +
+           number_text(blend.rate_per_s);
+}
+
+std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
+    Weather weather;
+    std::set<int> frames;
+    for (const KeyedNumber& number : scene.keyed) {
+        if (!is_of_sea(number)) continue;
+        weather.is_smooth |= number.keys.interpolation == CameraInterpolation::Smooth;
+        for (const NumberKeys::Key& key : number.keys.keys) frames.insert(key.frame);
+    }
+    std::string before;
+    for (const int frame : frames) {
+        std::string numbers = numbers_text(scene, frame);
+        weather.keys.push_back(
+            {frame, scene.shot.time_s(frame),
+             numbers == before ? weather.keys.back().sea : prepare(scene_at(scene, frame))});
+        before = std::move(numbers);
+    }
+    std::vector<DirectionalSpectrum::Part> parts;
+    Extent extent;
+    for (const Weather::Key& key : weather.keys) {
+        parts.push_back({&key.sea->spectrum, 1.0 / static_cast<double>(weather.keys.size())});
+        widen(extent, key.sea->extent);
+    }
+    DirectionalSpectrum mean(parts);
+    const SecondOrder second = is_on(Effect::SecondOrder, scene) ? second_order(mean) : SecondOrder();
+    return std::make_shared<const PreparedScene>(
+        PreparedScene{.scene = std::move(scene),
+                      .spectrum = std::move(mean),
+                      .second_order = second,
+                      .extent = extent,
+                      .weather = std::make_shared<const Weather>(std::move(weather))});
+}
+
+}  // namespace pelagic

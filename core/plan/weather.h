@@ -1,0 +1,53 @@
+// A sea whose numbers have keys: between two keys its energy goes from one sea's to the other's, with the same random phases.
+//
+// Each frame at which a number of the sea has a key is a key of the whole sea: the sea that the numbers give there. Between two, with the
+// share w of the later one, Ψ = (1 − w) Ψ₀ + w Ψ₁: so variances, slopes and what footprints hide are linear in w, and a mode's amplitude
+// is √((1 − w) a₀² + w a₁²). Blended amplitudes would lose half of the energy of waves that only one of the seas has.
+// w goes by the sea's time, from key to key, on a straight line where all the sea's keys are linear, else as w = t² (3 − 2t), which
+// stands still at keys: waves that grow from nothing grow as √w, and only so with a finite speed. The numbers themselves, which decide
+// about foam, are those of the frame (scene_at()).
+//
+// Everything that must not change from frame to frame is planned for the keys' mean spectrum: wave vectors, cascades' sizes, trains and
+// their directions, where breaking is filtered, and what pairs of waves add. The extent is the largest of the keys'.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/plan/prepared_scene.h"
+
+namespace pelagic {
+
+struct Weather {
+    struct Key {
+        int frame;
+        double time_s;
+        std::shared_ptr<const PreparedScene>
+            sea;  // of plain numbers; keys that follow each other and are alike have one
+    };
+    std::vector<Key> keys;  // by rising time
+    bool is_smooth = false;
+
+    // The seas of two neighbouring keys, and the share w of the second with its rate [1/s]. At a key, before the first, after the last
+    // and between two that are alike: one sea twice, and both 0.
+    struct Blend {
+        std::size_t first = 0, second = 0;
+        double share = 0.0, rate_per_s = 0.0;
+    };
+    Blend at(double t_s) const;
+};
+
+// What a shot with weather is at a time: its plain numbers and its spectrum. Else the same as is given.
+std::shared_ptr<const PreparedScene> prepared_at(const std::shared_ptr<const PreparedScene>& shot,
+                                                 double t_s);
+
+// What a frame's files depend on by the sea's keys, for fingerprints: the two seas that it is between, and how far; with a past of
+// `past_s` all that it goes through, and `ahead_s` beyond. Empty without weather.
+std::string weather_text(const PreparedScene& shot, double t_s, double past_s = 0.0, double ahead_s = 0.0);
+
+// Of a valid scene whose sea has keys: prepare().
+std::shared_ptr<const PreparedScene> prepare_weather(Scene scene);
+
+}  // namespace pelagic

@@ -1,0 +1,58 @@
+#include "core/waves/sea_over_time.h"
+
+#include <utility>
+
+namespace pelagic {
+
+template <class T>
+SeaOverTime<T>::SeaOverTime(Plan plan, const BuildWatch& watch, const SeaOverTime* like)
+    : plan_(std::move(plan)) {
+    const auto table_of = [&](std::size_t key) {
+        return like ? like->seas_[key]->spectrum_table() : nullptr;
+    };
+    if (!plan_.from->weather) {
+        seas_.push_back(std::make_shared<const Sea<T>>(plan_, watch, table_of(0)));
+        return;
+    }
+    const std::vector<Weather::Key>& keys = plan_.from->weather->keys;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        if (i > 0 && keys[i].sea == keys[i - 1].sea) {
+            seas_.push_back(seas_.back());
+            continue;
+        }
+        BuildWatch part{.progress = {}, .cancel = watch.cancel};
+        if (watch.progress)
+            part.progress = [&, i](double done) {
+                watch.progress((static_cast<double>(i) + done) / static_cast<double>(keys.size()));
+            };
+        Plan own = plan_;
+        own.from = keys[i].sea;
+        seas_.push_back(std::make_shared<const Sea<T>>(std::move(own), part, table_of(i)));
+    }
+}
+
+template <class T>
+SeaOverTime<T>::SeaOverTime(std::shared_ptr<const Sea<T>> sea) : plan_(sea->plan()), seas_{std::move(sea)} {}
+
+template <class T>
+Whitecaps SeaOverTime<T>::whitecaps(double t_s) const {
+    if (!plan_.from->weather) return seas_.front()->whitecaps();
+    const Weather::Blend blend = plan_.from->weather->at(t_s);
+    if (blend.first == blend.second) return seas_[blend.first]->whitecaps();
+    return Sea<T>::whitecaps_between(*seas_[blend.first], *seas_[blend.second], blend.share,
+                                     prepared_at(plan_.from, t_s));
+}
+
+template <class T>
+std::shared_ptr<const Sea<T>> SeaOverTime<T>::at(double t_s) const {
+    if (!plan_.from->weather) return seas_.front();
+    const Weather::Blend blend = plan_.from->weather->at(t_s);
+    if (blend.first == blend.second) return seas_[blend.first];
+    return std::make_shared<const Sea<T>>(*seas_[blend.first], *seas_[blend.second], blend.share,
+                                          blend.rate_per_s, prepared_at(plan_.from, t_s));
+}
+
+template class SeaOverTime<float>;
+template class SeaOverTime<double>;
+
+}  // namespace pelagic

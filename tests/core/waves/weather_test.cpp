@@ -1,0 +1,312 @@
+// Seas whose numbers have keys: amplitudes by variance, one set of phases, and each time by itself.
+#include "core/plan/weather.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "core/evaluate/bounds.h"
+#include "core/plan/extent.h"
+#include "core/scene/keys.h"
+#include "core/scene/number_keys.h"
+#include "core/waves/sea_over_time.h"
+#include "core/waves/whitecaps.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+constexpr auto kLinear = CameraInterpolation::Linear, kSmooth = CameraInterpolation::Smooth;
+
+void give_keys(Scene& scene, const char* path, std::vector<NumberKeys::Key> keys,
+               CameraInterpolation interpolation = kSmooth) {
+    ASSERT_FALSE(set_value(scene, key_of(path), NumberKeys{std::move(keys), interpolation}));
+}
+
+// From a breeze to a gale in 240 frames, ten seconds.
+Scene rising(WaveModel model = WaveModel::Fft, bool has_cascades = true) {
+    Scene scene;
+    scene.shot.first_frame = 1;
+    scene.shot.last_frame = 240;
+    scene.waves.model = model;
+    if (has_cascades) scene.waves.cascades = {{400.0, 96}, {90.0, 64}};
+    if (model == WaveModel::Trochoid) scene.waves.trains = 40;
+    scene.effects.foam_decay_s = 0.0;
+    give_keys(scene, "sea.wind_speed_mps", {{1, 8.0}, {240, 22.0}});
+    return scene;
+}
+
+struct Kind {
+    const char* name;
+    WaveModel model;
+    bool has_cascades;
+};
+constexpr Kind kKinds[]{{"fft", WaveModel::Fft, true},
+                        {"trains", WaveModel::Trochoid, false},
+                        {"trains over cascades", WaveModel::Trochoid, true}};
+
+Query everything() {
+    return filtered(
+        products(Displacement, Normal, Velocity, SlopeVariance, Product::JacobianMoments, Product::Breaking),
+        2.0);
+}
+
+template <class T>
+Frame<T> frame_over_time(const Scene& scene, const std::vector<Query>& queries) {
+    for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
+    return Frame<T>(std::make_shared<const SeaOverTime<T>>(make_plan(scene, queries)));
+}
+
+template <class T>
+bool same_samples(const ProductArrays<T>& a, const ProductArrays<T>& b) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+    };
+    return std::ranges::all_of(kProductTable, [&](const ProductRow& row) {
+        if (row.components == 1)
+            return same(a.numbers(NumberProduct::checked(row.product)),
+                        b.numbers(NumberProduct::checked(row.product)));
+        return same(a.vectors(VectorProduct::checked(row.product)),
+                    b.vectors(VectorProduct::checked(row.product)));
+    });
+}
+
+TEST(Weather, GoesFromKeyToKeyByTheSeasTime) {
+    Scene scene = rising();
+    scene.shot.time_scale = 0.5;
+    scene.shot.time_offset_s = 7.0;
+    for (const auto interpolation : {kLinear, kSmooth}) {
+        give_keys(scene, "sea.wind_speed_mps", {{-3, 8.0}, {21, 14.0}, {45, 14.0}, {69, 5.0}}, interpolation);
+        const Weather weather = *prepare(scene)->weather;
+        ASSERT_EQ(weather.keys.size(), 4u);
+        const auto at = [&](double frame) { return weather.at(scene.shot.time_s(frame)); };
+        for (const auto& [frame, key] : std::vector<std::pair<double, std::size_t>>{
+                 {-100.0, 0}, {-3.0, 0}, {21.0, 1}, {30.0, 1}, {45.0, 2}, {69.0, 3}, {1e6, 3}}) {
+            EXPECT_EQ(at(frame).first, key) << frame;
+            EXPECT_EQ(at(frame).second, key) << frame;
+            EXPECT_EQ(at(frame).rate_per_s, 0.0) << frame;
+        }
+        EXPECT_EQ(weather.keys[1].sea, weather.keys[2].sea);
+        const Weather::Blend quarter = at(3.0);
+        EXPECT_EQ(quarter.first, 0u);
+        EXPECT_EQ(quarter.second, 1u);
+        EXPECT_NEAR(quarter.share, interpolation == kLinear ? 0.25 : 10.0 / 64.0, 1e-12);
+        constexpr double h = 1e-4;
+        const double t = scene.shot.time_s(60.0);
+        EXPECT_NEAR(weather.at(t).rate_per_s, (weather.at(t + h).share - weather.at(t - h).share) / (2.0 * h),
+                    1e-6);
+        EXPECT_GT(weather.at(t).rate_per_s, 0.5);  // 24 frames are half a second of this sea
+    }
+}
+
+// The frame of a run, alone, and on any number of threads; a key's own sea is that of its plain numbers.
+TEST(Weather, AFrameAloneIsThatOfARun) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        Scene scene = rising(kind.model, kind.has_cascades);
+        scene.sea.gust_strength = 0.5;
+        const auto points = random_points<float>(300.0, 500);
+        auto run = frame_over_time<float>(scene, {everything()});
+        std::vector<ProductArrays<float>> of_run;
+        const std::vector<double> times{0.0, 1.0, 5.0, 5.02, 9.0, scene.shot.time_s(240), 30.0};
+        for (const double t : times) {
+            run.set(t);
+            of_run.push_back(sample(run, 0, points));
+        }
+        EXPECT_FALSE(same_samples(of_run[2], of_run[3]));
+        for (const std::size_t threads : {1, 2}) {
+            const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
+                                                    threads);
+            for (const std::size_t i : {4, 2, 0, 6, 5}) {
+                auto alone = frame_over_time<float>(scene, {everything()});
+                alone.set(times[i]);
+                EXPECT_TRUE(same_samples(sample(alone, 0, points), of_run[i])) << times[i];
+            }
+        }
+    }
+}
+
+// By prepare(): the same scene, so the same plan and bits.
+TEST(Weather, OfEqualKeysIsThePlainNumber) {
+    Scene plain = rising(), equal = plain;
+    set_value(plain, key_of("sea.wind_speed_mps"), 12.5);
+    give_keys(equal, "sea.wind_speed_mps", {{1, 12.5}, {100, 12.5}});
+    const auto points = random_points<float>(300.0, 200);
+    auto a = frame_over_time<float>(plain, {everything()}), b = frame_over_time<float>(equal, {everything()});
+    for (const double t : {0.0, 2.0, 8.0}) {
+        a.set(t);
+        b.set(t);
+        EXPECT_TRUE(same_samples(sample(a, 0, points), sample(b, 0, points)));
+    }
+}
+
+// Between two keys that are alike, of a sea that changes elsewhere, and at a key: its own sea, with the cascades given.
+TEST(Weather, AtAKeyIsThatKeysSea) {
+    Scene scene = first_order(rising()), plain = scene;
+    give_keys(scene, "sea.wind_speed_mps", {{1, 8.0}, {25, 12.0}, {49, 12.0}, {97, 22.0}});
+    set_value(plain, key_of("sea.wind_speed_mps"), 12.0);
+    const auto points = random_points<float>(300.0, 200);
+    auto changing = frame_over_time<float>(scene, {everything()}),
+         still = frame_over_time<float>(plain, {everything()});
+    for (const double frame : {25.0, 30.0, 49.0}) {
+        changing.set(scene.shot.time_s(frame));
+        still.set(scene.shot.time_s(frame));
+        EXPECT_TRUE(same_samples(sample(changing, 0, points), sample(still, 0, points))) << frame;
+    }
+}
+
+TEST(Weather, VelocitiesHoldTheAmplitudesOwnChange) {
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const Kind& kind : kKinds) {
+            SCOPED_TRACE(kind.name);
+            Scene scene = rising(kind.model, kind.has_cascades);
+            give_keys(scene, "sea.wind_speed_mps", {{1, 8.0}, {49, 22.0}, {97, 10.0}}, interpolation);
+            auto frame = frame_over_time<double>(scene, {filtered(products(Displacement, Velocity), 3.0)});
+            const auto points = random_points<double>(400.0, 300);
+            constexpr double h = 1e-4;
+            const auto at = [&](double t) {
+                frame.set(t);
+                return sample(frame, 0, points);
+            };
+            for (const double t : {0.3, 1.1, 1.9, 2.7, 3.8}) {
+                const auto before = at(t - h), after = at(t + h), now = at(t);
+                double wrong = 0.0, all = 0.0;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const glm::dvec3 rate =
+                        (after.vectors(Displacement)[i] - before.vectors(Displacement)[i]) / (2.0 * h);
+                    const glm::dvec3 off = now.vectors(Velocity)[i] - rate;
+                    wrong += glm::dot(off, off);
+                    all += glm::dot(rate, rate);
+                }
+                EXPECT_LT(std::sqrt(wrong / all), 1e-5) << t;
+            }
+        }
+}
+
+// From 8 to 22 m/s over 240 frames, in expectation over seeds: the realised height against that of the frame's spectrum, which lies
+// between the keys' by variance.
+TEST(Weather, HasTheHeightOfItsSpectrumAtEachFrame) {
+    for (const Kind& kind : {kKinds[0], kKinds[1]}) {
+        SCOPED_TRACE(kind.name);
+        Scene scene = rising(kind.model, kind.has_cascades);
+        if (kind.has_cascades) scene.waves.cascades = {{6000.0, 360}, {300.0, 128}};
+        const auto prepared = prepare(scene);
+        const double first = prepared->weather->keys[0].sea->spectrum.m0(),
+                     last = prepared->weather->keys[1].sea->spectrum.m0();
+        EXPECT_GT(last, 20.0 * first);
+        std::vector<double> m0(240, 0.0);
+        constexpr int kSeeds = 16;
+        for (int seed = 1; seed <= kSeeds; ++seed) {
+            scene.shot.seed = static_cast<std::uint64_t>(seed);
+            auto frame = frame_over_time<float>(scene, {unfiltered(products(Displacement))});
+            for (int f = 1; f <= 240; f += kind.has_cascades ? 47 : 1) {
+                frame.set(scene.shot.time_s(f));
+                m0[static_cast<std::size_t>(f - 1)] += frame.realisation(0).m0 / kSeeds;
+            }
+        }
+        for (int f = 1; f <= 240; ++f) {
+            const double found = m0[static_cast<std::size_t>(f - 1)];
+            if (!(found > 0.0)) continue;
+            const double t = (f - 1) / 239.0, w = t * t * (3.0 - 2.0 * t);
+            const double spectrum = prepared_at(prepared, scene.shot.time_s(f))->spectrum.m0();
+            EXPECT_NEAR(spectrum / ((1.0 - w) * first + w * last), 1.0, 1e-9);
+            EXPECT_NEAR(std::sqrt(found / spectrum), 1.0, 0.02) << f;
+        }
+    }
+}
+
+// What footprints hide is of the frame's spectrum, and as much foam breaks as the law has at its wind.
+TEST(Weather, HiddenVarianceAndFoamAreThoseOfTheTime) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        const Scene scene = rising(kind.model, kind.has_cascades);
+        auto frame = frame_over_time<double>(scene, {everything()});
+        double before = 0.0;
+        for (const double f : {1.0, 60.0, 120.5, 200.0, 240.0}) {
+            const double t = scene.shot.time_s(f);
+            frame.set(t);
+            const Sea<double>& sea = frame.sea();
+            const auto now = prepared_at(frame.sea().plan().from, t);
+            const SpectralMoments whole =
+                moments(now->spectrum, 0.0, std::numeric_limits<double>::infinity());
+            EXPECT_NEAR(sea.total().mss() / whole.mss(), 1.0, 1e-5);
+            EXPECT_NEAR(sea.total().m0 / whole.m0, 1.0, 1e-5);
+            const SpectralMoments& all = sea.total();
+            const auto j = jacobian_moments<double>(0.0, 0.0, 0.0, 0.0,
+                                                    {all.xxxx, all.xxxy, all.xxyy, all.xyyy, all.yyyy});
+            const double law = law_coverage(scene_at(scene, f));
+            EXPECT_NEAR(coverage(j, sea.whitecap_threshold(), true), law, 1e-3 * law) << f;
+            EXPECT_GT(law, before);
+            before = law;
+            // Resolved plus hidden is all, of the slopes at rest.
+            const auto samples = sample(frame, 0, random_points<double>(1.0, 1));
+            const SpectralMoments shown = sea.resolved_moments(0);
+            EXPECT_LT(shown.mss(), all.mss());
+        }
+    }
+}
+
+TEST(Weather, BoundsHoldAtEachTime) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        const Scene scene = rising(kind.model, kind.has_cascades);
+        auto frame = frame_over_time<float>(scene, {unfiltered(products(Displacement))});
+        frame.set(scene.shot.time_s(1.0));
+        FrameBounds<float> bounds(frame, 0);
+        const auto points = random_points<float>(200.0, 2000);
+        for (const double f : {1.0, 80.0, 160.0, 240.0}) {
+            frame.set(scene.shot.time_s(f));
+            bounds.refresh();
+            const DisplacementBounds in = bounds.region({glm::dvec2(-100.0), glm::dvec2(100.0)}, 4096);
+            float highest = -1e9f, lowest = 1e9f;
+            for (const auto& at : sample(frame, 0, points).vectors(Displacement)) {
+                highest = std::max(highest, at.z);
+                lowest = std::min(lowest, at.z);
+            }
+            EXPECT_LE(highest, in.z.hi) << f;
+            EXPECT_GE(lowest, in.z.lo) << f;
+            EXPECT_LT(in.z.hi, 3.0 * static_cast<double>(highest)) << f;  // of this time, not of the gale
+        }
+    }
+}
+
+TEST(Weather, IsRefusedWhereTheSeaIsOne) {
+    const Plan plan = make_plan(rising(), {everything()});
+    try {
+        const Sea<float> sea(plan);
+        FAIL();
+    } catch (const std::invalid_argument& error) {
+        EXPECT_EQ(
+            std::string(error.what()),
+            "sea.wind_speed_mps has keys, and here the sea is one for the whole shot; accepted: a number; pelagic "
+            "render and pelagic bake show it with keys");
+    }
+    const auto problem = [](const std::function<void(Scene&)>& change) {
+        Scene scene = rising();
+        change(scene);
+        std::string texts;
+        for (const Problem& found : validate(scene)) texts += text_of(found) + '\n';
+        return texts;
+    };
+    EXPECT_EQ(problem([](Scene&) {}), "");
+    EXPECT_NE(problem([](Scene& scene) { scene.effects.spray = true; }).find("spray flies with one wind"),
+              std::string::npos);
+    EXPECT_NE(problem([](Scene& scene) { scene.shot.time_scale = 0.0; }).find("which stands still"),
+              std::string::npos);
+    EXPECT_NE(problem([](Scene& scene) { scene.shot.loop_s = 2.0; }).find("a loop has no beginning"),
+              std::string::npos);
+    EXPECT_EQ(problem([](Scene& scene) {
+                  scene.effects.spray = true;
+                  give_keys(scene, "sea.wind_speed_mps", {{1, 9.0}, {2, 9.0}});
+              }),
+              "");
+}
+
+}  // namespace
+}  // namespace pelagic

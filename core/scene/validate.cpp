@@ -543,6 +543,8 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
                    "a number, or a shot.time_scale above 0");
         if (effects.whitecaps && effects.spray)
             refuse("changes, and spray flies with one wind", "a number, or effects.spray = false");
+        if (!scene.waves.heroes.empty())
+            refuse("changes, and hero waves stand in one sea", "a number, or no waves.heroes");
         return;
     }
 }

@@ -154,6 +154,15 @@ TEST(HeroWaves, OfACalmAreNoneAndItIsSaid) {
     EXPECT_NE(warnings.front().find("calm"), std::string::npos);
 }
 
+TEST(HeroWaves, AreRefusedInASeaThatChanges) {
+    Scene scene = sea_with({{.frame = 1.0, .height_m = 3.0}});
+    EXPECT_TRUE(validate(scene).empty());
+    scene.keyed = {{.path = "sea.wind_speed_mps", .keys = {.keys = {{1, 8.0}, {90, 14.0}}}}};
+    const auto problems = validate(scene);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(problems.front().problem.find("hero"), std::string::npos);
+}
+
 // Nothing but a sea of one direction, or without choppiness, leaves a demand open; two in one place leave one.
 TEST(HeroWaves, OfSeasThatLeaveADemandOpenStayFinite) {
     const HeroWave hero{.frame = 10.0, .height_m = 2.0};

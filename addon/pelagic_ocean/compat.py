@@ -18,6 +18,13 @@ def set_positions(mesh, positions):
         mesh.vertices.foreach_set("co", positions.ravel())
 
 
+def stored(group, name):
+    """What a file has for a property of ours, a number for a word; None: nothing, so that the default counts."""
+    if hasattr(group, "bl_system_properties_get"):  # since 5.0 apart from what scripts put there
+        group = group.bl_system_properties_get() or {}
+    return group.get(name)
+
+
 def tell(mesh):
     """Says that a mesh's numbers are others. update() also leaves a note for the window, whose loop reads and frees such notes
     meanwhile, its interface locked or not: from a render's own thread that ended Blender 3.4 now and then. There the tag alone does.

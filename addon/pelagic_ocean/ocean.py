@@ -9,9 +9,10 @@ from pathlib import Path
 import bpy
 from mathutils import Vector
 
+from . import compat
 from .cages import cage_of
 from .module import pelagic
-from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, shortest_for
+from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, of_wide_numbers, shortest_for
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -285,5 +286,11 @@ def migrate(obj):
             field.write(group, before)
     if obj.pelagic.version < 5:  # nobody's water became a volume by itself
         obj.pelagic.see_through_by_hand = True
+    for field in FIELDS if obj.pelagic.version < 6 else ():
+        if field.key["type"] == "word":
+            group = getattr(obj.pelagic, field.table)
+            word = of_wide_numbers(field, compat.stored(group, field.name))
+            if word is not None:
+                field.write(group, word)
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION

@@ -532,10 +532,14 @@ def register():
         return
     handlers.add(HANDLERS)
     _follow_shading()
+    if not bpy.app.background:  # a file that was open before: nothing else would tell its oceans
+        bpy.app.timers.register(_on_other_data, first_interval=0.0)
 
 
 def unregister():
     handlers.remove(HANDLERS)
+    if bpy.app.timers.is_registered(_on_other_data):
+        bpy.app.timers.unregister(_on_other_data)
     bpy.msgbus.clear_by_owner(_simulations)
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)

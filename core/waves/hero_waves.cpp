@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kDemands = 6;  // of a hero: η, its gradient and rate, D
 // A demand of which the others leave less than this share free, as variance, isn't made.
-constexpr double kLeastFree = 1e-3;
+constexpr double kLeastFree = 1e-2;
 
 std::vector<HeroMode> hero_modes(const PreparedScene& prepared) {
     const DirectionalSpectrum& spectrum = prepared.spectrum;

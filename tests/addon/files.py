@@ -135,6 +135,21 @@ with checking("a file of the first version gets today's number, and keeps what e
         got = (obj.pelagic.sea.growth, obj.pelagic.effects.whitecap_law, obj.pelagic.light.turbidity, obj.pelagic.water.body)
         assert got == ("height", "monahan-1980", 4.5, False), got
 
+with checking("words of before, when their numbers were too long for a drop-down, and of a drop-down that rounded them"):
+    import zlib
+
+    old = bpy.data.objects[names_of_old[0]]
+    before = {table: word for table, word in (("surface", old.pelagic.surface.kind), ("water", old.pelagic.water.type))}
+    for wide in (lambda number: number, lambda number: int(np.float32(number))):
+        old.pelagic.version = 5
+        for table, name in (("surface", "kind"), ("water", "type")):
+            group = getattr(old.pelagic, table)
+            kept = group.bl_system_properties_get(do_create=True) if hasattr(group, "bl_system_properties_get") else group
+            kept[name] = wide(zlib.crc32(before[table].encode()) & 0x7FFFFFFF)
+        ocean.migrate(old)
+        assert old.pelagic.version == properties.VERSION
+        assert {"surface": old.pelagic.surface.kind, "water": old.pelagic.water.type} == before
+
 with checking("a file of the second edition has its water, and today's waves"):
     for obj in ocean.oceans():
         obj.pelagic.version = 3

@@ -49,6 +49,17 @@ def ends(key):
 SAME = {"JONSWAP", "TMA", "FFT", "USDA", "USDC", "Elfouhaily", "Phillips", "Hasselmann", "Omega 2", "Monahan 1980", "Monahan 1986", "Andreas 1998",
         "Callaghan 2008", "Planet", "Chlorophyll", "Voxel", "Pelagic", "Presets", "Level Set", "Jerlov I", "Jerlov IA", "Jerlov IB", "Jerlov II", "Jerlov III", "Jerlov 1C",
         "Jerlov 3C", "Jerlov 5C", "Jerlov 7C", "Jerlov 9C"}
+with checking("a drop-down can choose each word: it hands their numbers on in single precision"):
+    chosen = 0
+    for group in bpy.types.PropertyGroup.__subclasses__():
+        for each in group.bl_rna.properties if group.__name__.startswith("PELAGIC_") else ():
+            if each.type == "ENUM" and not each.is_enum_flag and each.enum_items:
+                numbers_of = [item.value for item in each.enum_items]
+                assert all(int(np.float32(number)) == number for number in numbers_of), (each.identifier, numbers_of)
+                assert len(set(numbers_of)) == len(numbers_of), each.identifier
+                chosen += 1
+    assert chosen > 10
+
 with checking("each label, operator and sentence has German words, with the same numbers in them; Blender says them while it is on"):
     def names(rna):
         shown = [each for each in rna.properties if not each.is_hidden and each.name != each.identifier

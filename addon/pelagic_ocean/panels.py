@@ -182,7 +182,7 @@ class Main:
             elif simulation.sea:
                 if simulation.is_behind:
                     layout.label(text="Foam follows…", icon="SORTTIME")
-                layout.label(text=say("Waves of {:.1f} m (significant height)", simulation.sea.significant_height_m), translate=False)
+                layout.label(text=say("Waves of {} m (significant height)", f"{simulation.sea.significant_height_m:.2g}"), translate=False)
                 _draw_vertices(layout, context.object)
                 for warning in simulation.warnings:
                     draw_words(layout.box(), warning)

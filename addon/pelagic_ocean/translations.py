@@ -96,7 +96,7 @@ GERMAN = {
     "11 Violent storm": "11 Orkanartiger Sturm", "12 Hurricane": "12 Orkan",
     "Building the sea…": "Die See entsteht …", "Foam follows…": "Der Schaum folgt …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
     "The object's own mesh": "Das eigene Netz des Objekts",
-    "Waves of {:.1f} m (significant height)": "Signifikante Wellenhöhe {:.1f} m",
+    "Waves of {} m (significant height)": "Signifikante Wellenhöhe {} m",
     "Clear down to {:.0f} m": "Klar bis {:.0f} m Tiefe", "Clear down to {:.1f} m": "Klar bis {:.1f} m Tiefe",
     "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows":
         "Die Kamera ist unter Wasser: Für Cycles ist es ein Volumen. EEVEE zeigt es ohne Kaustik und Schatten",

@@ -182,7 +182,7 @@ class ListOperator(NeedsOcean):
 
 
 class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
-    """Add an entry. A hero wave stands at the 3D cursor in the current frame"""
+    """Add an entry; of a hero wave, at the 3D cursor in the current frame"""
 
     bl_idname = "pelagic.list_add"
     bl_label = "Add"
@@ -191,8 +191,8 @@ class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
     def execute(self, context):
         row, obj = self.rows(context).add(), context.object
         if self.path == "waves.heroes":
-            at, sea = obj.matrix_world.inverted() @ context.scene.cursor.location, play.simulation_of(obj).sea
-            row.frame, row.east_m, row.north_m = context.scene.frame_current, at.x, at.y
+            at, sea = obj.matrix_world.inverted_safe() @ context.scene.cursor.location, play.simulation_of(obj).sea
+            row.frame, row.east_m, row.north_m = context.scene.frame_current_final, at.x, at.y
             if sea and sea.significant_height_m > 0.0:  # of crests one in three thousand is as high
                 row.height_m = sea.significant_height_m
         obj.update_tag()

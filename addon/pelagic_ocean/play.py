@@ -146,7 +146,7 @@ class Simulation:
         except (ValueError, OSError) as error:
             self._refuse(None, str(error))
             return None
-        loop = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
+        loop = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] else ()
         velocity = wants_velocity(obj, bpy_scene)
         drops = tuple(settings[place] for place in DROPS_FIELDS) if settings[PLACE["effects.spray_drops"]] else ()  # they are the sea's
         key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key, velocity, drops)

@@ -406,11 +406,20 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
         if (last > plan.cascades[i].k_lower && has_energy(spectrum, plan.cascades[i].k_lower, last))
             add_grids(plan, static_cast<int>(i));
         else
-            plan.cascades[i].why_empty = plan.trains && !(last > plan.cascades[i].k_lower)
-                                             ? "its waves are those of the trains"
-                                             : "the spectrum has no energy in its band";
+            plan.cascades[i].why_empty =
+                plan.trains && plan.trains->count > 0 && !(last > plan.cascades[i].k_lower)
+                    ? "its waves are those of the trains"
+                    : "the spectrum has no energy in its band";
     }
     if (plan.second_order_gain > 0.0) add_second_order(plan);
+    if (plan.trains && plan.trains->hero_trains > 0)
+        for (CascadePlan& cascade : plan.cascades) {
+            const double end =
+                std::min(plan.trains->hero_end_rad_per_m, cascade.k_upper) * cascade.size_m / kTwoPi;
+            if (!(plan.trains->hero_end_rad_per_m > cascade.k_lower)) continue;
+            cascade.hero_radius = std::min(static_cast<int>(std::ceil(end)) + 1, cascade.resolution / 2);
+            cascade.mode_radius = std::max(cascade.mode_radius, cascade.hero_radius);
+        }
     return plan;
 }
 
@@ -491,7 +500,7 @@ bool CascadePlan::moves() const {
 }
 
 int CascadePlan::amplitude_radius() const {
-    int radius = second_order ? second_order->radius : 0;
+    int radius = std::max(hero_radius, second_order ? second_order->radius : 0);
     for (const Grid& grid : grids) radius = std::max(radius, grid.radius);
     return radius;
 }

@@ -70,8 +70,11 @@ struct CascadePlan {
 
     std::optional<SecondOrderPlan> second_order{};  // of the one cascade that has it
 
+    // Of the waves that heroes must know, whatever is asked for: a hero is the same in every plan. 0 without heroes.
+    int hero_radius = 0;
+
     bool moves() const;  // whether somebody asks for velocities
-    // Modes within it have amplitudes: the largest of its grids' and of its second order; 0 without grids.
+    // Modes within it have amplitudes: the largest of its grids', of its second order and of heroes; 0 without any.
     int amplitude_radius() const;
 };
 
@@ -113,8 +116,8 @@ struct Plan {
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
-    std::optional<TrainsPlan>
-        trains;             // the second wave model, where cascades begin where its waves end, and heroes
+    // The second wave model, where cascades begin where its waves end, and heroes.
+    std::optional<TrainsPlan> trains;
     double lean_rad = 0.0;  // by which the horizontal displacement runs ahead
     double second_order_gain = 0.0;
     std::optional<FoamPlan> foam;        // with persistent foam, where a query asks for any of it

@@ -36,13 +36,13 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
     const double skewness =
         std::abs(second.skewness()) * second.limit() * scene.waves.second_order * choppiness.largest();
     extent.height_m *= 1.0 + skewness * (kExtentDeviations - 1.0 / kExtentDeviations) / 6.0;
-    // A hero stands in the sea as it is; what it adds is no higher than itself, and displaced as far in its back and front.
-    for (double highest_m = 0.0; const HeroWave& hero : scene.waves.heroes)
-        if (const double more_m = std::abs(hero.height_m) - highest_m; more_m > 0.0) {
-            highest_m += more_m;
-            extent.height_m += more_m;
-            extent.reach_m += choppiness.largest() * more_m;
-        }
+    // A hero takes of the sea's variance what it has of its own shape: η = ρA + √(1 − ρ²) 5σ is highest at √(A² + (5σ)²).
+    double hero_m = 0.0;
+    for (const HeroWave& hero : scene.waves.heroes) hero_m = std::max(hero_m, std::abs(hero.height_m));
+    if (spectrum.m0() > 0.0) {
+        extent.height_m = std::hypot(extent.height_m, hero_m);
+        extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);
+    }
     return extent;
 }
 

@@ -9,6 +9,7 @@
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
 #include "core/scene/cascade_bands.h"
+#include "core/spectrum/energy_shares.h"
 #include "core/spectrum/gauss.h"
 #include "core/spectrum/spectral_moments.h"
 
@@ -109,13 +110,16 @@ TrainsPlan model_trains(const PreparedScene& prepared, double finest_footprint_m
 
 std::optional<TrainsPlan> resolve_trains(const PreparedScene& prepared, double finest_footprint_m) {
     const Waves& waves = prepared.scene.waves;
-    const bool has_heroes = !waves.heroes.empty() && !prepared.spectrum.empty();
+    const bool has_heroes = !waves.heroes.empty() && prepared.spectrum.m0() > 0.0;
     if (waves.model != WaveModel::Trochoid && !has_heroes) return std::nullopt;
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     TrainsPlan plan = waves.model == WaveModel::Trochoid
                           ? model_trains(prepared, finest_footprint_m)
                           : TrainsPlan{.longest_m = kInfinite, .shortest_m = kInfinite};
-    if (has_heroes) plan.hero_trains = kHeroTrains;
+    if (has_heroes) {
+        plan.hero_trains = kHeroTrains * static_cast<int>(waves.heroes.size());
+        plan.hero_end_rad_per_m = EnergyShares(prepared.spectrum, 0.0, kInfinite).wavenumber(kHeroEnergy);
+    }
     return plan;
 }
 

@@ -17,8 +17,10 @@
 
 namespace pelagic {
 
-// Of all heroes of a sea together. Far from them they are 1/√(2 kHeroTrains) of a hero's height, rms.
+// For each hero of a sea. Far from all of them the trains are 1/√(2 kHeroTrains) of a hero's height, rms.
 inline constexpr int kHeroTrains = 200;
+// Of the sea's energy: heroes are made of the waves that hold it. Shorter ones ride on them.
+inline constexpr double kHeroEnergy = 0.9995;
 
 struct TrainsPlan {
     int count = 0;
@@ -29,7 +31,8 @@ struct TrainsPlan {
     double edge_m(int i) const;
     std::vector<double> wavelengths_m{};
 
-    int hero_trains = 0;  // besides those: of waves.heroes
+    int hero_trains = 0;              // besides those: of waves.heroes
+    double hero_end_rad_per_m = 0.0;  // the wavenumber up to which heroes know the sea: kHeroEnergy's
     // Whose spectrum's directions they have: of a shot with weather (core/plan/weather.h); null: the sea's own.
     std::shared_ptr<const PreparedScene> shot{};
 

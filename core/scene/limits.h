@@ -62,7 +62,7 @@ inline constexpr Range kCascadeResolution{kMinCascadeResolution, kMaxCascadeReso
 inline constexpr int kBandGains = 32;
 inline constexpr Range kBandEdge_m{1e-3, 1e5};
 inline constexpr Range kBandGain{0.0, 10.0};
-inline constexpr int kHeroes = 16;
+inline constexpr int kHeroes = 8;  // each has trains of its own
 inline constexpr Range kHeroHeight_m{-50.0, 50.0};
 inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,

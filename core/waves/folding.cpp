@@ -24,6 +24,8 @@ namespace {
 constexpr double kSteepestHero = 0.9;
 // In deviations: one crest in exp(½·5²) ≈ 270 000 waves is higher.
 constexpr double kHighestHero = 5.0;
+// What heroes add together over what they would add one by one, in energy.
+constexpr double kMostRaised = 4.0;
 
 // Of a sea with these moments, whose displacement gradient is multiplied by `gain`.
 double share_of(const SpectralMoments& all, double gain) {
@@ -175,30 +177,39 @@ std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
 std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     const std::vector<HeroWave>& heroes = prepared.scene.waves.heroes;
     if (heroes.empty()) return {};
-    if (prepared.spectrum.empty())
+    if (!(prepared.spectrum.m0() > 0.0))
         return {"the sea is calm and has no wave to raise: waves.heroes has nothing to stand in"};
     std::vector<std::string> warnings;
-    const auto tenths = [](double value) { return number_text(std::floor(10.0 * value) / 10.0); };
-    const double deviation_m = std::sqrt(prepared.spectrum.m0()),
-                 folds_m = kSteepestHero / (Choppiness::asked(prepared.scene).largest() *
-                                            hero_steepness_per_m(prepared.spectrum));
+    const auto tenths = [](double value) { return number_text(std::round(10.0 * value) / 10.0); };
+    const double deviation_m = std::sqrt(prepared.spectrum.m0());
     const std::vector<HeroTrain> trains = hero_trains(prepared, std::vector<LocalWaves>(heroes.size()));
+    double wanted_m2 = 0.0, raised_m2 = 0.0;
     for (std::size_t h = 0; h < heroes.size(); ++h) {
         const HeroWave& hero = heroes[h];
+        wanted_m2 += hero.height_m * hero.height_m;
         const std::string name =
             "waves.heroes[" + std::to_string(h) + "].height_m = " + number_text(hero.height_m) + ": ";
-        const double stands_m =
-            local_waves(trains, {hero.east_m, hero.north_m}, hero_time_s(prepared.scene, hero)).height_m;
-        if (std::abs(stands_m - hero.height_m) > 0.05 * std::abs(hero.height_m))
-            warnings.push_back(name + "other heroes are too near, in place and time, and make it " +
-                               tenths(stands_m) + " m high");
-        if (hero.height_m > folds_m)
-            warnings.push_back(name + "the crest folds over itself at its top; at most " + tenths(folds_m) +
+        const HeroShape shape =
+            hero_shape(trains, {hero.east_m, hero.north_m}, hero_time_s(prepared.scene, hero));
+        if (std::abs(shape.height_m - hero.height_m) > 0.05 * std::abs(hero.height_m))
+            warnings.push_back(name + "heroes before it are too near, in place and time, and make it " +
+                               tenths(shape.height_m) + " m high");
+        else if (shape.compression > kSteepestHero)
+            warnings.push_back(name + "the crest folds over itself at its top; at most " +
+                               tenths(kSteepestHero / shape.compression * hero.height_m) +
                                " m in this sea, or a lower waves.choppiness");
         else if (std::abs(hero.height_m) > kHighestHero * deviation_m)
             warnings.push_back(name + "no such sea has one as high; at most " +
                                tenths(kHighestHero * deviation_m) + " m is met, or a higher sea");
     }
+    // Of heroes far apart the sums are equal.
+    for (const HeroTrain& train : trains)
+        raised_m2 += static_cast<double>(trains.size()) * train.height_m * train.height_m;
+    if (raised_m2 > kMostRaised * wanted_m2)
+        warnings.push_back(
+            "waves.heroes: some contradict each other, crest and trough within a part of a wave, and the sea round them is " +
+            tenths(std::sqrt(raised_m2 / wanted_m2)) +
+            " times as high as they are; stand them farther apart");
     return warnings;
 }
 

@@ -9,7 +9,6 @@
 #include "core/base/constants.h"
 #include "core/plan/choppiness.h"
 #include "core/spectrum/energy_shares.h"
-#include "core/spectrum/gauss.h"
 #include "core/waves/loop.h"
 #include "core/waves/trains.h"
 
@@ -28,8 +27,9 @@ std::vector<HeroMode> hero_modes(const PreparedScene& prepared) {
     const Choppiness choppiness = Choppiness::asked(prepared.scene).built();
     const double loop_s = prepared.scene.shot.sea_loop_s();
     constexpr double kGolden = 0.6180339887498949;  // (√5 − 1)/2: neighbours in wavelength go all ways
-    for (int i = 0; i < kHeroTrains; ++i) {
-        const double k = energy.wavenumber((i + 0.5) / kHeroTrains), turn = (i + 0.5) * kGolden;
+    const int count = kHeroTrains * static_cast<int>(prepared.scene.waves.heroes.size());
+    for (int i = 0; i < count; ++i) {
+        const double k = energy.wavenumber(kHeroEnergy * (i + 0.5) / count), turn = (i + 0.5) * kGolden;
         const double theta = direction_of_share(spectrum, k, turn - std::floor(turn));
         const Dispersion& dispersion = spectrum.dispersion();
         modes.push_back({.wavelength_m = kTwoPi / k,
@@ -53,7 +53,8 @@ Row row_of(const HeroMode& mode, double cycles) {
                         -across.y * cosine}};
 }
 
-// Solves C x = r by Cholesky's method, the largest pivot first. C: covariances. Demands that are left out have 0.
+// Solves C x = r by Cholesky's method: one hero after the other, of each the largest pivot first. C: covariances. Demands that are left
+// out have 0.
 std::vector<double> solved(std::vector<double> c, std::vector<double> r) {
     const std::size_t n = r.size();
     const auto at = [&](std::size_t i, std::size_t j) -> double& { return c[i * n + j]; };
@@ -71,7 +72,7 @@ std::vector<double> solved(std::vector<double> c, std::vector<double> r) {
     std::vector<char> is_done(n, 0);
     for (;;) {
         std::size_t pivot = n;
-        for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t i = 0; i < n && (pivot == n || i % kDemands != 0); ++i)
             if (!is_done[i] && at(i, i) > kLeastFree && (pivot == n || at(i, i) > at(pivot, pivot)))
                 pivot = i;
         if (pivot == n) break;
@@ -157,29 +158,22 @@ std::vector<HeroTrain> hero_trains(const PreparedScene& prepared, std::span<cons
     return trains;
 }
 
-LocalWaves local_waves(std::span<const HeroTrain> trains, glm::dvec2 place_m, double reduced_time_s) {
-    LocalWaves sum;
+HeroShape hero_shape(std::span<const HeroTrain> trains, glm::dvec2 place_m, double reduced_time_s) {
+    HeroShape shape;
+    double xx = 0.0, xy = 0.0, yy = 0.0;
     for (const HeroTrain& train : trains) {
-        const Row row = row_of(train.mode, phase_at(train.mode.cycles_per_m(), train.mode.cycles_per_s,
-                                                    train.start_cycles, place_m, reduced_time_s));
-        const auto& of = row.of_cosine;
-        sum += {.height_m = train.height_m * of[0],
-                .slope = train.height_m * glm::dvec2(of[1], of[2]),
-                .rate_mps = train.height_m * of[3],
-                .displacement_m = train.height_m * glm::dvec2(of[4], of[5])};
+        const HeroMode& mode = train.mode;
+        const double height_m = train.height_m *
+                                std::cos(kTwoPi * phase_at(mode.cycles_per_m(), mode.cycles_per_s,
+                                                           train.start_cycles, place_m, reduced_time_s)),
+                     gradient = kTwoPi / mode.wavelength_m * mode.horizontal_ratio * height_m;
+        shape.height_m += height_m;
+        xx += gradient * mode.direction.x * mode.direction.x;
+        xy += gradient * mode.direction.x * mode.direction.y;
+        yy += gradient * mode.direction.y * mode.direction.y;
     }
-    return sum;
-}
-
-double hero_steepness_per_m(const DirectionalSpectrum& spectrum) {
-    if (!(spectrum.m0() > 0.0)) return 0.0;
-    double sum = 0.0;
-    spectrum.for_panels(0.0, std::numeric_limits<double>::infinity(), [&](double from, double to) {
-        sum += GaussLegendre<8>::rule().integrate(from, to, [&](double k) {
-            return k * spectrum.dispersion().horizontal_ratio(k) * spectrum.omnidirectional(k);
-        });
-    });
-    return sum / spectrum.m0();
+    shape.compression = 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
+    return shape;
 }
 
 }  // namespace pelagic

@@ -159,12 +159,11 @@ Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const Foa
     return found;
 }
 
-}  // namespace
-
-// What a cascade's waves have at a place at rest: a sum over its modes for each tile that is blended there.
+// What a cascade's waves up to wavenumber k_end have at a place at rest: a sum over its modes for each tile that is blended there.
 template <class T>
 LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, uint tiling_key,
-                       double lean_rad, const Dispersion& dispersion, glm::dvec2 place_m, double time_s) {
+                       double lean_rad, const Dispersion& dispersion, glm::dvec2 place_m, double time_s,
+                       double k_end) {
     LocalWaves sum;
     if (cascade.radius == 0) return sum;
     struct Tile {
@@ -199,7 +198,9 @@ LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, ui
                 LocalWaves& column = columns[static_cast<std::size_t>(mx)];
                 const int height = half_height(cascade.radius, mx);
                 for (int my = -height; my <= height; ++my) {
-                    if (!counts_as_wave(mx, my)) continue;
+                    const glm::dvec2 k = step * glm::dvec2(mx, my);
+                    const double length = glm::length(k);
+                    if (!counts_as_wave(mx, my) || length > k_end) continue;
                     const std::size_t mode = cascade.middle(mx) + my;
                     const double turns = cascade.cycles_per_s[mode] * time_s;
                     const std::complex<double> turn = std::polar(1.0, -part_of_turn(turns)),
@@ -213,9 +214,7 @@ LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, ui
                                                rate = std::complex<double>(
                                                           0.0, kTwoPi * cascade.cycles_per_s[mode]) *
                                                       (backward * std::conj(turn) - forward * turn) * place;
-                    const glm::dvec2 k = step * glm::dvec2(mx, my);
-                    const double length = glm::length(k),
-                                 chop = planned.choppiness * dispersion.horizontal_ratio(length) / length;
+                    const double chop = planned.choppiness * dispersion.horizontal_ratio(length) / length;
                     column += {.height_m = wave.real(),
                                .slope = -wave.imag() * k,
                                .rate_mps = rate.real(),
@@ -233,6 +232,8 @@ LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, ui
         }
     return sum;
 }
+
+}  // namespace
 
 // Counts finished work and reports it.
 template <class T>
@@ -298,22 +299,23 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
         for (std::size_t i = 0; i < to.resolved_next.size(); ++i)
             to.resolved_next[i].take_gradients(breaking[q].resolved_next[i]);
     }
-    if (plan_.trains && plan_.trains->hero_trains > 0) add_heroes();
+    if (plan_.trains && plan_.trains->hero_trains > 0) raise_heroes();
 }
 
 template <class T>
-void Sea<T>::add_heroes() {
+void Sea<T>::raise_heroes() {
     const Scene& scene = plan_.from->scene;
     const Dispersion& dispersion = plan_.from->spectrum.dispersion();
     const auto seed = static_cast<std::uint64_t>(scene.shot.seed);
+    const double k_end = plan_.trains->hero_end_rad_per_m;
     std::vector<LocalWaves> around;
     for (const HeroWave& hero : scene.waves.heroes) {
         const glm::dvec2 place_m(hero.east_m, hero.north_m);
         const double time_s = hero_time_s(scene, hero);
-        LocalWaves there = local_waves(trains_, place_m, time_s);
+        LocalWaves there = local_waves(trains_, place_m, time_s, k_end);
         for (int c = 0; c < static_cast<int>(cascades_.size()); ++c)
             there += local_waves(cascades_[c], plan_.cascades[c], tiling_key(seed, c), plan_.lean_rad,
-                                 dispersion, place_m, time_s);
+                                 dispersion, place_m, time_s, k_end);
         around.push_back(there);
     }
     pelagic::add_heroes(trains_, hero_trains(*plan_.from, around), plan_.filter, plan_.breaking, dispersion);

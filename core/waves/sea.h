@@ -114,7 +114,7 @@ class Sea {
   private:
     class Progress;
     std::vector<FootprintPair> pairs_of(int cascade, std::vector<QueryStatistics>& breaking);
-    void add_heroes();
+    void raise_heroes();
     Cascade<T> build(int cascade, std::vector<QueryStatistics>& breaking, Progress&);
 
     Plan plan_;

@@ -353,6 +353,7 @@ Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter,
                         const Footprints& footprints) {
     Realisation sum;
     for (std::size_t i = 0; i < trains.count(); ++i) {
+        if (trains.alone[i].m0 == 0.0) continue;  // a hero's is no part of the random sea
         const double k = kTwoPi / trains.wavelength_m[i];
         const double cell = filter.weight(k, footprints.cell_m), pixel = filter.weight(k, footprints.pixel_m);
         if (cell == 0.0 && pixel == 0.0) break;
@@ -368,10 +369,10 @@ Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter,
 }
 
 template <class T>
-LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s) {
+LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s, double k_end) {
     LocalWaves sum;
     const std::vector<double> cycles = phases_at(trains, place_m, reduced_time_s);
-    for (std::size_t i = 0; i < trains.count(); ++i) {
+    for (std::size_t i = 0; i < trains.count() && kTwoPi / trains.wavelength_m[i] <= k_end; ++i) {
         const double sine = std::sin(kTwoPi * cycles[i]);
         const glm::dvec2 across(trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]);
         sum += {.height_m = trains.height_m[i] * std::cos(kTwoPi * cycles[i]),
@@ -419,8 +420,8 @@ template SpectralMoments unresolved(const Trains<float>&, const FootprintFilter&
 template SpectralMoments unresolved(const Trains<double>&, const FootprintFilter&, double);
 template Realisation realisation(const Trains<float>&, const FootprintFilter&, const Footprints&);
 template Realisation realisation(const Trains<double>&, const FootprintFilter&, const Footprints&);
-template LocalWaves local_waves(const Trains<float>&, glm::dvec2, double);
-template LocalWaves local_waves(const Trains<double>&, glm::dvec2, double);
+template LocalWaves local_waves(const Trains<float>&, glm::dvec2, double, double);
+template LocalWaves local_waves(const Trains<double>&, glm::dvec2, double, double);
 template std::vector<double> phases_at(const Trains<float>&, glm::dvec2, double);
 template std::vector<double> phases_at(const Trains<double>&, glm::dvec2, double);
 

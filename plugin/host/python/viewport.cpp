@@ -378,9 +378,12 @@ class GpuSea {
         return std::unique_lock(mutex_);
     }
 
-    // The clock only by the loop that it makes: set() is given the sea's time.
+    // The clock only by the loop that it makes and by when heroes stand: set() is given the sea's time.
     static std::string what_counts(const Scene& scene) {
-        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s()) +
+        std::string heroes;
+        for (const HeroWave& hero : scene.waves.heroes)
+            heroes += number_text(scene.shot.time_s(hero.frame)) + ' ';
+        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s()) + heroes +
                (has_bubbles(scene) ? " bubbles" : "");
     }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -52,7 +53,8 @@ glm::dvec3 top(const Scene& scene, const HeroWave& hero) {
 }
 
 TEST(HeroWaves, StandWhereTheyAreAskedForInAnySea) {
-    const HeroWave hero{.frame = 60.0, .east_m = 37.0, .north_m = -412.0, .height_m = 6.0};
+    // Where tiles of both cascades blend.
+    const HeroWave hero{.frame = 60.0, .east_m = 350.0, .north_m = -45.0, .height_m = 6.0};
     for (int seed = 1; seed <= 12; ++seed) {
         Scene scene = sea_with({hero}, seed);
         if (seed % 4 == 1) scene.waves.tiling = Tiling::Periodic;
@@ -63,10 +65,11 @@ TEST(HeroWaves, StandWhereTheyAreAskedForInAnySea) {
             scene.waves.cascades.clear();
         }
         if (seed == 5) scene.sea.depth_m = 15.0;
+        // But for the ripples that ride on it: a fiftieth of the sea's own height.
         const glm::dvec3 found = top(scene, hero);
-        EXPECT_NEAR(found.z, hero.height_m, 0.01 * hero.height_m) << seed;
-        EXPECT_NEAR(found.x, 0.0, 0.05) << seed;
-        EXPECT_NEAR(found.y, 0.0, 0.05) << seed;
+        EXPECT_NEAR(found.z, hero.height_m, 0.015 * hero.height_m) << seed;
+        EXPECT_NEAR(found.x, 0.0, 0.1) << seed;
+        EXPECT_NEAR(found.y, 0.0, 0.1) << seed;
     }
 }
 
@@ -114,9 +117,58 @@ TEST(HeroWaves, HaveTheShapeOfTheSeasCorrelation) {
     for (const double t_s : {-3.0, 0.0, 2.0})
         for (const double x_m : {-60.0, -30.0, -10.0, 0.0, 10.0, 30.0, 60.0})
             for (const double y_m : {-30.0, 0.0, 30.0})
-                worst_m = std::max(worst_m, std::abs(local_waves(trains, {x_m, y_m}, t_s).height_m -
+                worst_m = std::max(worst_m, std::abs(hero_shape(trains, {x_m, y_m}, t_s).height_m -
                                                      expected({x_m, y_m}, t_s)));
     EXPECT_LT(worst_m, 0.05 * hero.height_m);
+}
+
+// A mesh alone and with finer maps beside it, a picture and foam's past have plans of their own.
+TEST(HeroWaves, AreTheSameWhateverIsAskedOfTheSea) {
+    const Scene scene =
+        sea_with({{.frame = 48.0, .east_m = 340.0, .height_m = 5.0}, {.frame = 9.0, .height_m = 4.0}});
+    const auto trains_of = [&](double footprint_m) {
+        return Sea<float>(make_plan(scene, {filtered(products(Product::Position), footprint_m)})).trains();
+    };
+    const Trains<float> fine = trains_of(0.1);
+    for (const double footprint_m : {1.0, 8.0, 60.0}) {
+        const Trains<float> coarse = trains_of(footprint_m);
+        EXPECT_EQ(coarse.height_m, fine.height_m) << footprint_m;
+        EXPECT_EQ(coarse.start_cycles, fine.start_cycles) << footprint_m;
+    }
+}
+
+// Ripples' slope isn't undone by long waves: far away a hero is as low and as level as its own shape.
+TEST(HeroWaves, LeaveTheSeaFarAwayAsItIs) {
+    const auto heights = [](const Scene& scene) {
+        double sum = 0.0, slopes = 0.0;
+        const Sea<float> sea(make_plan(scene, {unfiltered(products(Product::Position))}));
+        for (std::size_t i = 0; i < sea.trains().count(); ++i) {
+            const double height_m = sea.trains().height_m[i], k = kTwoPi / sea.trains().wavelength_m[i];
+            sum += 0.5 * height_m * height_m;
+            slopes += 0.5 * k * k * height_m * height_m;
+        }
+        return std::pair(std::sqrt(sum), std::sqrt(slopes / sum));
+    };
+    for (int seed = 1; seed <= 4; ++seed) {
+        const auto [one_m, one_slope] = heights(sea_with({{.frame = 1.0, .height_m = 6.0}}, seed));
+        EXPECT_LT(one_m, 0.1 * 6.0) << seed;
+        EXPECT_LT(one_slope, 0.4) << seed;
+        std::vector<HeroWave> many;
+        for (int i = 0; i < 6; ++i) many.push_back({.frame = 1.0, .east_m = 1000.0 * i, .height_m = 6.0});
+        EXPECT_LT(heights(sea_with(many, seed)).first, 0.1 * 6.0) << seed;
+    }
+}
+
+TEST(HeroWaves, ThatContradictEachOtherAreWarnedOf) {
+    const auto said = [](double apart_m) {
+        std::string all;
+        for (const std::string& warning : sea_warnings(*prepare(sea_with(
+                 {{.frame = 1.0, .height_m = 4.0}, {.frame = 1.0, .east_m = apart_m, .height_m = -4.0}}))))
+            all += warning + '\n';
+        return all;
+    };
+    EXPECT_NE(said(4.0).find("contradict"), std::string::npos) << said(4.0);
+    EXPECT_EQ(said(300.0).find("contradict"), std::string::npos) << said(300.0);
 }
 
 TEST(HeroWaves, ManyStandTogetherAlsoInTroughsAndFarAway) {
@@ -175,8 +227,7 @@ TEST(HeroWaves, OfSeasThatLeaveADemandOpenStayFinite) {
     EXPECT_NEAR(top(one, hero).z, 2.0, 0.05);
     const Scene twins = sea_with({hero, {.frame = 10.0, .east_m = 1e-6, .height_m = 5.0}});
     const double stands_m = top(twins, hero).z;
-    EXPECT_TRUE(std::isfinite(stands_m));
-    EXPECT_TRUE(std::abs(stands_m - 2.0) < 0.1 || std::abs(stands_m - 5.0) < 0.1) << stands_m;
+    EXPECT_NEAR(stands_m, 2.0, 0.1);  // the first's
     const auto warnings = sea_warnings(*prepare(twins));
     EXPECT_TRUE(std::ranges::any_of(
         warnings, [](const std::string& warning) { return warning.find("too near") != std::string::npos; }));

@@ -40,6 +40,7 @@ Plan plan_of_spray_drops(const Plan& plan, const SprayDropsPlan& drops) {
         products(Product::Displacement, Product::Velocity, Product::JacobianMoments, Product::Breaking);
     query.cell_m = query.pixel_m = {drops.cell_m};
     query.is_view = true;
+    // No picture: drops tear off where a mesh's sea breaks, so that a stage's are its picture's.
     Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
     own.knobs.spline_taps = 4;  // as for foam's past: a hundredth of a breaking is enough
     own.trains = plan.trains;

@@ -145,8 +145,9 @@ inline constexpr double kUnderBreaking = 0.42;
 // within 1 % at decays of 4 and 8 s, 1.5 % at 0.5 s (without 1.3 and 5 %). For the same footprint it is the whole share, to the bit.
 template <class T>
 inline T share_under_breaking(T footprint_m, T past_m, T breaking_m) {
-    T own = maximum(footprint_m, T(1e-6));
-    T ratio = maximum(own, past_m) / maximum(own, breaking_m);
+    // In this order also of a pixel without end, or that is no number.
+    T own_m = maximum(minimum(breaking_m, footprint_m), past_m);
+    T ratio = (own_m + T(1e-6)) / (breaking_m + T(1e-6));
     T square = ratio * ratio;
     return T(kUnderBreaking) * (T(0.5) + T(0.5) * square * square);
 }

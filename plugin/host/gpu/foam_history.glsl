@@ -53,6 +53,6 @@ AllFoam all_foam(vec2 rest_m, vec3 pixel, float breaking) {
     vec3 left = foam_left(rest_m, footprint);
     vec2 of = texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).xy;
     bool has_bubbles = texelFetch(foam_levels, ivec2(0, kFoamLevels), 0).w >= 0.0;
-    return AllFoam(breaking + residual_foam(left.x, breaking, share_under_breaking(footprint, of.x, of.y)), breaking, left.x > 0.0 ? left.y / left.x : 0.0,
-                   has_bubbles ? left.z : -1.0);
+    float residual = residual_foam(left.x, breaking, share_under_breaking(footprint, of.x, of.y));
+    return AllFoam(breaking + residual, breaking, left.x > 0.0 ? left.y / left.x : 0.0, has_bubbles ? left.z : -1.0);
 }

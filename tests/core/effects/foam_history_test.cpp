@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <thread>
@@ -659,6 +660,18 @@ TEST(LivingFoam, IsAMeshesInPictures) {
                 EXPECT_TRUE(std::equal(a.foam, a.foam + FoamPlan::kTileNodes, b.foam));
                 EXPECT_TRUE(std::equal(a.aged, a.aged + FoamPlan::kTileNodes, b.aged));
             }
+}
+
+TEST(LivingFoam, IsCoveredByAWholeShareWhereItsBreakingIsAMeshes) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float footprint_m : {0.0f, 0.3f, 7.0f, kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
+        for (const float mesh_m : {0.0f, 0.5f, 0.7f})
+            EXPECT_EQ(share_under_breaking(footprint_m, mesh_m, mesh_m), static_cast<float>(kUnderBreaking));
+        const float share = share_under_breaking(footprint_m, 0.5f, 1.6f);
+        EXPECT_GE(share, 0.5f * static_cast<float>(kUnderBreaking)) << footprint_m;
+        EXPECT_LE(share, static_cast<float>(kUnderBreaking)) << footprint_m;
+    }
+    EXPECT_EQ(share_under_breaking(kInfinity, 0.5f, 1.6f), static_cast<float>(kUnderBreaking));
 }
 
 // Gusts change where waves break, and not how much foam there is.

@@ -145,6 +145,25 @@ TEST(FoamStructure, IsThereAndSoft) {
     }
 }
 
+// Near it is torn down to a few centimetres: over 3 cm old foam changes by a good part of its opacity.
+TEST(FoamStructure, IsTornNear) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-400.0f, 400.0f);
+    const auto pattern = pattern_of(1.0, 0.0);
+    double change = 0.0, foam = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec2 at(place(random), place(random));
+        const auto opacity_at = [&](glm::vec2 rest_m) {
+            return shading.seen_foam(pattern, rest_m, glm::vec3(0.005f, 0.0f, 0.0f), 0.5f, 0.0f, 3.0f, kSun)
+                .opacity;
+        };
+        change += std::abs(opacity_at(at + glm::vec2(0.03f, 0.0f)) - opacity_at(at));
+        foam += opacity_at(at);
+    }
+    std::printf("    over 3 cm %.3f of its opacity\n", change / foam);
+    EXPECT_GT(change, 0.48 * foam);
+}
+
 // A roller that hides all of the water has heaps and hollows: its tone is not one.
 TEST(FoamStructure, HasHeapsAndHollows) {
     std::vector<float> white;

@@ -168,14 +168,20 @@ class FoamHistory<T>::Locator {
 
     float footprint_m(std::size_t i) const {
         if (!points_.pixel_m) return whole_m_;
-        const auto width_m = static_cast<float>(points_.pixel_m[i]);
-        if (!points_.pixel_axis_m) return width_m;
-        const glm::vec<2, T> axis = points_.pixel_axis_m[i];
-        const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
-        return foam_footprint_m(width_m, length_m);
+        return foam_footprint_m(static_cast<float>(points_.pixel_m[i]), length_m(i));
+    }
+    // What breaks is unresolved already where the longer axis hides it.
+    float longer_m(std::size_t i) const {
+        if (!points_.pixel_m) return whole_m_;
+        return std::max(static_cast<float>(points_.pixel_m[i]), length_m(i));
     }
 
   private:
+    float length_m(std::size_t i) const {
+        if (!points_.pixel_axis_m) return 0.0f;
+        const glm::vec<2, T> axis = points_.pixel_axis_m[i];
+        return static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
+    }
     template <class Use>
     void for_tiles(int level, std::size_t first, std::size_t last, Part& part, const Use& use) const {
         const Cells& cells = cells_[static_cast<std::size_t>(level)];
@@ -650,7 +656,7 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults<T
                   alignas(64) std::array<float, kPart> breaking, under, all, age_s;
                   for (std::size_t i = 0; i < count; ++i) {
                       breaking[i] = static_cast<float>(results.breaking[first + i]);
-                      under[i] = share_under_breaking(locate.footprint_m(first + i), past_m, breaking_m);
+                      under[i] = share_under_breaking(locate.longer_m(first + i), past_m, breaking_m);
                   }
                   std::fill(breaking.begin() + count, breaking.end(), 0.0f);
                   std::fill(under.begin() + count, under.end(), 0.0f);

@@ -415,8 +415,8 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     if (plan.trains && plan.trains->hero_trains > 0)
         for (CascadePlan& cascade : plan.cascades) {
             const double end =
-                std::min(plan.trains->hero_end_rad_per_m, cascade.k_upper) * cascade.size_m / kTwoPi;
-            if (!(plan.trains->hero_end_rad_per_m > cascade.k_lower)) continue;
+                std::min(plan.trains->hero_ends.height, cascade.k_upper) * cascade.size_m / kTwoPi;
+            if (!(plan.trains->hero_ends.height > cascade.k_lower)) continue;
             cascade.hero_radius = std::min(static_cast<int>(std::ceil(end)) + 1, cascade.resolution / 2);
             cascade.mode_radius = std::max(cascade.mode_radius, cascade.hero_radius);
         }

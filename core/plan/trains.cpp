@@ -118,7 +118,8 @@ std::optional<TrainsPlan> resolve_trains(const PreparedScene& prepared, double f
                           : TrainsPlan{.longest_m = kInfinite, .shortest_m = kInfinite};
     if (has_heroes) {
         plan.hero_trains = kHeroTrains * static_cast<int>(waves.heroes.size());
-        plan.hero_end_rad_per_m = EnergyShares(prepared.spectrum, 0.0, kInfinite).wavenumber(kHeroEnergy);
+        const EnergyShares energy(prepared.spectrum, 0.0, kInfinite);
+        plan.hero_ends = {energy.wavenumber(kHeroHeightEnergy), energy.wavenumber(kHeroEnergy)};
     }
     return plan;
 }

@@ -19,8 +19,14 @@ namespace pelagic {
 
 // For each hero of a sea. Far from all of them the trains are 1/√(2 kHeroTrains) of a hero's height, rms.
 inline constexpr int kHeroTrains = 200;
-// Of the sea's energy: heroes are made of the waves that hold it. Shorter ones ride on them.
-inline constexpr double kHeroEnergy = 0.9995;
+// Of the sea's energy: the waves that count in a hero's height, and those of which heroes are made and that are level at their tops.
+// Shorter ones ride on them.
+inline constexpr double kHeroHeightEnergy = 0.9995, kHeroEnergy = 0.9975;
+
+// The wavenumbers where they end [rad/m].
+struct HeroEnds {
+    double height = 0.0, level = 0.0;
+};
 
 struct TrainsPlan {
     int count = 0;
@@ -31,8 +37,8 @@ struct TrainsPlan {
     double edge_m(int i) const;
     std::vector<double> wavelengths_m{};
 
-    int hero_trains = 0;              // besides those: of waves.heroes
-    double hero_end_rad_per_m = 0.0;  // the wavenumber up to which heroes know the sea: kHeroEnergy's
+    int hero_trains = 0;   // besides those: of waves.heroes
+    HeroEnds hero_ends{};  // up to where heroes know the sea
     // Whose spectrum's directions they have: of a shot with weather (core/plan/weather.h); null: the sea's own.
     std::shared_ptr<const PreparedScene> shot{};
 

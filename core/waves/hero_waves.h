@@ -10,8 +10,8 @@
 // and all heroes are asked for together. What is added is a sum of trains of its own, which any place and time evaluates, so
 // that no tile repeats it: kHeroTrains modes a hero, of equal energy, their wavenumbers and directions spread evenly over the
 // spectrum's. Modes and b are of the waves that hold kHeroEnergy of the sea's energy, whatever is asked of the sea: shorter ones would
-// have their slope undone by long ones, and a plan may lack them. They ride on the hero. It is of the first order: it doesn't lean, and has no
-// part in the pairs of second order.
+// have their slope undone by long ones, and a plan may lack them. They ride on the hero; in its height there are those of
+// kHeroHeightEnergy. It is of the first order: it doesn't lean, and has no part in the pairs of second order.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -52,7 +52,7 @@ struct HeroTrain {
 // When a hero stands, within the loop where there is one [s].
 double hero_time_s(const Scene& scene, const HeroWave& hero);
 
-// What is to be added so that each hero stands. `around`: of the sea's waves up to TrainsPlan::hero_end_rad_per_m without them, at each
+// What is to be added so that each hero stands. `around`: of the sea's waves up to TrainsPlan::hero_ends, without them, at each
 // hero's place and time. A hero in a place where those before it leave no choice (closer than a small part of a wave, in place and
 // time) is as they make it. Empty: no heroes, or a sea without waves. The same scene gives the same trains, bit for bit.
 std::vector<HeroTrain> hero_trains(const PreparedScene& prepared, std::span<const LocalWaves> around);

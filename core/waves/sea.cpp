@@ -159,11 +159,11 @@ Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const Foa
     return found;
 }
 
-// What a cascade's waves up to wavenumber k_end have at a place at rest: a sum over its modes for each tile that is blended there.
+// What a cascade's waves up to these ends have at a place at rest: a sum over its modes for each tile that is blended there.
 template <class T>
 LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, uint tiling_key,
                        double lean_rad, const Dispersion& dispersion, glm::dvec2 place_m, double time_s,
-                       double k_end) {
+                       const HeroEnds& ends) {
     LocalWaves sum;
     if (cascade.radius == 0) return sum;
     struct Tile {
@@ -200,25 +200,26 @@ LocalWaves local_waves(const Cascade<T>& cascade, const CascadePlan& planned, ui
                 for (int my = -height; my <= height; ++my) {
                     const glm::dvec2 k = step * glm::dvec2(mx, my);
                     const double length = glm::length(k);
-                    if (!counts_as_wave(mx, my) || length > k_end) continue;
+                    if (!counts_as_wave(mx, my) || length > ends.height) continue;
                     const std::size_t mode = cascade.middle(mx) + my;
                     const double turns = cascade.cycles_per_s[mode] * time_s;
                     const std::complex<double> turn = std::polar(1.0, -part_of_turn(turns)),
                                                forward(cascade.forward_re[mode], cascade.forward_im[mode]),
                                                backward(cascade.backward_re[mode], cascade.backward_im[mode]),
                                                place = std::polar(2.0, mx * at_x + my * at_y);
-                    const std::complex<double> wave = (forward * turn + backward * std::conj(turn)) * place,
-                                               later = (forward * turn * std::conj(leaning) +
+                    const std::complex<double> wave = (forward * turn + backward * std::conj(turn)) * place;
+                    column.height_m += wave.real();
+                    if (length > ends.level) continue;
+                    const std::complex<double> later = (forward * turn * std::conj(leaning) +
                                                         backward * std::conj(turn) * leaning) *
                                                        place,
                                                rate = std::complex<double>(
                                                           0.0, kTwoPi * cascade.cycles_per_s[mode]) *
                                                       (backward * std::conj(turn) - forward * turn) * place;
-                    const double chop = planned.choppiness * dispersion.horizontal_ratio(length) / length;
-                    column += {.height_m = wave.real(),
-                               .slope = -wave.imag() * k,
+                    column += {.slope = -wave.imag() * k,
                                .rate_mps = rate.real(),
-                               .displacement_m = -chop * later.imag() * k};
+                               .displacement_m = -planned.choppiness * dispersion.horizontal_ratio(length) /
+                                                 length * later.imag() * k};
                 }
             });
             LocalWaves tile;
@@ -307,15 +308,15 @@ void Sea<T>::raise_heroes() {
     const Scene& scene = plan_.from->scene;
     const Dispersion& dispersion = plan_.from->spectrum.dispersion();
     const auto seed = static_cast<std::uint64_t>(scene.shot.seed);
-    const double k_end = plan_.trains->hero_end_rad_per_m;
+    const HeroEnds ends = plan_.trains->hero_ends;
     std::vector<LocalWaves> around;
     for (const HeroWave& hero : scene.waves.heroes) {
         const glm::dvec2 place_m(hero.east_m, hero.north_m);
         const double time_s = hero_time_s(scene, hero);
-        LocalWaves there = local_waves(trains_, place_m, time_s, k_end);
+        LocalWaves there = local_waves(trains_, place_m, time_s, ends);
         for (int c = 0; c < static_cast<int>(cascades_.size()); ++c)
             there += local_waves(cascades_[c], plan_.cascades[c], tiling_key(seed, c), plan_.lean_rad,
-                                 dispersion, place_m, time_s, k_end);
+                                 dispersion, place_m, time_s, ends);
         around.push_back(there);
     }
     pelagic::add_heroes(trains_, hero_trains(*plan_.from, around), plan_.filter, plan_.breaking, dispersion);

@@ -369,16 +369,20 @@ Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter,
 }
 
 template <class T>
-LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s, double k_end) {
+LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s,
+                       const HeroEnds& ends) {
     LocalWaves sum;
     const std::vector<double> cycles = phases_at(trains, place_m, reduced_time_s);
-    for (std::size_t i = 0; i < trains.count() && kTwoPi / trains.wavelength_m[i] <= k_end; ++i) {
-        const double sine = std::sin(kTwoPi * cycles[i]);
-        const glm::dvec2 across(trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]);
-        sum += {.height_m = trains.height_m[i] * std::cos(kTwoPi * cycles[i]),
-                .slope = kTwoPi * trains.height_m[i] * sine * across,
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        const double k = kTwoPi / trains.wavelength_m[i], sine = std::sin(kTwoPi * cycles[i]);
+        if (k > ends.height) break;
+        sum.height_m += trains.height_m[i] * std::cos(kTwoPi * cycles[i]);
+        if (k > ends.level) continue;
+        const glm::dvec2 direction =
+            trains.wavelength_m[i] * glm::dvec2(trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]);
+        sum += {.slope = k * trains.height_m[i] * sine * direction,
                 .rate_mps = -kTwoPi * trains.cycles_per_s[i] * trains.height_m[i] * sine,
-                .displacement_m = trains.horizontal_m[i] * sine * trains.wavelength_m[i] * across};
+                .displacement_m = trains.horizontal_m[i] * sine * direction};
     }
     return sum;
 }
@@ -420,8 +424,8 @@ template SpectralMoments unresolved(const Trains<float>&, const FootprintFilter&
 template SpectralMoments unresolved(const Trains<double>&, const FootprintFilter&, double);
 template Realisation realisation(const Trains<float>&, const FootprintFilter&, const Footprints&);
 template Realisation realisation(const Trains<double>&, const FootprintFilter&, const Footprints&);
-template LocalWaves local_waves(const Trains<float>&, glm::dvec2, double, double);
-template LocalWaves local_waves(const Trains<double>&, glm::dvec2, double, double);
+template LocalWaves local_waves(const Trains<float>&, glm::dvec2, double, const HeroEnds&);
+template LocalWaves local_waves(const Trains<double>&, glm::dvec2, double, const HeroEnds&);
 template std::vector<double> phases_at(const Trains<float>&, glm::dvec2, double);
 template std::vector<double> phases_at(const Trains<double>&, glm::dvec2, double);
 

@@ -118,9 +118,10 @@ struct Footprints {
 template <class T>
 Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter, const Footprints& footprints);
 
-// What trains up to wavenumber k_end have at a place and a time, none filtered.
+// What trains up to these ends have at a place and a time, none filtered.
 template <class T>
-LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s, double k_end);
+LocalWaves local_waves(const Trains<T>& trains, glm::dvec2 place_m, double reduced_time_s,
+                       const HeroEnds& ends);
 
 // θ/2π at a place and time, reduced to ±½; the products are not rounded before.
 double phase_at(glm::dvec2 cycles_per_m, double cycles_per_s, double start_cycles, glm::dvec2 place_m,

@@ -142,7 +142,7 @@ inline constexpr double kUnderBreaking = 0.42;
 
 // That share where what breaks is seen through a wider footprint than what it has left, as in pictures (Plan::breaking): the foam
 // there shows half of it by itself, and the less so the nearer the two. With it all foam is as much as on meshes: at 14 and 24 m/s
-// within 1 % at decays of 4 and 8 s, 1.5 % at 0.5 s (without 1.3 and 5 %). For the same footprint it is the whole share, to the bit.
+// within 1 % at a decay of 4 s, 1.5 % at 0.5 s (without 1.3 and 5 %), in edition 3 2.3 % there. For the same footprint it is the whole share, to the bit.
 template <class T>
 inline T share_under_breaking(T footprint_m, T past_m, T breaking_m) {
     // In this order also of a pixel without end, or that is no number.

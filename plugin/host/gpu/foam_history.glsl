@@ -51,8 +51,8 @@ AllFoam all_foam(vec2 rest_m, vec3 pixel, float breaking) {
     float along = length(pixel.yz);
     float footprint = along > pixel.x ? sqrt(pixel.x * along) : pixel.x;
     vec3 left = foam_left(rest_m, footprint);
-    vec2 of = texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).xy;
+    vec2 past_and_breaking = texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).xy;
     bool has_bubbles = texelFetch(foam_levels, ivec2(0, kFoamLevels), 0).w >= 0.0;
-    float residual = residual_foam(left.x, breaking, share_under_breaking(footprint, of.x, of.y));
+    float residual = residual_foam(left.x, breaking, share_under_breaking(max(pixel.x, along), past_and_breaking.x, past_and_breaking.y));
     return AllFoam(breaking + residual, breaking, left.x > 0.0 ? left.y / left.x : 0.0, has_bubbles ? left.z : -1.0);
 }

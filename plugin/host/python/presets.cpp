@@ -58,7 +58,7 @@ void add_presets(py::module_& module, py::class_<Scene, std::shared_ptr<Scene>>&
     const std::vector<std::string> all(kPresetParts.begin(), kPresetParts.end());
     scene.def(
         "apply_preset", &apply_preset, py::arg("name"), py::arg("parts") = all,
-        "Sets the keys of a preset, or those of some of its parts: sea (with its waves and effects), light, camera, water. "
+        "Sets the keys of a preset, or those of some of its parts: sea (with its waves, effects and bubbles), light, camera, water. "
         "ValueError, with the nearest name, where there is none.");
 }
 

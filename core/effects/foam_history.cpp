@@ -26,7 +26,10 @@ constexpr std::size_t kNodes = FoamPlan::kTileNodes, kStride = FoamPlan::kTileSt
 constexpr int kSide = FoamPlan::kTileCells + 1;
 constexpr std::size_t kPart = FoamAxis::kPoints;
 constexpr std::int64_t kLong = 6;  // samples: a run's frame takes fewer, and is soon done
-constexpr int kSamples = 6;        // that an interval is known by: from two before it to two after it
+// The deviate of 10⁻¹² of the sea, where the law has no foam: the polynomial through six samples would go far beyond them where foam
+// sets in, from lower ones.
+constexpr float kNoBreaking = -7.0f;
+constexpr int kSamples = 6;  // that an interval is known by: from two before it to two after it
 
 // Of a division whose divisor is positive.
 std::size_t modulo(std::int64_t n, std::size_t by) {
@@ -626,8 +629,11 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
     const auto deviates = [&](std::int64_t sample) {
         return tile.deviates.data() + modulo(sample, kSamples) * kStride;
     };
-    kernels_.deviates(mean.data(), variance.data(), third.data(), threshold.data(),
-                      sea_->plan().knobs.third_moment, {deviates(n), kNodes});
+    if (std::isfinite(now.threshold))
+        kernels_.deviates(mean.data(), variance.data(), third.data(), threshold.data(),
+                          sea_->plan().knobs.third_moment, {deviates(n), kNodes});
+    else
+        std::fill_n(deviates(n), kNodes, kNoBreaking);
     tile.next = n + 1;
     const std::int64_t interval = n - 3;
     if (interval < tile.end) return;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "core/plan/effects.h"
@@ -104,14 +103,10 @@ std::string weather_text(const PreparedScene& shot, double t_s, double past_s, d
 
 std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     Weather weather;
-    std::set<int> frames;
-    for (const KeyedNumber& number : scene.keyed) {
-        if (!is_of_sea(number)) continue;
-        weather.is_smooth |= number.keys.interpolation == CameraInterpolation::Smooth;
-        for (const NumberKeys::Key& key : number.keys.keys) frames.insert(key.frame);
-    }
+    for (const KeyedNumber& number : scene.keyed)
+        weather.is_smooth |= is_of_sea(number) && number.keys.interpolation == CameraInterpolation::Smooth;
     std::string before;
-    for (const int frame : frames) {
+    for (const int frame : frames_of_sea(scene)) {
         std::string numbers = numbers_text(scene, frame);
         weather.keys.push_back(
             {frame, scene.shot.time_s(frame),

@@ -66,6 +66,14 @@ bool is_of_sea(const KeyedNumber& number) {
     return number.path.starts_with("sea.") || number.path.starts_with("waves.");
 }
 
+std::set<int> frames_of_sea(const Scene& scene) {
+    std::set<int> frames;
+    for (const KeyedNumber& number : scene.keyed)
+        if (is_of_sea(number))
+            for (const NumberKeys::Key& key : number.keys.keys) frames.insert(key.frame);
+    return frames;
+}
+
 void refuse_keyed_sea(const Scene& scene) {
     for (const KeyedNumber& number : scene.keyed)
         if (is_of_sea(number))

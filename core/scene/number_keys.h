@@ -2,6 +2,8 @@
 // that frame of a run.
 #pragma once
 
+#include <set>
+
 #include "core/scene/keys.h"
 
 namespace pelagic {
@@ -20,6 +22,9 @@ void refuse_keys(const Scene& scene, std::string_view table = {});
 
 // Of numbers that the sea is made of.
 bool is_of_sea(const KeyedNumber& number);
+
+// The frames at which one of them has a key.
+std::set<int> frames_of_sea(const Scene& scene);
 
 // For what has one sea for the whole shot: as refuse_keys(), of those.
 void refuse_keyed_sea(const Scene& scene);

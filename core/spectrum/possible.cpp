@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "core/base/constants.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "core/spectrum/wave_system.h"
@@ -70,9 +73,21 @@ std::vector<Problem> impossible_waves(const SeaState& sea) {
     return problems;
 }
 
+std::vector<Problem> impossible_waves(const Scene& scene) {
+    const std::set<int> frames = frames_of_sea(scene);
+    if (frames.empty()) return impossible_waves(scene.sea);
+    std::vector<Problem> problems;
+    for (const int frame : frames)
+        for (Problem& problem : impossible_waves(scene_at(scene, frame).sea)) {
+            problem.value += " at frame " + std::to_string(frame);
+            problems.push_back(std::move(problem));
+        }
+    return problems;
+}
+
 std::vector<Problem> problems_of(const Scene& scene) {
     std::vector<Problem> problems = validate(scene);
-    return problems.empty() ? impossible_waves(scene.sea) : problems;
+    return problems.empty() ? impossible_waves(scene) : problems;
 }
 
 }  // namespace pelagic

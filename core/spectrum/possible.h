@@ -14,6 +14,9 @@ namespace pelagic {
 // 1944; a single wave there may be no higher), and 0.6 d.
 std::vector<Problem> impossible_waves(const SeaState& sea);
 
+// Of a scene whose sea has keys: of each of them.
+std::vector<Problem> impossible_waves(const Scene& scene);
+
 // All that is wrong with a scene: what validate() finds or, where that is nothing, impossible waves.
 std::vector<Problem> problems_of(const Scene& scene);
 

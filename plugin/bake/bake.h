@@ -7,9 +7,11 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "core/scene/problem.h"
 #include "pelagic/scene.h"
 #include "plugin/run/run.h"
 
@@ -20,6 +22,9 @@ inline constexpr int kFramesInFlight = 3;
 
 // What a bake of so many frames of the plan (plan_bake) holds at most, on so many threads.
 MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads);
+
+// Keys of a valid scene that pictures show and a bake refuses.
+std::vector<Problem> unbaked_keys(const Scene& scene);
 
 // Throws NotEnoughMemory before anything is written, as run(), and
 // std::invalid_argument for a scene that problems_of() refuses or that asks for nothing.

@@ -207,7 +207,7 @@ std::vector<Problem> check_scene(const Scene& scene) {
     for (const Key* key : floor_keys(scene))
         for (Problem& problem : check_floor_picture(scene, *key)) problems.push_back(std::move(problem));
     if (!validate(scene).empty()) return problems;
-    for (Problem& problem : impossible_waves(scene.sea)) problems.push_back(std::move(problem));
+    for (Problem& problem : impossible_waves(scene)) problems.push_back(std::move(problem));
     return problems;
 }
 

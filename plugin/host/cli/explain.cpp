@@ -146,6 +146,8 @@ void print_keyed(const Scene& scene) {
                           ? ""
                           : ", and the stage has a dome for each frame of the shot")
                   << ".\n";
+    for (const Problem& problem : unbaked_keys(scene))
+        std::cout << "A bake refuses " << problem.key << ": it " << problem.problem << ".\n";
 }
 
 // What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.

@@ -1,6 +1,7 @@
 // pelagic validate SHOT.toml …
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -33,8 +34,13 @@ std::string summary(const Scene& scene, const Plan& plan) {
     if (scene.sea.measured) {
         text += "buoy " + scene.sea.measured->station + " of " + scene.sea.measured->time;
     } else {
-        text += std::string(word_of(scene.sea.spectrum)) + " at " + number_text(scene.sea.wind_speed_mps) +
-                " m/s";
+        text += std::string(word_of(scene.sea.spectrum)) + " at ";
+        // The member has the largest.
+        for (const KeyedNumber& number : scene.keyed)
+            if (number.path == "sea.wind_speed_mps")
+                text += number_text(std::ranges::min(number.keys.keys, {}, &NumberKeys::Key::value).value) +
+                        " … ";
+        text += number_text(scene.sea.wind_speed_mps) + " m/s";
     }
     text += ": ";
     if (plan.trains && plan.trains->count > 0)

@@ -135,6 +135,24 @@ TEST(WeatherFoam, BeforeAnythingChangesIsThatOfThePlainNumber) {
     EXPECT_FALSE(same_foam(foam_at(changing, 33.0, points), foam_at(still, 33.0, points)));
 }
 
+// A wind that rises from none within a second leaves no more foam than the law has at its end, as soon as it has had its time.
+TEST(WeatherFoam, SetsInWithTheLaw) {
+    Scene scene = rising_foam();
+    ASSERT_FALSE(set_value(scene, key_of("sea.wind_speed_mps"), NumberKeys{{{1, 0.0}, {25, 12.0}}}));
+    SeaAtTime<float> sea(sea_over_time<float>(scene));
+    scene.sea.wind_speed_mps = 12.0;
+    const double law = law_coverage(scene);
+    const auto points = random_points<float>(250.0, 20000);
+    double before = 0.0;
+    for (const double t : {-1.0, 0.4, 0.8, 6.0}) {
+        const double mean = mean_of(foam_at(sea, t, points).numbers(Coverage), [](float v) { return v; });
+        EXPECT_GE(mean, before);
+        EXPECT_LT(mean, 1.3 * law) << t;
+        before = mean;
+    }
+    EXPECT_GT(before, 0.7 * law);
+}
+
 // What breaks and what breaking leaves are together as much as the law has at the wind of the time, with the waves of the time.
 TEST(WeatherFoam, IsCalibratedForTheSeaOfEachTime) {
     Scene scene = rising_foam();

@@ -13,6 +13,7 @@
 #include "core/plan/extent.h"
 #include "core/scene/keys.h"
 #include "core/scene/number_keys.h"
+#include "core/spectrum/possible.h"
 #include "core/waves/sea_over_time.h"
 #include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
@@ -274,6 +275,19 @@ TEST(Weather, BoundsHoldAtEachTime) {
             EXPECT_LT(in.z.hi, 3.0 * static_cast<double>(highest)) << f;  // of this time, not of the gale
         }
     }
+}
+
+// Each key's sea must be one that there can be, with what the other numbers are there.
+TEST(Weather, OfImpossibleWavesIsRefusedWithItsFrame) {
+    Scene scene;
+    scene.effects.foam_decay_s = 0.0;
+    scene.sea.depth_m = 10.0;
+    give_keys(scene, "sea.wind_speed_mps", {{1, 12.0}, {9, 15.0}});
+    give_keys(scene, "sea.significant_height_m", {{1, 1.0}, {20, 8.0}});
+    const std::vector<Problem> problems = problems_of(scene);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].key, "sea.significant_height_m");
+    EXPECT_EQ(problems[0].value, "8 at frame 20");
 }
 
 TEST(Weather, IsRefusedWhereTheSeaIsOne) {

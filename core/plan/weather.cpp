@@ -89,9 +89,14 @@ std::string weather_text(const PreparedScene& shot, double t_s, double past_s, d
     if (past_s > 0.0) {
         std::string text = weather.is_smooth ? "smooth" : "linear";
         const std::size_t last = weather.at(t_s + ahead_s).second;
-        for (std::size_t key = weather.at(t_s - past_s).first; key <= last; ++key)
-            text += " at " + number_text(weather.keys[key].time_s) + '\n' +
-                    numbers_text(shot.scene, weather.keys[key].frame);
+        for (std::size_t key = weather.at(t_s - past_s).first; key <= last; ++key) {
+            const double frame = weather.keys[key].frame;
+            text += " at " + number_text(weather.keys[key].time_s) + '\n' + numbers_text(shot.scene, frame);
+            // Smooth keys' slopes come from keys beyond these: two values between them say which cubic it is.
+            for (const double share : {1.0 / 3.0, 2.0 / 3.0})
+                if (key < last)
+                    text += numbers_text(shot.scene, blended(frame, weather.keys[key + 1].frame, share));
+        }
         return text + weather_text(shot, t_s);
     }
     std::string text = numbers_text(shot.scene, weather.keys[blend.first].frame);

@@ -538,9 +538,10 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
         const auto refuse = [&](const std::string& problem, const std::string& accepted) {
             check.refuse({number.path, value_text(key_of(number.path), number.keys), problem, accepted});
         };
-        if (scene.shot.time_scale == 0.0)
+        constexpr double kSlowest = 1e-6;  // slower, and amplitudes' rates leave single precision
+        if (scene.shot.time_scale < kSlowest)
             refuse("changes with the sea's time, which stands still",
-                   "a number, or a shot.time_scale above 0");
+                   "a number, or a shot.time_scale of at least " + number_text(kSlowest));
         if (effects.whitecaps && effects.spray)
             refuse("changes, and spray flies with one wind", "a number, or effects.spray = false");
         if (!scene.waves.heroes.empty())

@@ -33,22 +33,16 @@
 namespace pelagic {
 namespace {
 
-// Of the shot's first frame.
-std::shared_ptr<const PreparedScene> first_sea(const Plan& plan) {
-    const Shot& shot = plan.from->scene.shot;
-    return prepared_at(plan.from, shot.time_s(shot.first_frame));
-}
-
 // UsdPreviewSurface's roughness: α² = 2σ² with σ² = mss/2 along each axis, roughness = √α.
 double preview_roughness(double mss) {
     return std::min(std::sqrt(std::sqrt(std::max(mss, 0.0))), 1.0);
 }
 
 // The slopes that the finest cells of the shot's first frame leave unresolved: the stage has one material for all
-// frames, which must not depend on which of them are baked.
+// frames, which must not depend on which of them are baked. Of a sea that changes, those of its mean.
 double roughness(const Plan& plan) {
     const std::array first{plan.from->scene.shot.first_frame};
-    return preview_roughness(unresolved_mean_square_slope(first_sea(plan)->spectrum, plan.filter,
+    return preview_roughness(unresolved_mean_square_slope(plan.from->spectrum, plan.filter,
                                                           plan.surface->needs(first).finest_pixel_m));
 }
 
@@ -217,7 +211,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
     stage.points_follow_camera = !plan.surface->is_constant();
     stage.origin_follows_camera = plan.surface->origin_follows_camera();
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
-    const WaterBody body = make_water(scene_at(scene, shot.first_frame), first_sea(plan)->spectrum);
+    const WaterBody body = make_water(scene_at(scene, shot.first_frame), plan.from->spectrum);
     stage.material = material_of(plan, body);
     stage.has_camera = true;
     stage.has_volumes = !volumes_of(plan).empty();
@@ -233,7 +227,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
         {"fingerprint", mesh.fingerprint()},
         // The sun's intensity times its colour is its irradiance across its rays: the same unit times steradian.
         {"sky_unit", radiance_unit(scene)},
-        {"significant_height_m", 4.0 * std::sqrt(first_sea(plan)->spectrum.m0())},
+        {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
     if (const WaterText water = water_text(body); !water.wavelengths_nm.empty())
         stage.custom_data.insert(stage.custom_data.end(),

@@ -254,6 +254,7 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene, bool acescg)
 
 WaterBody make_water(const Scene& scene) {
     refuse_keys(scene, "water");
+    refuse_keyed_sea(scene);
     if (!scene.water.body) return water_body(choice_of(scene.water));
     return make_water(scene, DirectionalSpectrum(scene.sea, scene.waves.band_gains));
 }
@@ -467,6 +468,7 @@ double foam_streaks(const Scene& scene) {
 
 FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture, double active) {
     refuse_keys(scene, "effects");
+    refuse_keyed_sea(scene);
     const Effects& effects = scene.effects;
     FoamLook look{.image = std::move(picture),
                   .image_m = effects.foam_pattern_m,

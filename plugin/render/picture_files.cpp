@@ -125,6 +125,11 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
     describe(scene, parts_beside_the_view(context.options), attributes);
+    // The sea between two keys is no sea of plain numbers.
+    for (const KeyedNumber& number : context.shot ? context.shot->keyed : std::vector<KeyedNumber>())
+        for (exr::Attribute& attribute : attributes)
+            if (is_of_sea(number) && attribute.name == "pelagic." + number.path)
+                attribute.value = value_text(key_of(number.path), number.keys);
     return attributes;
 }
 

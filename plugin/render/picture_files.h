@@ -35,6 +35,7 @@ struct PictureContext {
     float exposure;       // shot_exposure() (plugin/light/exposure.h)
     const PictureColours& colours = kOwnColours;
     std::string chosen{};  // RunOptions::chosen (plugin/run/run.h), in the EXR's header
+    const Scene* shot = nullptr;  // where `scene` is a frame's of a shot with keys: the sea is that of them
 };
 
 // Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.

@@ -69,7 +69,8 @@ class Pictures final : public Sequence {
                                      .made_of = made_of_.of(slot.frame),
                                      .exposure = slot.exposure,
                                      .colours = order_.colours,
-                                     .chosen = chosen_};
+                                     .chosen = chosen_,
+                                     .shot = &order_.scene};
         if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);
         if (slot.wants(1)) slot.files[1] = encode_exr(context, slot.picture, slot.frame);
     }

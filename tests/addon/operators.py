@@ -143,7 +143,7 @@ with checking("list_add and list_remove"):
 
 with checking("a hero wave stands at the cursor in the current frame"):
     sea, scene = add_ocean(), bpy.context.scene
-    sea.pelagic.waves.second_order = 0.0
+    sea.pelagic.waves.second_order, sea.pelagic.surface.size_m, sea.pelagic.surface.resolution = 0.0, 60.0, 150
     sea.location, sea.rotation_euler[2] = (5.0, 2.0, 0.0), 0.5
     scene.frame_set(30)
     scene.cursor.location = (16.0, -9.0, 3.0)

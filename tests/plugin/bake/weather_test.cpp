@@ -45,7 +45,6 @@ class WeatherBakes : public ::testing::Test {
                 File file{about.at("fingerprint"), {std::istreambuf_iterator<char>(stream), {}}};
                 for (std::size_t at; (at = file.content.find(file.fingerprint)) != std::string::npos;)
                     file.content.replace(at, file.fingerprint.size(), "made of");
-                if (path.ends_with(".exr")) file.content.resize(0);  // whose header has a checksum
                 files[std::stoi(frame)][path] = file;
             }
         return files;

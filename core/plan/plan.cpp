@@ -539,7 +539,8 @@ static std::size_t weather_bytes(const Plan& plan) {
         if (cascade.moves())
             rates += lattice_modes(cascade.amplitude_radius()) * 4 *
                      (plan.knobs.double_precision ? sizeof(double) : sizeof(float));
-    return (seas.size() + 2) * one.sea_bytes() + 2 * rates;  // a frame's sea is made while the one before is there
+    return (seas.size() + 2) * one.sea_bytes() +
+           2 * rates;  // a frame's sea is made while the one before is there
 }
 
 std::size_t Plan::sea_bytes() const {

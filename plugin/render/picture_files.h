@@ -34,7 +34,7 @@ struct PictureContext {
     std::string made_of;  // PictureFingerprint::of(the frame)
     float exposure;       // shot_exposure() (plugin/light/exposure.h)
     const PictureColours& colours = kOwnColours;
-    std::string chosen{};  // RunOptions::chosen (plugin/run/run.h), in the EXR's header
+    std::string chosen{};         // RunOptions::chosen (plugin/run/run.h), in the EXR's header
     const Scene* shot = nullptr;  // where `scene` is a frame's of a shot with keys: the sea is that of them
 };
 

@@ -233,7 +233,7 @@ TEST(Weather, HiddenVarianceAndFoamAreThoseOfTheTime) {
             const double t = scene.shot.time_s(f);
             frame.set(t);
             const Sea<double>& sea = frame.sea();
-            const auto now = prepared_at(frame.sea().plan().from, t);
+            const auto now = prepared_at(prepare(scene), t);
             const SpectralMoments whole =
                 moments(now->spectrum, 0.0, std::numeric_limits<double>::infinity());
             EXPECT_NEAR(sea.total().mss() / whole.mss(), 1.0, 1e-5);
@@ -245,12 +245,25 @@ TEST(Weather, HiddenVarianceAndFoamAreThoseOfTheTime) {
             EXPECT_NEAR(coverage(j, sea.whitecap_threshold(), true), law, 1e-3 * law) << f;
             EXPECT_GT(law, before);
             before = law;
-            // Resolved plus hidden is all, of the slopes at rest.
-            const auto samples = sample(frame, 0, random_points<double>(1.0, 1));
-            const SpectralMoments shown = sea.resolved_moments(0);
-            EXPECT_LT(shown.mss(), all.mss());
+            // A footprint of 2 m shows a part of it, and not a small one.
+            const double shown = sea.resolved_moments(0).mss();
+            EXPECT_LT(shown, all.mss());
+            EXPECT_GT(shown, 0.1 * all.mss());
         }
     }
+}
+
+// A smooth key's slope comes from the keys round it: foam of an interval remembers what went on between two keys, not only at them.
+TEST(Weather, TextOfFoamKnowsTheCubicBetweenItsKeys) {
+    const auto text_of = [](double first, double frame, double past_s) {
+        Scene scene = rising();
+        scene.keyed.clear();
+        give_keys(scene, "sea.wind_speed_mps", {{1, first}, {400, 9.0}, {800, 15.0}, {1200, 19.0}});
+        return weather_text(*prepare(scene), scene.shot.time_s(frame), past_s, past_s > 0.0 ? 0.5 : 0.0);
+    };
+    EXPECT_NE(text_of(6.0, 790.0, 1.5), text_of(8.8, 790.0, 1.5));
+    EXPECT_EQ(text_of(6.0, 1100.0, 1.5), text_of(8.8, 1100.0, 1.5));
+    EXPECT_EQ(text_of(6.0, 800.0, 0.0), text_of(8.8, 800.0, 0.0));
 }
 
 TEST(Weather, BoundsHoldAtEachTime) {

@@ -261,7 +261,8 @@ TEST(Weather, TextOfFoamKnowsTheCubicBetweenItsKeys) {
         give_keys(scene, "sea.wind_speed_mps", {{1, first}, {400, 9.0}, {800, 15.0}, {1200, 19.0}});
         return weather_text(*prepare(scene), scene.shot.time_s(frame), past_s, past_s > 0.0 ? 0.5 : 0.0);
     };
-    EXPECT_NE(text_of(6.0, 790.0, 1.5), text_of(8.8, 790.0, 1.5));
+    // The frame is between the last two, and a part of its past before them.
+    EXPECT_NE(text_of(6.0, 820.0, 1.5), text_of(8.8, 820.0, 1.5));
     EXPECT_EQ(text_of(6.0, 1100.0, 1.5), text_of(8.8, 1100.0, 1.5));
     EXPECT_EQ(text_of(6.0, 800.0, 0.0), text_of(8.8, 800.0, 0.0));
 }

@@ -165,7 +165,7 @@ TEST(WeatherFoam, IsCalibratedForTheSeaOfEachTime) {
         const double wind = 14.0 + 8.0 * t / 1000.0;
         Scene plain = scene;
         set_value(plain, key_of("sea.wind_speed_mps"), wind);
-        const SpectralMoments& all = sea->at(t)->total();
+        const SpectralMoments all = sea->at(t)->total();  // of a sea that nobody else keeps
         const auto j =
             jacobian_moments<double>(0.0, 0.0, 0.0, 0.0, {all.xxxx, all.xxxy, all.xxyy, all.xyyy, all.yyyy});
         const double law = law_coverage(plain);

@@ -67,7 +67,8 @@ Frame<T> frame_over_time(const Scene& scene, const std::vector<Query>& queries) 
 template <class T>
 bool same_samples(const ProductArrays<T>& a, const ProductArrays<T>& b) {
     const auto same = [](const auto& x, const auto& y) {
-        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+        return x.size() == y.size() &&
+               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
     };
     return std::ranges::all_of(kProductTable, [&](const ProductRow& row) {
         if (row.components == 1)

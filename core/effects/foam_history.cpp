@@ -252,9 +252,8 @@ bool FoamHistory<T>::leaves_nothing() const {
 template <class T>
 const Whitecaps& FoamHistory<T>::whitecaps(std::int64_t n) {
     if (!shot_) return sea_->whitecaps();
-    const auto [found, is_new] = whitecaps_.try_emplace(n);
-    if (is_new) found->second = shot_->whitecaps(static_cast<double>(n) * foam_.step_s);
-    return found->second;
+    if (const auto found = whitecaps_.find(n); found != whitecaps_.end()) return found->second;
+    return whitecaps_.emplace(n, shot_->whitecaps(static_cast<double>(n) * foam_.step_s)).first->second;
 }
 
 // What all breaking of the past has left, over the whole of a sea that changes.

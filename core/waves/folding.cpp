@@ -24,7 +24,7 @@ namespace {
 constexpr double kSteepestHero = 0.9;
 // In deviations: one crest in exp(½·5²) ≈ 270 000 waves is higher.
 constexpr double kHighestHero = 5.0;
-// What heroes add together over what they would add one by one, in energy.
+// What heroes add together over what they would add one by one, in energy: beyond it the sea round them is twice as high as they.
 constexpr double kMostRaised = 4.0;
 
 // Of a sea with these moments, whose displacement gradient is multiplied by `gain`.

@@ -62,9 +62,14 @@ class Shown {
   public:
     explicit Shown(std::shared_ptr<const Sea<T>> sea) : sea_(sea) {}
 
-    Foam at(double t_s, const std::vector<glm::vec<2, T>>& rest_m, glm::dvec2 origin_m = glm::dvec2(0.0)) {
+    // `pixel_m`, `length_m`: of pixels that are ellipses, along x; 0: as the query has them.
+    Foam at(double t_s, const std::vector<glm::vec<2, T>>& rest_m, glm::dvec2 origin_m = glm::dvec2(0.0),
+            double pixel_m = 0.0, double length_m = 0.0) {
         sea_.set(t_s);
-        const Points<T> points{.origin_m = origin_m, .count = rest_m.size(), .rest_m = {rest_m.data()}};
+        Points<T> points{.origin_m = origin_m, .count = rest_m.size(), .rest_m = {rest_m.data()}};
+        const std::vector<T> widths_m(rest_m.size(), static_cast<T>(pixel_m));
+        const std::vector<glm::vec<2, T>> axes_m(rest_m.size(), {static_cast<T>(length_m), T(0)});
+        if (length_m > 0.0) points.pixel_m = {widths_m.data()}, points.pixel_axis_m = {axes_m.data()};
         runner_.run(sea_, 0, points, values_);
         return {.total = values_.numbers(Coverage),
                 .active = values_.numbers(Product::Breaking),
@@ -584,10 +589,11 @@ TEST(LivingFoam, Drifts) {
 }
 
 // All foam over area.
-double mean_coverage(const std::shared_ptr<const Sea<float>>& sea, int per_side, double spacing_m) {
+double mean_coverage(const std::shared_ptr<const Sea<float>>& sea, int per_side, double spacing_m,
+                     double pixel_m = 0.0, double length_m = 0.0) {
     Shown<> shown(sea);
     double foam = 0.0, all = 0.0;
-    const Foam now = shown.at(11.0, square(per_side, spacing_m));
+    const Foam now = shown.at(11.0, square(per_side, spacing_m), {}, pixel_m, length_m);
     for (std::size_t i = 0; i < now.total.size(); ++i) {
         const glm::vec3 j = now.jacobian[i];
         const double area = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
@@ -660,6 +666,27 @@ TEST(LivingFoam, IsAMeshesInPictures) {
                 EXPECT_TRUE(std::equal(a.foam, a.foam + FoamPlan::kTileNodes, b.foam));
                 EXPECT_TRUE(std::equal(a.aged, a.aged + FoamPlan::kTileNodes, b.aged));
             }
+}
+
+// In pixels seen at a slant, whose longer axis hides what breaks, it is a mesh's as well.
+TEST(LivingFoam, IsAMeshesInPixelsSeenAtASlant) {
+    for (const double length_m : {2.0, 6.0}) {
+        const Scene scene = scene_of(0.5, 24.0);
+        const double width_m = length_m / 20.0;
+        const auto foam_of = [&](bool is_picture) {
+            Query query = filtered(foam_products() | products(Product::JacobianMoments), width_m);
+            for (double level_m = 2.0 * width_m; level_m < 2.0 * length_m; level_m *= 2.0) {
+                query.cell_m.push_back(level_m);
+                query.pixel_m.push_back(level_m);
+            }
+            query.is_picture = is_picture;
+            return mean_coverage(std::make_shared<const Sea<float>>(make_plan(scene, {query})), 120, 1.3,
+                                 width_m, length_m);
+        };
+        const double share = foam_of(true) / foam_of(false);
+        std::printf("%g x %g m: %.4f of the mesh's\n", width_m, length_m, share);
+        EXPECT_NEAR(share, 1.0, 0.015) << length_m;
+    }
 }
 
 TEST(LivingFoam, IsCoveredByAWholeShareWhereItsBreakingIsAMeshes) {

@@ -26,19 +26,15 @@ def _bundled():
 
 def _load():
     file = _bundled()
-    if NAME in sys.modules:  # enabled again: a compiled module can't be loaded twice
-        return sys.modules[NAME]
     if file is None:
         return importlib.import_module(NAME)
-    spec = importlib.util.spec_from_file_location(NAME, file)
-    made = importlib.util.module_from_spec(spec)
-    sys.modules[NAME] = made  # before it runs: it imports itself by its name
-    try:
+    name = f"{__package__}.{NAME}"  # Blender warns of an extension that has a module outside its own package
+    if name not in sys.modules:  # enabled again: a compiled module can't be loaded twice
+        spec = importlib.util.spec_from_file_location(name, file)
+        made = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(made)
-    except BaseException:
-        del sys.modules[NAME]
-        raise
-    return made
+        sys.modules[name] = made
+    return sys.modules[name]
 
 
 try:

@@ -44,6 +44,25 @@ with checking("installing and enabling"):
     bpy.ops.pelagic.add_ocean()
     assert np.ptp(numbers(bpy.context.object.data)[:1000, 2]) > 0.1
 
+with checking("the module is part of the add-on's package, as Blender wants it, and a script's own `pelagic` is another beside it"):
+    assert not [name for name, found in sys.modules.items()
+                if str(folder) in (getattr(found, "__file__", None) or "") and not name.startswith("pelagic_ocean")]
+    with tempfile.TemporaryDirectory() as own:
+        shutil.copytree(Path(module.pelagic.__file__).parent, own, dirs_exist_ok=True)
+        sys.path.insert(0, own)
+        import pelagic
+        sys.path.remove(own)
+    assert pelagic is not module.pelagic
+    for each in (pelagic, module.pelagic):
+        scene = each.Scene()
+        scene.sea.swell = [each.Swell(1.0, 9.0, 110.0)]
+        assert type(scene.sea.swell[0]) is each.Swell and each.Swell.__module__ == each.__name__
+        try:
+            scene.surface.kind = "nowhere"
+        except each.ShotError:
+            continue
+        raise AssertionError("no such surface, and it is taken")
+
 with checking("the module's libraries come from the zip"):
     needed = make_zip.shared_libraries(module.pelagic.__file__)
     assert needed and all(folder in path.parents for path in needed.values()), needed
@@ -103,6 +122,7 @@ if bpy.app.version >= (4, 2):
         os.makedirs(home["HOME"])
         use = ("import bpy; bpy.ops.pelagic.add_ocean(); assert len(bpy.context.object.data.vertices) > 1000; "
                "from bl_ext.user_default.pelagic_ocean import module, presets; "
+               "import addon_utils; assert not dict(addon_utils._extensions_warnings_get()), addon_utils._extensions_warnings_get(); "
                f"assert module.__file__.startswith({home['HOME']!r}) and 'extensions' in str(presets.folder(create=True))")
         for arguments in (["--command", "extension", "validate", archive],
                           ["--command", "extension", "install-file", "--repo", "user_default", "--enable", archive],

@@ -173,7 +173,7 @@ void define_run(py::module_& module, const std::string& name,
 }
 
 void add_bake_report(py::module_& module) {
-    py::class_<RunReport> report(module, "BakeReport", "What a bake did, or render_files().");
+    py::class_<RunReport> report(module, "BakeReport", py::module_local(), "What a bake did, or render_files().");
     const auto add_path = [&](const char* name, std::filesystem::path RunReport::*path, const char* doc) {
         report.def_property_readonly(
             name, [path](const RunReport& self) { return (self.*path).empty() ? Out() : Out(self.*path); },
@@ -219,7 +219,7 @@ std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::o
 }
 
 void add_verify(py::module_& module) {
-    py::class_<Finding>(module, "Finding", "What verify() found: a file that isn't as it was written.")
+    py::class_<Finding>(module, "Finding", py::module_local(), "What verify() found: a file that isn't as it was written.")
         .def_readonly("path", &Finding::path, "Below the folder, with /.")
         .def_property_readonly(
             "flaw", [](const Finding& self) { return word_of(self.flaw); },
@@ -386,7 +386,7 @@ void add_bake(py::module_& module) {
         "calls progress with.");
     add_render_files(module);
     py::class_<Maps, std::shared_ptr<Maps>>(
-        module, "Maps",
+        module, "Maps", py::module_local(),
         "The maps of a scene as arrays, the values that a bake writes, in the quality's precision.\n\n"
         "maps: names of output.maps: what is computed at output.map_resolution over the patch of "
         "surface.size_m. tiles: the same over each cascade's periodic tile. progress, cancel: as "

@@ -205,7 +205,7 @@ class PythonCageSurface : public std::enable_shared_from_this<PythonCageSurface>
 }  // namespace
 
 void add_cage(py::module_& module) {
-    py::register_exception_translator([](std::exception_ptr thrown) {
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const CageError& error) {
@@ -216,7 +216,7 @@ void add_cage(py::module_& module) {
     });
     const py::object none = py::none();
     py::class_<PythonCage>(
-        module, "Cage",
+        module, "Cage", py::module_local(),
         "A mesh whose limit surface (Catmull–Clark, by OpenSubdiv) the sea lies on: scene.surface.cage with "
         "scene.surface.kind = \"cage\". It never changes.")
         .def(
@@ -251,7 +251,7 @@ void add_cage(py::module_& module) {
             },
             py::is_operator());
     py::class_<PythonCageSurface, std::shared_ptr<PythonCageSurface>>(
-        module, "CageSurface",
+        module, "CageSurface", py::module_local(),
         "Points on the limit surface of a cage. What OpenSubdiv derives from faces and sharpness is made once; a cage that "
         "moves from frame to frame, its faces staying, asks limit() with its new points.")
         .def(py::init(&PythonCageSurface::make), py::arg("cage"), py::arg("level") = CageLevel{}.splits,

@@ -101,7 +101,7 @@ class PythonDrops {
 
 void add_drops(py::module_& module) {
     py::class_<PythonDrops> drops(
-        module, "SprayDrops",
+        module, "SprayDrops", py::module_local(),
         "The large drops of a sea's spray, effects.spray_drops, as parcels of drops in the air: the same ones as bakes write and "
         "pictures show. What is found of a time is kept for those beside it.\n\n"
         "sea: of a scene with such drops; otherwise there are none. size_m: the side of the square over which they are, [m], "

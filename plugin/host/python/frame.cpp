@@ -441,7 +441,7 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>)
 
 void add_frame(py::module_& module) {
     py::class_<PythonFrame> frame(
-        module, "Frame",
+        module, "Frame", py::module_local(),
         "The state of a sea at one time. Its buffers are made once and reused: who needs two "
         "times at once makes two frames.");
     add_evaluate(frame, std::make_index_sequence<kProductCount>());

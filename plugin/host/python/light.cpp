@@ -124,7 +124,7 @@ py::object radiance_towards(const PythonSky& self, const py::object& directions,
 
 void add_sky(py::module_& module) {
     py::class_<PythonSky>(
-        module, "Sky",
+        module, "Sky", py::module_local(),
         "The light of a scene: daylight computed from the sun's place and the haze, or a picture that "
         "light.sky names.\n\n"
         "Radiances are linear Rec. 709 in kcd/m², irradiances in klx; of a picture in the picture's "
@@ -302,7 +302,7 @@ SkyQuality sky_quality_of(const std::string& word) {
 
 void add_light(py::module_& module) {
     add_sky(module);
-    py::class_<WaterBody>(module, "WaterBody", "What is in a scene's water.")
+    py::class_<WaterBody>(module, "WaterBody", py::module_local(), "What is in a scene's water.")
         .def(py::init([](const Scene& scene) {
                  require_valid(scene);
                  return make_water(scene);

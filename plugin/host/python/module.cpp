@@ -70,19 +70,19 @@ PYBIND11_MODULE(pelagic, module) {
         "work in other threads is cancelled, or waited for. A process that is forked after the first computation "
         "can't compute: start workers with multiprocessing's \"spawn\" or \"forkserver\".";
     module.attr("__version__") = PELAGIC_VERSION;
-    py::register_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
+    py::register_local_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
         "A shot that is refused: a line for each problem, FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: "
         "WHAT IS.\n"
         "Without the place for a scene that is not read from a file.";
 
-    py::register_exception_translator([](std::exception_ptr thrown) {
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const pelagic::NotEnoughMemory& error) {
             PyErr_SetString(PyExc_MemoryError, error.what());
         }
     });
-    py::register_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
+    py::register_local_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
         "A file or folder that can't be read or written: its path, why, and what would do.";
 
     pelagic::python::add_watch(module);

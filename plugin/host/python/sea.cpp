@@ -171,7 +171,7 @@ const std::string kSeaDoc =
 }  // namespace
 
 void add_sea(py::module_& module) {
-    py::class_<PythonSea> sea(module, "Sea", kSeaDoc.c_str());
+    py::class_<PythonSea> sea(module, "Sea", py::module_local(), kSeaDoc.c_str());
     const auto with_request = [&](const auto& define) {
         define(py::arg("scene"),
                py::arg("products") =

@@ -73,7 +73,7 @@ View view_of_scene(const Scene& scene, double frame) {
 
 void add_view(py::module_& module) {
     py::class_<View>(
-        module, "View",
+        module, "View", py::module_local(),
         "A camera: a pinhole whose pixels are square.\n\n"
         "position_m: (x, y, z) [m]. right, up, forward: unit vectors of the picture in world axes, "
         "up = right × forward. tan_half_width: the tangent of half the horizontal field of view. "
@@ -157,7 +157,7 @@ bool serves(const PythonSea& sea, const View& view) {
 
 void add_grids(py::module_& module, py::class_<PythonSea>& sea) {
     py::class_<PythonGrid>(
-        module, "ProjectedGrid",
+        module, "ProjectedGrid", py::module_local(),
         "The points at rest that a view shows, to the horizon: cells of about "
         "surface.cell_px pixels, by row from the innermost outwards.\n\n"
         "As a bake writes them: frame.evaluate(grid.rest_m, grid.origin_m, "

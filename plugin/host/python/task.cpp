@@ -69,7 +69,7 @@ void Task::abandon() {
 
 void add_task(py::module_& module) {
     py::class_<Task>(
-        module, "Task",
+        module, "Task", py::module_local(),
         "Work in a native thread, which never enters Python: for hosts such as Blender, beside whose own "
         "Python no thread of Python's may run. What begins one refuses bad arguments at once. A task that "
         "nobody holds any more, or that runs at the program's end, is cancelled and waited for.")

@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -18,10 +19,6 @@ namespace {
 
 namespace py = pybind11;
 
-// The class of a list's entries: an attribute of the module.
-py::object entry_class(const Key& key) {
-    return py::module_::import("pelagic").attr(key.entry_name.c_str());
-}
 
 // Tuples, because a list would be a copy whose append() is lost.
 struct ToPython {
@@ -162,6 +159,12 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given) 
 }
 
 }  // namespace
+
+py::object& entry_class(const Key& key) {
+    // Never freed: Python may be gone when a program ends.
+    static auto& classes = *new std::unordered_map<std::string, py::object>;
+    return classes[key.entry_name];
+}
 
 py::object to_python(const Key& key, const KeyValue& value) {
     return std::visit(ToPython{key}, value);

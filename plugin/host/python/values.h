@@ -9,6 +9,9 @@
 
 namespace pelagic::python {
 
+// The class of a list's entries; null until add_scene() has made it. Not looked up in the module: Blender knows that by another name.
+pybind11::object& entry_class(const Key& key);
+
 pybind11::object to_python(const Key& key, const KeyValue& value);
 // As an assignment in Python does: pybind11::type_error for a value of another type, ShotError for one that the key
 // refuses.

@@ -422,7 +422,7 @@ class GpuSea {
 
 void add_gpu_light(py::module_& module) {
     py::class_<GpuLight, std::shared_ptr<GpuLight>>(
-        module, "GpuLight",
+        module, "GpuLight", py::module_local(),
         "Sky and sun of a scene for GpuSea's shaders. ShotError for an invalid scene, ValueError for a "
         "sky's picture that can't be read.")
         .def(py::init(&make_beside_others<GpuLight>), py::arg("scene"))
@@ -469,7 +469,7 @@ void add_gpu_light(py::module_& module) {
 }
 
 void add_gpu_grid(py::module_& module) {
-    py::class_<GpuGrid>(module, "GpuGrid", "The projected grid of a view, as vertices for GpuSea's shader.")
+    py::class_<GpuGrid>(module, "GpuGrid", py::module_local(), "The projected grid of a view, as vertices for GpuSea's shader.")
         .def_property_readonly(
             "size", [](const GpuGrid& self) { return py::make_tuple(self.grid->columns, self.grid->rows); },
             "(columns, rows) of cells.")
@@ -493,7 +493,7 @@ void add_viewport(py::module_& module) {
     add_gpu_light(module);
     add_gpu_grid(module);
     py::class_<GpuSea, std::shared_ptr<GpuSea>>(
-        module, "GpuSea",
+        module, "GpuSea", py::module_local(),
         "A sea for pictures from any camera, with what a GPU needs to draw it by itself: the preview's "
         "shaders, and their textures and uniforms.\n\n"
         "Built once from a scene, which takes as long as a Sea; other threads run meanwhile. ShotError for an "

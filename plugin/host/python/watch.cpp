@@ -228,9 +228,9 @@ std::shared_ptr<Watch> shared_watch(const py::object& progress, const py::object
 }
 
 void add_watch(py::module_& module) {
-    py::register_exception<Cancelled>(module, "Cancelled").doc() = "Work that was cancelled before its end.";
+    py::register_local_exception<Cancelled>(module, "Cancelled").doc() = "Work that was cancelled before its end.";
     py::class_<Cancel>(
-        module, "Cancel",
+        module, "Cancel", py::module_local(),
         "Ends long work from another thread: pass it as cancel, and set() it when it is enough.")
         .def(py::init<>())
         .def("set", &Cancel::set, "The work ends soon, for good.")

@@ -21,6 +21,8 @@ PANELS = {"Water": (), "Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": (
 WATER = ("water.type", "water.chlorophyll_mg_m3", "sea.depth_m", "water.floor_colour", "water.crest_light", "water.bubbles")
 MORE = "More"
 OPEN = ("Sea", "Water")
+CLEAR_CLIP_M, NEAR_SURFACE_M = 0.02, 2.0  # what a camera may clip without a gap that shows; how deep one is that waves reach
+
 
 def draw_words(layout, text):
     """A message in lines that fit."""
@@ -61,16 +63,23 @@ def _draw_own(layout, settings, *names):
         _labelled(layout, settings.bl_rna.properties[name].name).prop(settings, name, text="")
 
 
+def _draw_switch(row, group, switch, otherwise):
+    """A pencil before a value of the artist's own, or the word that says what it is without one. An empty tick box beside that
+    word reads as what is off. Returns whether there is a value."""
+    is_own = getattr(group, switch)
+    if not is_own:
+        row.label(text=otherwise)
+    row.prop(group, switch, text="", icon="GREASEPENCIL")
+    return is_own
+
+
 def _draw_field(layout, group, field):
     if field.key["type"] == "entries":
         _draw_list(layout, group, field)
         return
     row = _labelled(layout, field.key["label"])
-    if field.switch:
-        row.prop(group, field.switch, text="")
-        if not getattr(group, field.switch):
-            row.label(text="automatic" if field.absent is None else "infinite")
-            return
+    if field.switch and not _draw_switch(row, group, field.switch, "automatic" if field.absent is None else "infinite"):
+        return
     unit = unit_of(field.key)
     if field.key["type"] == "words":
         row.column().prop(group, field.name, text="", expand=True)
@@ -115,11 +124,8 @@ def _draw_water(layout, obj):
         if path in BY_PATH and counts(BY_PATH[path], settings) and _matters(BY_PATH[path], settings):
             _draw_field(layout, getattr(settings, BY_PATH[path].table), BY_PATH[path])
     row = _labelled(layout, settings.bl_rna.properties["see_through"].name)
-    row.prop(settings, "see_through_by_hand", text="")
-    if settings.see_through_by_hand:
+    if _draw_switch(row, settings, "see_through_by_hand", "automatic"):
         row.prop(settings, "see_through", text="")
-    else:
-        row.label(text="automatic")
     clear_m = depths.clear_to_m(scene) if scene else None
     if clear_m:
         layout.label(text=say("Clear down to {:.0f} m", clear_m) if clear_m >= 3.0 else say("Clear down to {:.1f} m", clear_m), translate=False)
@@ -129,6 +135,9 @@ def _draw_water(layout, obj):
 
 def _why_seen_through(obj, scene, clear_m):
     if depths.UNDER in obj:
+        camera = bpy.context.scene.camera
+        if camera is not None and camera.type == "CAMERA" and camera.data.clip_start > CLEAR_CLIP_M and obj[depths.UNDER] < NEAR_SURFACE_M:
+            return "The camera is under water. Where the surface comes close, its Clip Start cuts it away: 0.01 m leaves it there"
         return "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows"
     if scene.sea.depth_m >= clear_m:
         return "The floor is too deep to show: the water is opaque in Cycles"
@@ -177,15 +186,23 @@ class Main:
             simulation = play.simulation_of(context.object)
             if simulation.problem:
                 draw_words(layout.box(), simulation.problem)
-            elif simulation.is_building:
-                layout.label(text="Building the sea…", icon="SORTTIME")
-            elif simulation.sea:
-                if simulation.is_behind:
-                    layout.label(text="Foam follows…", icon="SORTTIME")
-                layout.label(text=say("Waves of {} m (significant height)", f"{simulation.sea.significant_height_m:.2g}"), translate=False)
-                _draw_vertices(layout, context.object)
+            elif simulation.is_building or simulation.sea:
+                _draw_state(layout, context.object, simulation)
                 for warning in simulation.warnings:
                     draw_words(layout.box(), warning)
+
+
+def _draw_state(layout, obj, simulation):
+    """Two rows in any state, and warnings: a row that comes and goes while a sea plays would push the panels below it to and fro."""
+    if simulation.is_building:
+        layout.label(text="Building the sea…", icon="SORTTIME")
+    else:
+        height = f"{simulation.sea.significant_height_m:.2g}"
+        text = say("Waves of {} m; foam follows…", height) if simulation.is_behind else say("Waves of {} m (significant height)", height)
+        layout.label(text=text, icon="SORTTIME" if simulation.is_behind else "NONE", translate=False)
+    _draw_vertices(layout, obj)
+    for warning in () if simulation.is_building else simulation.warnings:
+        draw_words(layout.box(), warning)
 
 
 class Sub:

@@ -94,10 +94,12 @@ GERMAN = {
     "4 Moderate breeze": "4 Mäßige Brise", "5 Fresh breeze": "5 Frische Brise", "6 Strong breeze": "6 Starker Wind",
     "7 Near gale": "7 Steifer Wind", "8 Gale": "8 Stürmischer Wind", "9 Strong gale": "9 Sturm", "10 Storm": "10 Schwerer Sturm",
     "11 Violent storm": "11 Orkanartiger Sturm", "12 Hurricane": "12 Orkan",
-    "Building the sea…": "Die See entsteht …", "Foam follows…": "Der Schaum folgt …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
+    "Building the sea…": "Die See entsteht …", "Waves of {} m; foam follows…": "Wellen von {} m; der Schaum folgt …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
     "The object's own mesh": "Das eigene Netz des Objekts",
     "Waves of {} m (significant height)": "Signifikante Wellenhöhe {} m",
     "Clear down to {:.0f} m": "Klar bis {:.0f} m Tiefe", "Clear down to {:.1f} m": "Klar bis {:.1f} m Tiefe",
+    "The camera is under water. Where the surface comes close, its Clip Start cuts it away: 0.01 m leaves it there":
+        "Die Kamera ist unter Wasser. Wo die Oberfläche nahe kommt, schneidet der Anfang des Sichtbereichs sie weg: 0.01 m lassen sie stehen",
     "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows":
         "Die Kamera ist unter Wasser: Für Cycles ist es ein Volumen. EEVEE zeigt es ohne Kaustik und Schatten",
     "The floor is too deep to show: the water is opaque in Cycles":

@@ -62,6 +62,7 @@ def transforms():
     return known
 
 
+off = {}
 for preset, elevation_deg, azimuth_deg in SHOTS if at_night() else SHOTS[:2]:
     scene = pelagic.Scene()
     scene.apply_preset(preset)
@@ -94,5 +95,7 @@ for preset, elevation_deg, azimuth_deg in SHOTS if at_night() else SHOTS[:2]:
         assert abs(stops - light.VIEW_STOPS.get(transform, 0.0)) < 0.01, (transform, stops)
     print(f"   {preset:16s} sun {elevation_deg:3.0f} {azimuth_deg:4.0f}  ", "  ".join(f"{name} {value:6.3f}" for name, value in row.items()),
           f"  shown by the program {mean(linear(program_shown)):.3f}", flush=True)
-    with checking(f"{preset}: the sea is as bright by Cycles as by the program, and so is what is shown of it"):
-        assert all(abs(value - 1.0) < MOST_OFF for value in row.values()), row
+    off |= {(preset, name): value for name, value in row.items() if not abs(value - 1.0) < MOST_OFF}
+
+with checking("the sea is as bright by Cycles as by the program, and so is what is shown of it"):
+    assert not off, off

@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import cages, camera, light, ocean
+from . import cages, camera, keyed, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule
 from .query import first_ocean
@@ -38,9 +38,10 @@ def shot_of(context, obj):
     if lamp is not None and lamp.matrix_world.col[2].xyz.angle(
             Vector(pelagic.Sky(scene).sun_direction)) > camera.SAME_DIRECTION:
         remarks.append(f"{lamp.name} was turned: the shot's sun is where the ocean's settings have it")
-    if obj.animation_data and obj.animation_data.action:
-        remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
-    poses, moving_cage = _animated(context, obj, scene)
+    poses, keys, others, moving_cage = _animated(context, obj, scene)
+    scene = keyed.put(scene, keys)
+    if others:
+        remarks.append(f"{', '.join(others)}: animated, and a shot has no keys of it: there it is as at frame {bpy_scene.frame_current}")
     if moving_cage:
         remarks.append(f"{moving_cage} is animated: the shot has the cage as it is at frame {bpy_scene.frame_current}")
     if ocean.pinhole_of(obj, bpy_scene) is None:
@@ -57,24 +58,26 @@ def shot_of(context, obj):
 
 
 def _animated(context, obj, scene):
-    """Over the scene's range {frame: Pose} of its camera, empty if it has none with perspective, and the name of the
-    ocean's cage if that isn't everywhere what it is now, or ""."""
+    """Over the scene's range {frame: Pose} of its camera, empty if it has none with perspective; {path: keys} of settings that
+    change; the paths of others that do; and the name of the ocean's cage if that isn't everywhere what it is now, or ""."""
     has_camera = ocean.pinhole_of(obj, context.scene) is not None
     cage = cages.mesh_of(obj) if scene.surface.kind == "cage" else None
-    poses, moving_cage = {}, ""
-    if cage is None and not has_camera:
-        return poses, moving_cage
+    poses, settings, moving_cage = {}, {}, ""
+    if cage is None and not has_camera and obj.animation_data is None:
+        return poses, {}, [], moving_cage
 
     def arrays(depsgraph):
         return cages.arrays_of(cage, cages.to_ocean(obj, cage, depsgraph), depsgraph)
 
     now = arrays(context.evaluated_depsgraph_get()) if cage else None
     for frame, depsgraph in camera.frames(context):
+        if obj.animation_data is not None:
+            settings[frame] = ocean.settings_of(obj.evaluated_get(depsgraph))
         if has_camera:
             poses[frame] = camera.pose_of(obj, context.scene, depsgraph)
         if cage and not moving_cage and not all(map(np.array_equal, arrays(depsgraph), now)):
             moving_cage = cage.name
-    return poses, moving_cage
+    return poses, *keyed.keys_of(settings), moving_cage
 
 
 def set_frame_rate(render, fps):
@@ -150,13 +153,12 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        if ocean.changing(shot):
-            self.report({"WARNING"}, ocean.changing(shot))
         if scene.sea.is_measured:
             obj.pelagic.sea.spectrum_file = str(Path(scene.sea.spectrum_file).absolute())
         if scene.light.sky != pelagic.Scene().light.sky:
             obj.pelagic.light.sky = str(Path(scene.light.sky).absolute())
         obj.pelagic.horizon = False  # the shot's surface and no more
+        keyed.keyframe(obj, shot)
         ocean.select_only(context, obj)
         simulation = self.show(context, obj)
         if simulation.problem:

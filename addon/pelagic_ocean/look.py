@@ -106,8 +106,8 @@ def _follow(bpy_scene, depsgraph):
         if bpy_scene not in obj.users_scene:
             continue
         settings = play.settings_read(obj, depsgraph)
-        sea = play.simulation_of(obj).sea
-        of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
+        simulation = play.simulation_of(obj)
+        of_sea = (simulation.significant_height_m, simulation.sea.dense_foam) if simulation.sea else (None, None)
         key = obj.name_full, bpy_scene.name
         under = camera_depth_m(obj, bpy_scene, depsgraph)
         wanted = [under, of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]

@@ -191,10 +191,10 @@ class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
     def execute(self, context):
         row, obj = self.rows(context).add(), context.object
         if self.path == "waves.heroes":
-            at, sea = obj.matrix_world.inverted_safe() @ context.scene.cursor.location, play.simulation_of(obj).sea
+            at, simulation = obj.matrix_world.inverted_safe() @ context.scene.cursor.location, play.simulation_of(obj)
             row.frame, row.east_m, row.north_m = context.scene.frame_current_final, at.x, at.y
-            if sea and sea.significant_height_m > 0.0:  # of crests one in three thousand is as high
-                row.height_m = sea.significant_height_m
+            if simulation.sea and simulation.significant_height_m > 0.0:  # of crests one in three thousand is as high
+                row.height_m = simulation.significant_height_m
         obj.update_tag()
         return {"FINISHED"}
 

@@ -197,7 +197,7 @@ def _draw_state(layout, obj, simulation):
     if simulation.is_building:
         layout.label(text="Building the sea…", icon="SORTTIME")
     else:
-        height = f"{simulation.sea.significant_height_m:.2g}"
+        height = f"{simulation.significant_height_m:.2g}"
         text = say("Waves of {} m; foam follows…", height) if simulation.is_behind else say("Waves of {} m (significant height)", height)
         layout.label(text=text, icon="SORTTIME" if simulation.is_behind else "NONE", translate=False)
     _draw_vertices(layout, obj)

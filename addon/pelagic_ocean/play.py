@@ -17,10 +17,10 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cages, depths, handlers, meshes, surfaces, upwelling
+from . import cages, depths, handlers, keyed, meshes, surfaces, upwelling
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
-from .properties import FIELDS
+from .properties import FIELDS, PLACE
 from .sea import BuiltSea, Moment
 
 # A change of a key that feeds these is another sea. The rest only looks different; the clock matters to loops.
@@ -28,7 +28,6 @@ SEA_FEEDS = {"waves", "gusts", "foam", "quality", "surface", "grid"}
 SEA_FIELDS = tuple(place for place, field in enumerate(FIELDS) if SEA_FEEDS & set(field.key["feeds"]))
 DROPS_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "spray" in field.key["feeds"])
 CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in field.key["feeds"])
-PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 BAKED_ALONE = {"planet": "A planet", "near-far": "A mesh from near to far"}  # kinds of surfaces that nobody plays
 
 POLL_S = 0.02  # how often a window looks whether a sea is ready
@@ -56,6 +55,7 @@ class Simulation:
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
         self._lit, self._upwelling = None, None  # of which scene
+        self._time_s, self._keys = 0.0, {}  # of the frame that was last shown, and of the sea's numbers
         self._last = None  # the frame that was last asked for, the step to it, the view
         self.is_behind = False  # whether the mesh has waves alone, and waits for the past of their foam
 
@@ -65,10 +65,17 @@ class Simulation:
         return self._built and self._built.sea
 
     @property
+    def significant_height_m(self):
+        """Of the sea that plays, at the frame that it was last shown at."""
+        return self.sea.significant_height_at(self._time_s)
+
+    @property
     def warnings(self):
         """What an artist should know of the sea of the settings, a sentence each. A matter of milliseconds, for panels."""
-        if self._warned is not self.scene:
-            self._warned, self._warnings = self.scene, () if self.scene.validate() else tuple(self.scene.warnings())
+        asked = self._key if self._keys else self.scene
+        if self._warned != asked:
+            scene = keyed.put(self.scene, self._keys)
+            self._warned, self._warnings = asked, () if scene.validate() else tuple(scene.warnings())
         return self._warnings
 
     def upwelling(self, is_lit):
@@ -137,19 +144,21 @@ class Simulation:
         None where that doesn't matter."""
         try:
             read = _read[obj.name_full] = settings_of(obj.evaluated_get(depsgraph))
-            settings = settled(read, obj, bpy_scene, depsgraph)
+            keys = keyed.keys_of_sea(obj, read, bpy_scene.frame_current_final)
+            settings = settled(keyed.with_first(read, keys), obj, bpy_scene, depsgraph)
             surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
-            asked = (settings, frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
+            asked = (keyed.with_numbers(settings, read, keys), frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
             if asked != self._asked:
-                self.scene = scene_of(obj, bpy_scene, depsgraph, settings)
+                self.scene = scene_of(obj, bpy_scene, depsgraph, asked[0])
                 self._asked = asked
         except (ValueError, OSError) as error:
             self._refuse(None, str(error))
             return None
-        loop = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] else ()
+        clock = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if keys or settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] else ()
         velocity = wants_velocity(obj, bpy_scene)
         drops = tuple(settings[place] for place in DROPS_FIELDS) if settings[PLACE["effects.spray_drops"]] else ()  # they are the sea's
-        key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key, velocity, drops)
+        key = (tuple(settings[place] for place in SEA_FIELDS), repr(keys), clock, surface_key, velocity, drops)
+        self._time_s, self._keys = self.scene.shot.time_s(bpy_scene.frame_current_final), keys
         if key != self._key or (view is not None and self._built and not self._built.serves(view)):
             self._seek(key, make_surface, view, velocity, wait)
         return view
@@ -165,7 +174,7 @@ class Simulation:
                     self.due = None
                 if self._surface is None or self._surface[0] != key[2]:  # of a million points it takes longer than the sea
                     self._surface = key[2], make_surface()
-                self._job = BuiltSea.job(key, self.scene, self._surface[1], view, velocity)
+                self._job = BuiltSea.job(key, keyed.put(self.scene, self._keys), self._surface[1], view, velocity)
             if wait:
                 self._take()
             else:

@@ -145,6 +145,7 @@ def _has_property(key):
 FIELDS = tuple(_field(key) for key in pelagic.keys() if _has_property(key)) if pelagic else ()
 TABLES = tuple(dict.fromkeys(field.table for field in FIELDS))
 BY_PATH = {field.path: field for field in FIELDS}
+PLACE = {field.path: place for place, field in enumerate(FIELDS)}  # in ocean.settings_of()
 _ENTRY_FIELDS = {field.path: tuple(_field(key) for key in field.key["keys"]) for field in FIELDS}
 
 

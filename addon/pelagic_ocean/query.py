@@ -21,8 +21,8 @@ def camera_depth_m(obj, bpy_scene, depsgraph=None):
     if pinhole is None:
         return None
     x, y, z = pinhole.position_m
-    sea = play.simulation_of(obj).sea
-    if sea is None or abs(z) > 1.5 * sea.significant_height_m:
+    simulation = play.simulation_of(obj)
+    if simulation.sea is None or abs(z) > 1.5 * simulation.significant_height_m:
         surface = 0.0
     else:
         surface = Water(obj, bpy_scene).heights([(x, y)])[0]

@@ -16,14 +16,13 @@ from bpy.props import EnumProperty, PointerProperty, StringProperty
 from . import compat, links, ocean
 from .baking import Bakes, draw_progress, folder_of
 from .nodes import Tree
-from .properties import BY_PATH, FIELDS
+from .properties import BY_PATH, FIELDS, PLACE
 
 MARK = "pelagic_spray"  # on a material of the add-on
 FORWARD = 0.85  # mean cosine of what droplets scatter, which are much larger than light's wavelengths (Hansen & Travis 1974)
 
 # A change of keys that feed these makes files that were baked others' than the ocean's.
 FEEDS = {"waves", "clock", "volumes", "quality"}
-PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 UNFINISHED = "unfinished"  # instead of a signature
 
 

@@ -1,5 +1,6 @@
 #include "core/waves/sea_over_time.h"
 
+#include <cmath>
 #include <utility>
 
 namespace pelagic {
@@ -33,6 +34,15 @@ SeaOverTime<T>::SeaOverTime(Plan plan, const BuildWatch& watch, const SeaOverTim
 
 template <class T>
 SeaOverTime<T>::SeaOverTime(std::shared_ptr<const Sea<T>> sea) : plan_(sea->plan()), seas_{std::move(sea)} {}
+
+template <class T>
+double SeaOverTime<T>::significant_height_m(double t_s) const {
+    const auto height_m = [&](std::size_t key) { return seas_[key]->total().significant_height_m(); };
+    if (!plan_.from->weather) return height_m(0);
+    const Weather::Blend blend = plan_.from->weather->at(t_s);
+    const double first_m = height_m(blend.first), second_m = height_m(blend.second);
+    return std::sqrt((1.0 - blend.share) * first_m * first_m + blend.share * second_m * second_m);
+}
 
 template <class T>
 Whitecaps SeaOverTime<T>::whitecaps(double t_s) const {

@@ -22,7 +22,8 @@ class SeaOverTime {
     const std::shared_ptr<const Sea<T>>& first() const { return seas_.front(); }
     // At a time: it depends on the time alone. Between two keys it is made, which takes a pass through the modes.
     std::shared_ptr<const Sea<T>> at(double t_s) const;
-    // at(t_s)->whitecaps(), without its modes.
+    // Without its modes, at(t_s)->total().significant_height_m() and at(t_s)->whitecaps().
+    double significant_height_m(double t_s) const;
     Whitecaps whitecaps(double t_s) const;
 
   private:

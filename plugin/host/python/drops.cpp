@@ -53,7 +53,7 @@ py::dict arrays_of(const std::vector<SprayDrop>& drops) {
 class PythonDrops {
   public:
     PythonDrops(const PythonSea& sea, std::optional<double> size_m)
-        : sea_(sea.sea), size_m_(size_m.value_or(kDropsSquare_m)) {
+        : sea_(sea.sea->first()), size_m_(size_m.value_or(kDropsSquare_m)) {
         if (!limits::kSurfaceSize_m.holds(size_m_))
             throw py::value_error("size_m: accepted: " + text_of(limits::kSurfaceSize_m) + ", or None");
     }

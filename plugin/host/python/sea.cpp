@@ -131,7 +131,7 @@ PythonSea built(const SeaOrder& order, Watching& watch) {
     query.products = order.held;
     // Whatever the level, arrays are float32.
     Plan plan = make_plan(prepared, {query}, {.double_precision = false});
-    return {std::make_shared<const Sea<float>>(std::move(plan), building), order.asked};
+    return {std::make_shared<const SeaOverTime<float>>(std::move(plan), building), order.asked};
 }
 
 PythonSea build_sea(const SeaOrder& order, Watch& watch) {
@@ -142,13 +142,15 @@ PythonSea build_sea(const SeaOrder& order, Watch& watch) {
 }
 
 std::pair<float, float> dense_foam(const PythonSea& self) {
-    const Scene& scene = self.plan().from->scene;
-    const FoamLook look = make_foam(scene, nullptr, active_foam(scene, self.sea->residual_coverage()));
+    const Sea<float>& sea = *self.sea->first();
+    const Scene& scene = sea.plan().from->scene;
+    const FoamLook look = make_foam(scene, nullptr, active_foam(scene, sea.residual_coverage()));
     return {look.fresh_opacity, look.old_opacity};
 }
 
 const std::string kSeaDoc =
-    "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. "
+    "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. Where "
+    "sea.wind_speed_mps or another of its numbers has keys it is that of each frame's time. "
     "Single precision.\n\n"
     "scene: a valid Scene (ShotError otherwise); later changes to it don't matter here.\n"
     "products: what evaluate() may be asked for, and so what each frame computes: " +
@@ -205,13 +207,18 @@ void add_sea(py::module_& module) {
     });
     sea.def_property_readonly(
            "significant_height_m",
-           [](const PythonSea& self) { return self.sea->total().significant_height_m(); },
-           "4 times the root of the variance of the whole spectrum [m].")
+           [](const PythonSea& self) { return self.sea->first()->total().significant_height_m(); },
+           "4 times the root of the variance of the whole spectrum [m]. Of a scene whose sea has keys this and mss, "
+           "whitecap_threshold and dense_foam are those of the first key.")
+        .def(
+            "significant_height_at",
+            [](const PythonSea& self, double t_s) { return self.sea->significant_height_m(t_s); }, py::arg("t"),
+            "significant_height_m at a time [s], of a sea that changes between its keys.")
         .def_property_readonly(
-            "mss", [](const PythonSea& self) { return self.sea->total().mss(); },
+            "mss", [](const PythonSea& self) { return self.sea->first()->total().mss(); },
             "Mean square slope of the whole spectrum, capillary tail included.")
         .def_property_readonly(
-            "whitecap_threshold", [](const PythonSea& self) { return self.sea->whitecap_threshold(); },
+            "whitecap_threshold", [](const PythonSea& self) { return self.sea->first()->whitecap_threshold(); },
             "The Jacobian below which there is foam, without gusts, which move it from place to place; -inf: there "
             "never is.")
         .def_property_readonly(

@@ -8,14 +8,14 @@
 
 #include "core/plan/products.h"
 #include "core/surface/projected_grid.h"
-#include "core/waves/sea.h"
+#include "core/waves/sea_over_time.h"
 
 namespace pelagic::python {
 
 // What Python holds: a Sea is immutable, and frames keep it alive. Its plan has one query, number 0, of these
 // products, and of displacements wherever positions are, which are the same sums.
 struct PythonSea {
-    std::shared_ptr<const Sea<float>> sea;
+    std::shared_ptr<const SeaOverTime<float>> sea;
     ProductSet outputs;  // that may be asked for
     const Plan& plan() const { return sea->plan(); }
     const Query& query() const { return plan().queries.front().query; }

@@ -233,8 +233,8 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
         about.last_frame = shot.scene.shot.last_frame;
         about.frames_per_second = shot.scene.shot.fps;
         about.time_scale = shot.scene.shot.time_scale;
-        about.loop_s = shot.sea->loop_s();
-        about.significant_height_m = shot.sea->total().significant_height_m();
+        about.loop_s = shot.sea->first()->loop_s();
+        about.significant_height_m = shot.sea->first()->total().significant_height_m();
         about.peak_wavelength_m = kTwoPi / plan.from->spectrum.peak_wavenumber();
         about.finest_cell_m = shot.query().cell_m.front();
         about.finest_pixel_m = shot.query().pixel_m.front();

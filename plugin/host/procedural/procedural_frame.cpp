@@ -65,6 +65,8 @@ float largest(const float* samples, std::size_t n) {
     return *std::max_element(most.begin(), most.end());
 }
 
+constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
+
 // The most that a field's sum can be, everywhere: splines stay within their coefficients, and the blending weights at
 // a point add up to 2 at most (core/plan/random_tiling.h).
 double most_of(const Frame<float>& frame, Field field) {
@@ -84,9 +86,15 @@ double most_of(const Frame<float>& frame, Field field) {
         }
         most += (plan.cascades[c].has_random_tiling ? 2.0 : 1.0) * of_cascade;
     }
-    if (plan.trains)
-        for (const float amplitude : frame.sea().trains().amplitude[index(field)])
-            most += std::abs(static_cast<double>(amplitude));
+    if (plan.trains) {
+        const Trains<float>& trains = frame.sea().trains();
+        const auto add = [&](const std::vector<float>& amplitudes) {
+            for (const float amplitude : amplitudes) most += std::abs(static_cast<double>(amplitude));
+        };
+        add(trains.amplitude[index(field)]);
+        for (const std::size_t axis : {0, 1, 2})
+            if (field == kVelocities[axis]) add(trains.growth[axis]);
+    }
     constexpr double kRounding = 1e-4;  // of hundreds of sums in single precision
     return (1.0 + kRounding) * most;
 }
@@ -112,8 +120,8 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
         MemoryNeed need;
         add_sea(need, plan, arena->max_concurrency());
         require_memory(need, machine::memory_limit(), "a frame of this sea");
-        sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
-        if (sea->plan().foam) without_past = sea->whitecaps({});
+        sea = std::make_shared<const SeaOverTime<float>>(std::move(plan), watch);
+        if (sea->plan().foam) without_past = sea->first()->whitecaps({});
         // As the plan's levels have it; a sea of trains has none.
         finest_ray_m =
             query().cell_m.front() > 0.0 ? query().cell_m.front() : std::max(finest_ray_m, finest_cell_m());
@@ -123,7 +131,7 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
 double ShotSea::finest_cell_m() const {
     // A sea of trains has no first cell.
     const double first_m = query().cell_m.front();
-    return first_m > 0.0 ? first_m : whole_cell_m(*sea);
+    return first_m > 0.0 ? first_m : whole_cell_m(*sea->first());
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
@@ -143,17 +151,20 @@ void ShotFrame::set(double open_s, double close_s) {
         state_.set(0.5 * (open_s + close_s));
         const ProductSet now = kProducts & ~lasting_products();
         query_.emplace(state_.frame(), 0, now);
-        if (of_->without_past)
-            without_past_.emplace(state_.frame(), 0, now, glm::dvec2(0.0), &*of_->without_past);
+        if (of_->without_past) {
+            const bool changes = of_->sea->plan().from->weather != nullptr;
+            whitecaps_without_past_ = changes ? state_.sea().whitecaps({}) : of_->without_past;
+            without_past_.emplace(state_.frame(), 0, now, glm::dvec2(0.0), &*whitecaps_without_past_);
+        }
         half_open_s_ = 0.5 * (close_s - open_s);
         fastest_mps_ = glm::dvec3(0.0);
         tiles_.reset();
         everywhere_.reset();
         cells_.reset();
         if (half_open_s_ == 0.0) return;
-        constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
-        tbb::parallel_for(0, 3,
-                          [&](int axis) { fastest_mps_[axis] = most_of(state_.frame(), kVelocities[axis]); });
+        tbb::parallel_for(0, 3, [&](int axis) {
+            fastest_mps_[axis] = most_of(state_.frame(), kVelocities[static_cast<std::size_t>(axis)]);
+        });
     });
 }
 

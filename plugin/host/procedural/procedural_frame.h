@@ -43,8 +43,8 @@ struct ShotSea {
     std::size_t ray_cache_bytes;
     double finest_ray_m = 0.0;               // finer footprints of rays count as that
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
-    std::shared_ptr<const Sea<float>> sea;
-    std::optional<Whitecaps> without_past;  // as if no foam were persistent; none where none is
+    std::shared_ptr<const SeaOverTime<float>> sea;
+    std::optional<Whitecaps> without_past;  // as if no foam were persistent; none where none is. Of the first key of a sea that changes
     const Query& query() const { return sea->plan().queries.front().query; }
     // The cell below which nothing more is resolved [m], > 0.
     double finest_cell_m() const;
@@ -106,6 +106,7 @@ class ShotFrame {
     std::shared_ptr<const ShotSea> of_;
     SeaAtTime<float> state_;
     BoundsByLevel<float> bounds_{state_.frame(), 0};
+    std::optional<Whitecaps> whitecaps_without_past_;
     std::optional<PreparedQuery<float>> query_, without_past_;
     double half_open_s_ = 0.0;
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes

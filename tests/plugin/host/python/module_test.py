@@ -60,13 +60,27 @@ class Scene(unittest.TestCase):
         self.assertEqual(scene.validate(), [])
         self.assertEqual([key["path"] for key in pelagic.keys() if key["may_have_keys"]].count("light.turbidity"), 1)
 
-    def test_a_sea_that_changes_is_no_sea_of_one_moment(self):
+    def test_a_sea_that_changes_is_that_of_each_frames_time(self):
         scene = pelagic.Scene()
         scene.sea.wind_speed_mps = {"keys": [(1, 8.0), (9, 22.0)]}
         self.assertEqual(scene.validate(), [])
-        for ask in (lambda: pelagic.Sea(scene, ("position",), cell_m=2.0), scene.significant_height_m):
-            with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps has keys, and here the sea is one for the whole shot"):
-                ask()
+        with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps has keys, and here the sea is one for the whole shot"):
+            scene.significant_height_m()
+        sea = pelagic.Sea(scene, ("position", "velocity"), cell_m=2.0)
+        frame, rest = pelagic.Frame(sea), np.stack(np.meshgrid(*[np.arange(0.0, 2000.0, 20.0, dtype=np.float32)] * 2), -1).reshape(-1, 2)
+        at = {}
+        for number in (1, 5, 9):
+            time_s = scene.shot.time_s(number)
+            height_m = sea.significant_height_at(time_s)
+            if number != 5:
+                self.assertAlmostEqual(height_m, scene.at(number).significant_height_m(), 6)
+            frame.set(time_s)
+            at[number] = frame.evaluate(rest)["position"]
+            self.assertAlmostEqual(4.0 * float(at[number][:, 2].std()) / height_m, 1.0, delta=0.2)
+        self.assertEqual(sea.significant_height_m, sea.significant_height_at(scene.shot.time_s(1)))
+        again = pelagic.Frame(sea)  # a frame alone is that of a run
+        again.set(scene.shot.time_s(5))
+        self.assertTrue(np.array_equal(again.evaluate(rest)["position"], at[5]))
         self.assertIn("faster than waves", " ".join(scene.warnings()))
 
     def test_trains_have_a_range_of_their_own_or_none(self):

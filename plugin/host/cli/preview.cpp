@@ -59,11 +59,11 @@ int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArgumen
                    Progress& progress) {
     Scene scene = without_budget(shot);  // of bakes and renders
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
-    scene = scene_at(scene, frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
     files::check_folder(file.parent_path());
     const OffscreenPlan planned = plan_offscreen(scene, frame, {}, memory_of(arguments.max_memory));
+    scene = planned.scene;
     const Sky sky = make_sky(scene);
     const auto tell = [&](const std::string& what) {
         return BuildWatch{
@@ -110,11 +110,6 @@ void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
 
 int run(const PreviewArguments& arguments) {
     Scene scene = without_still_keys(load_shot(arguments.shot, check_scene));
-    try {
-        refuse_keyed_sea(scene);
-    } catch (const std::invalid_argument& error) {
-        throw ShotError(placed(arguments.shot, error.what()));
-    }
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)

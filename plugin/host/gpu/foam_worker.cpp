@@ -6,7 +6,7 @@
 
 namespace pelagic {
 
-FoamWorker::FoamWorker(std::shared_ptr<const Sea<float>> sea)
+FoamWorker::FoamWorker(std::shared_ptr<const SeaOverTime<float>> sea)
     : history_(std::move(sea)),
       worker_(std::make_unique<LiveWorker<Asked, PackedFoam>>([this](const Asked& asked) {
           // The sea's own frames go first.

@@ -19,7 +19,7 @@ class FoamWorker {
     using Grids = std::vector<std::shared_ptr<const ProjectedGrid>>;
 
     // Of a sea with persistent foam.
-    explicit FoamWorker(std::shared_ptr<const Sea<float>> sea);
+    explicit FoamWorker(std::shared_ptr<const SeaOverTime<float>> sea);
     // Cancels a history that isn't done, and waits for the step of it that is being made.
     ~FoamWorker();
 

@@ -105,7 +105,7 @@ void LiveSea::ask_drops(const std::shared_ptr<const LiveBuild>& build, double ti
                 if (flying->of != wanted.build) flying->drops.reset();  // before new ones are made
                 flying->of = wanted.build;
                 if (!wanted.build) return nullptr;
-                if (!flying->drops) flying->drops.emplace(*wanted.build->sea, kDropsSquare_m);
+                if (!flying->drops) flying->drops.emplace(*wanted.build->sea->first(), kDropsSquare_m);
                 auto made = std::make_shared<LiveDrops>();
                 made->build = wanted.build;
                 made->time_s = wanted.time_s;
@@ -158,6 +158,7 @@ LiveStatus LiveSea::status() const {
 
 void LiveSea::compute_frames() {
     std::optional<Frame<float>> frame;
+    std::shared_ptr<const LiveBuild> frame_of;
     // The request computed last, whether it succeeded or failed: not repeated.
     std::shared_ptr<const LiveBuild> tried;
     std::optional<double> tried_s;
@@ -218,18 +219,18 @@ void LiveSea::compute_frames() {
         std::shared_ptr<const Spray> spray;
         std::shared_ptr<const Floor> floor;
         try {
-            if (!frame || &frame->sea() != tried->sea.get()) {
+            if (!frame || frame_of != tried) {
                 frame.reset();  // before the new one is made: halves the peak memory
                 frame.emplace(tried->sea);
+                frame_of = tried;
             }
-            if (slot.build != tried) {
-                slot.packed.reset();
-                slot.build = tried;
-                slot.packed.emplace(tried->sea, tried->query);
-            }
+            if (slot.build != tried) slot.packed.reset();
+            slot.build = tried;
             const auto start = Clock::now();
             frame->set(*tried_s);
             const auto transformed = Clock::now();
+            if (!slot.packed || &slot.packed->layout()->sea() != &frame->sea())  // a sea that changes is another at each time
+                slot.packed.emplace(frame->shared_sea(), tried->query);
             slot.packed->pack(*frame);
             slot.transforms_ms = milliseconds(start, transformed);
             slot.packing_ms = milliseconds(transformed, Clock::now());

@@ -31,7 +31,7 @@ namespace pelagic {
 // A sea that is ready to play, and what is needed to draw it.
 struct LiveBuild {
     Scene scene;  // the scene it was made from
-    std::shared_ptr<const Sea<float>> sea;
+    std::shared_ptr<const SeaOverTime<float>> sea;
     int query = 0;  // the picture's query, an index into the plan
     std::shared_ptr<const DrawnSea> drawn;
     double build_s = 0.0;  // time that building took

@@ -84,7 +84,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     }
     if (!left_out.empty()) made.note = left_out + (made.note.empty() ? "" : "\n") + made.note;
     if (!fits(plan, limits)) require_memory(live_memory(plan), limits.memory, "this sea");
-    made.sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
+    made.sea = std::make_shared<const SeaOverTime<float>>(std::move(plan), watch);
     made.drawn = std::make_shared<const DrawnSea>(*prepared, false);
     made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::make_shared<const LiveBuild>(std::move(made));

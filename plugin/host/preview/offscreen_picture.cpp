@@ -13,6 +13,7 @@
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
 #include "core/plan/quality.h"
+#include "core/scene/number_keys.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/view.h"
@@ -158,14 +159,16 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
 }
 
 OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std::size_t max_memory_bytes) {
-    OffscreenPlan planned{.scene = scene, .frame = frame, .plan = {}, .mesh = {}, .drawn = {}};
+    OffscreenPlan planned{.scene = scene_at(scene, frame), .frame = frame, .plan = {}, .mesh = {}, .drawn = {}};
     if (size.x > 0 && size.y > 0) planned.scene.camera.resolution = size;
     check_size(planned.scene.camera.resolution);
     const MemoryLimit limit = machine::memory_limit_or(max_memory_bytes);
     const int threads = tbb::this_task_arena::max_concurrency();
     const char* const run = "this picture";
 
-    const auto prepared = prepare(planned.scene);
+    Scene shot = scene;  // whose sea may have keys
+    shot.camera.resolution = planned.scene.camera.resolution;
+    const auto prepared = prepare(std::move(shot));
     const SeaView seen{view_at(planned.scene.camera, frame), frame};
     const DrawnSea::Needs needs = DrawnSea(*prepared, false).needs(seen);
     const auto plan_for = [&](ProductSet wanted, double finest_pixel_m) {
@@ -188,7 +191,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     planned.drawn->lay_out(seen, planned.mesh);
     double finest_pixel_m = needs.finest_pixel_m;
     if (has_levels) {
-        Frame<float> state(std::make_shared<const Sea<float>>(of_points));
+        Frame<float> state(std::make_shared<const SeaOverTime<float>>(of_points));
         state.set(planned.scene.shot.time_s(frame));
         const double in_view_m =
             finest_pixel_in_view(seen.view, planned.mesh, positions_of(state, planned.mesh));
@@ -214,7 +217,7 @@ void take_below(const Waterline& waterline, const Picture& below, Picture& pictu
 }
 
 // Uploads what earlier breaking has left where the picture's pixels are.
-void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
+void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const SeaOverTime<float>>& sea, double time_s,
                  const View& view, const SeaMesh& mesh, const BuildWatch& watch) {
     const SeaRenderer::ShownPoints shown = renderer.shown_points(view, mesh);
     FoamHistory<float> history(sea);
@@ -231,12 +234,13 @@ void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>&
 }  // namespace
 
 OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, const OffscreenWatch& watch) {
-    const auto sea = std::make_shared<const Sea<float>>(planned.plan, watch.sea);
+    const auto shot = std::make_shared<const SeaOverTime<float>>(planned.plan, watch.sea);
     SeaRenderer renderer;
     const View view = view_at(planned.scene.camera, planned.frame);
     const LightingChoice lighting = render_options(planned.scene).lighting;
-    Frame<float> state(sea);
+    Frame<float> state(shot);
     state.set(planned.scene.shot.time_s(planned.frame));
+    const std::shared_ptr<const Sea<float>> sea = state.shared_sea();
     const ProjectedGridOptions& grid = planned.drawn->grid_options();
     const bool from_below = planned.drawn->is_below(view);
     const auto floor = std::make_shared<Floor>(make_floor(planned.scene, planned.drawn->rest_m()));
@@ -248,7 +252,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
                           planned.mesh.triangles);
     else if (!from_below)
         planned.drawn->refuse_under_water(state, planned.scene, planned.frame);
-    const WaterBody water = make_water(planned.scene, planned.plan.from->spectrum);
+    const WaterBody water = make_water(planned.scene, sea->plan().from->spectrum);
     if (water.has_body) {
         if (lighting.water && lighting.sun && sky.sun_irradiance != glm::vec3(0.0f)) {
             FloorLightWanted wanted{.view = view,
@@ -276,7 +280,7 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     renderer.upload_once(std::move(state), 0);
     const bool lives = planned.plan.foam && lighting.whitecaps;
     if (lives)
-        upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.mesh,
+        upload_foam(renderer, shot, planned.scene.shot.time_s(planned.frame), view, planned.mesh,
                     watch.foam_past);
     const FoamLook foam = make_foam(planned.scene, make_foam_picture(planned.scene),
                                     lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0);

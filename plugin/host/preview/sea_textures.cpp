@@ -28,7 +28,7 @@ enum Unit : int {
 
 }  // namespace
 
-void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
+bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     GLint largest_texture = 0, largest_block = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
     glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &largest_block);
@@ -43,10 +43,8 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         throw PreviewError("the sea's tables need " + std::to_string(block_bytes) +
                            " bytes of uniforms, and the driver has " + std::to_string(largest_block) +
                            ": ask for fewer cascades");
-    std::vector<GlTexture> planes;
     std::optional<GlTexture> train_table, train_cycles;
     GlTexture ellipse_table;
-    planes.resize(layout->planes().size());
     edit_texture(ellipse_table);
     texels_as_they_are();
     const std::vector<glm::vec4> ellipses = layout->ellipse_texels();
@@ -68,13 +66,22 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         texels_as_they_are();
         glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, std::max(count, 1), 1, 0, GL_RED, GL_FLOAT, nullptr);
     }
+    // A sea that changes has a layout for each time, and the same textures for all of them.
+    const bool has_room = layout_ && std::ranges::equal(layout_->planes(), layout->planes(), [](const auto& a, const auto& b) {
+                              return a.size == b.size && a.channels == b.channels;
+                          }) && layout_->has_living_foam() == layout->has_living_foam();
     layout_ = layout;
-    planes_ = std::move(planes);
+    if (!has_room) {
+        planes_.clear();
+        planes_.resize(layout->planes().size());
+    }
     ellipse_table_ = std::move(ellipse_table);
     train_table_ = std::move(train_table);
     train_cycles_ = std::move(train_cycles);
+    if (has_room) return true;
     foam_textures_.reset();
     if (layout->has_living_foam()) upload_foam(std::make_shared<const PackedFoam>());
+    return false;
 }
 
 // Of a plane's texture, which is bound from here on.
@@ -151,10 +158,8 @@ void SeaTextures::upload_once(Frame<float>&& frame, int query) {
 void SeaTextures::upload(const PackedFrame& frame) {
     if (frame.planes().empty())
         throw std::invalid_argument("the packed frame holds nothing yet: call pack() first");
-    if (layout_ != frame.layout()) {
-        take_sea(frame.layout());
+    if (layout_ != frame.layout() && !take_sea(frame.layout()))
         for (std::size_t p = 0; p < planes_.size(); ++p) make_room(p);
-    }
     time_within_loop_s_ = frame.time_within_loop_s();
     Staging& buffers = staging_[next_staging_];
     next_staging_ = (next_staging_ + 1) % staging_.size();

@@ -32,7 +32,8 @@ class SeaTextures {
     void bind(const ShaderProgram& program, glm::dvec2 origin_m);
 
   private:
-    void take_sea(const std::shared_ptr<const SeaLayout>& layout);
+    // Returns whether its planes and foam have their textures already.
+    bool take_sea(const std::shared_ptr<const SeaLayout>& layout);
     void make_room(std::size_t plane);
     void upload_tables(glm::dvec2 origin_m);
 

@@ -561,10 +561,10 @@ class Preview {
                                       controls_.scene.surface.cell_px);
         smooth(readout_.times.grid_ms, milliseconds_since(start));
         follow_foam(view, {mesh, &mesh->points});
-        const Sea<float>& sea = *frame_->build->sea;
+        const Sea<float>& sea = frame_->packed->layout()->sea();
         controls_.draw.foam =
             make_foam(now_, sky_ ? sky_->foam_picture : nullptr,
-                      sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
+                      sea.plan().foam ? active_foam(sea.plan().from->scene, sea.residual_coverage()) : 1.0);
         controls_.draw.lighting.spray = has_spray_;
         lacks_drops_ = false;
         if (has_spray_)
@@ -609,7 +609,7 @@ class Preview {
         constexpr double kLongest_s = 0.5;
         const std::shared_ptr<const LiveDrops> drops = sea_.newest_drops();
         double late_s = drops ? frame_->packed->time_s() - drops->time_s : 0.0;
-        if (const double loop_s = frame_->build->sea->loop_s(); loop_s > 0.0)
+        if (const double loop_s = frame_->build->sea->first()->loop_s(); loop_s > 0.0)
             late_s = std::remainder(late_s, loop_s);
         if (drops && drops->build == frame_->build && std::abs(late_s) <= kLongest_s) {
             renderer_.set_spray(spray, {drops, &drops->drops}, late_s);

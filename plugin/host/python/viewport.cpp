@@ -167,7 +167,7 @@ class FoamThread final : public NativeWork {
   public:
     // With the interpreter held, as Enlisted.
     explicit FoamThread(std::shared_ptr<const Sea<float>> sea)
-        : worker_(std::make_unique<FoamWorker>(std::move(sea))) {}
+        : worker_(std::make_unique<FoamWorker>(std::make_shared<const SeaOverTime<float>>(std::move(sea)))) {}
 
     FoamWorker* worker() { return worker_.get(); }  // null in a forked process
 

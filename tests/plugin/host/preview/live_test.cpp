@@ -44,7 +44,7 @@ std::shared_ptr<const LiveBuild> small_build(const Scene& scene) {
     query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
     LiveBuild made;
     made.scene = scene;
-    made.sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
+    made.sea = std::make_shared<const SeaOverTime<float>>(make_plan(scene, {query}));
     return std::make_shared<const LiveBuild>(std::move(made));
 }
 
@@ -214,6 +214,30 @@ TEST(LiveSea, EveryKeyOfTheWavesIsAnotherSea) {
     }
 }
 
+// Each frame is packed with the tables of its own time.
+TEST(LiveSea, ThatChangesIsThatOfEachTime) {
+    Scene scene = small_scene(8.0);
+    scene.keyed = {{.path = "sea.wind_speed_mps", .keys = {.keys = {{1, 8.0}, {49, 20.0}}}}};
+    LiveSea sea([](const Scene& asked) { return build_live(asked, {}); });
+    sea.ask(scene);
+    const auto mss_at = [&](double time_s) {
+        double mss = 0.0;
+        EXPECT_TRUE(wait_for([&] {
+            sea.show(time_s);
+            const LiveFrame* const frame = sea.newest();
+            if (!frame || frame->packed->time_s() != time_s) return false;
+            mss = frame->packed->layout()->sea().total().mss();
+            return true;
+        }));
+        return mss;
+    };
+    const double breeze = mss_at(0.0), between = mss_at(1.0), gale = mss_at(2.0);
+    EXPECT_LT(breeze, 0.9 * between);
+    EXPECT_LT(between, 0.9 * gale);
+    EXPECT_EQ(mss_at(1.0), between);
+    EXPECT_EQ(sea.status().error, "");
+}
+
 // Its map follows the camera, over a sea that plays and over one that stands still.
 TEST(LiveSea, HasTheSprayBeforeTheLatestCamera) {
     Scene scene = small_scene(20.0);
@@ -276,7 +300,7 @@ TEST(LiveSea, TheFrameIsOfTheTimeAskedForAndOfItAlone) {
         const auto build = sea.newest()->build;
         Frame<float> frame(build->sea);
         frame.set(time_s);
-        PackedFrame alone(build->sea, build->query);
+        PackedFrame alone(build->sea->first(), build->query);
         alone.pack(frame);
         EXPECT_EQ(sea.newest()->packed->planes(), alone.planes()) << time_s;
     }
@@ -492,7 +516,7 @@ TEST(LiveFoam, IsLeftBehindWithoutWaiting) {
     constexpr int kGrids = 30;
     const double looking_s =
         kGrids * seconds_of([&] { EXPECT_FALSE(foam_places(*sea->plan().foam, 20.0, *grid).empty()); });
-    auto worker = std::make_unique<FoamWorker>(sea);
+    auto worker = std::make_unique<FoamWorker>(std::make_shared<const SeaOverTime<float>>(sea));
     worker->ask(20.0, FoamWorker::Grids(kGrids, grid));
     std::this_thread::sleep_for(std::chrono::duration<double>(0.1 * looking_s));
     ASSERT_TRUE(worker->is_busy());

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/number_keys.h"
 #include "plugin/host/gpu/foam_worker.h"
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
@@ -253,6 +254,40 @@ TEST(PreviewsPicture, IsTheCpusOfLivingFoamFromAPlane) {
                   {320, 180});
 }
 
+Scene changing_scene() {
+    Scene scene = living_scene({0.0, -60.0, 6.0}, {0.0, 0.0, 0.0});
+    scene.keyed = {{.path = "sea.wind_speed_mps", .keys = {.keys = {{1, 7.0}, {9, 16.0}}}}};
+    return scene;
+}
+
+TEST(PreviewsPicture, IsTheCpusOfASeaThatChanges) {
+    compare_frame("of a sea that changes", changing_scene(), {320, 180});
+}
+// The window keeps textures and foam from one time to the next, and takes the tables of each.
+TEST(PreviewsPicture, OfASeaThatChangesHasTheTablesOfItsTime) {
+    gpu::need_context();
+    Scene scene = changing_scene();
+    scene.effects.foam_decay_s = 0.0;
+    scene.camera.resolution = {160, 90};
+    const OffscreenPlan planned = plan_offscreen(scene, 5);
+    const Sky sky = make_sky(scene);
+    const Picture alone = render_offscreen(planned, sky).picture;
+    Frame<float> frame(std::make_shared<const SeaOverTime<float>>(planned.plan));
+    SeaRenderer renderer;
+    for (const int n : {1, 5}) {
+        frame.set(scene.shot.time_s(n));
+        PackedFrame packed(frame.shared_sea(), 0);
+        packed.pack(frame);
+        renderer.upload(packed);
+    }
+    const Scene now = scene_at(scene, 5);
+    renderer.set_sky(sky, make_water(now, frame.sea().plan().from->spectrum));
+    renderer.draw(view_at(now.camera, 5), planned.mesh,
+                  {.lighting = render_options(now).lighting, .foam = make_foam(now, make_foam_picture(now)), .layers = true});
+    const Difference difference = compare(alone, renderer.read_layers());
+    EXPECT_EQ(difference.last_percent, 0.0);
+}
+
 // The tiles that a window or a viewport asks for by the grid hold what the pixels between its points read, from the ground
 // up; and a history that is gone on with has what one from nothing has.
 TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
@@ -280,7 +315,7 @@ TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
     };
     // Before there is any, foam is where waves break.
     EXPECT_LT(mean_foam(drawn()), 0.7 * mean_foam(exact));
-    FoamWorker worker(sea);
+    FoamWorker worker(std::make_shared<const SeaOverTime<float>>(sea));
     const auto grid = std::make_shared<const ProjectedGrid>(planned.mesh.points);
     std::shared_ptr<const PackedFoam> foam;
     for (const int n : {4, 5}) {

@@ -53,13 +53,19 @@ Scene scene_at(const Scene& scene, double frame) {
     return made;
 }
 
+namespace {
+
+[[noreturn]] void refuse(const KeyedNumber& number) {
+    throw std::invalid_argument(number.path +
+                                " has keys, and this shows one moment; accepted: a number, or the scene of a frame (in Python "
+                                "scene.at(frame), in C++ scene_at())");
+}
+
+}  // namespace
+
 void refuse_keys(const Scene& scene, std::string_view table) {
     for (const KeyedNumber& number : scene.keyed)
-        if (number.path.starts_with(table))
-            throw std::invalid_argument(
-                number.path +
-                " has keys, and this shows one moment; accepted: a number, or the scene of a "
-                "frame (in Python scene.at(frame), in C++ scene_at())");
+        if (number.path.starts_with(table)) refuse(number);
 }
 
 bool is_of_sea(const KeyedNumber& number) {
@@ -76,11 +82,7 @@ std::set<int> frames_of_sea(const Scene& scene) {
 
 void refuse_keyed_sea(const Scene& scene) {
     for (const KeyedNumber& number : scene.keyed)
-        if (is_of_sea(number))
-            throw std::invalid_argument(
-                number.path +
-                " has keys, and here the sea is one for the whole shot; accepted: a number; pelagic "
-                "render and pelagic bake show it with keys");
+        if (is_of_sea(number)) refuse(number);
 }
 
 Scene without_still_keys(Scene scene) {

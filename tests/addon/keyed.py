@@ -116,7 +116,7 @@ with checking("what a changing sea can't be is said, and the old one stays"):
     bpy.context.scene.frame_set(5)
     assert "keys" in play.simulation_of(obj).problem, play.simulation_of(obj).problem
 
-for file in ("weather/rising.toml", "sunset.toml"):
+for file in ("rising.toml", "sunset.toml"):
     with checking(f"{file} comes in with its keys, and goes out with them"):
         fresh_file()
         assert bpy.ops.pelagic.import_shot(filepath=str(ROOT / "examples" / file)) == {"FINISHED"}

@@ -311,10 +311,9 @@ TEST(Weather, IsRefusedWhereTheSeaIsOne) {
         const Sea<float> sea(plan);
         FAIL();
     } catch (const std::invalid_argument& error) {
-        EXPECT_EQ(
-            std::string(error.what()),
-            "sea.wind_speed_mps has keys, and here the sea is one for the whole shot; accepted: a number; pelagic "
-            "render and pelagic bake show it with keys");
+        EXPECT_EQ(std::string(error.what()),
+                  "sea.wind_speed_mps has keys, and this shows one moment; accepted: a number, or the scene of a frame (in "
+                  "Python scene.at(frame), in C++ scene_at())");
     }
     const auto problem = [](const std::function<void(Scene&)>& change) {
         Scene scene = rising();

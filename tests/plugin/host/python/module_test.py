@@ -64,7 +64,7 @@ class Scene(unittest.TestCase):
         scene = pelagic.Scene()
         scene.sea.wind_speed_mps = {"keys": [(1, 8.0), (9, 22.0)]}
         self.assertEqual(scene.validate(), [])
-        with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps has keys, and here the sea is one for the whole shot"):
+        with self.assertRaisesRegex(ValueError, "sea.wind_speed_mps has keys, and this shows one moment"):
             scene.significant_height_m()
         sea = pelagic.Sea(scene, ("position", "velocity"), cell_m=2.0)
         frame, rest = pelagic.Frame(sea), np.stack(np.meshgrid(*[np.arange(0.0, 2000.0, 20.0, dtype=np.float32)] * 2), -1).reshape(-1, 2)

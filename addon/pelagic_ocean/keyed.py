@@ -126,7 +126,9 @@ def _of_curve(curve):
 
 
 def put(scene, keys):
-    """A copy of a pelagic.Scene with these keys, {path: keys}."""
+    """A pelagic.Scene with these keys, {path: keys}; itself without any."""
+    if not keys:
+        return scene
     made = scene.at(scene.shot.frames[0])
     for path, each in keys.items():
         setattr(getattr(made, BY_PATH[path].table), BY_PATH[path].name, each)

@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, handlers, light, ocean, play
+from . import compat, handlers, keyed, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -41,6 +41,7 @@ class Preview:
         self.is_broken = False  # it can't draw; problem says why
         self.seen = False  # whether a view has drawn since _tend()
         self._settings = self._scene = None
+        self._keys = {}  # of the sea's numbers
         self._job = None
         self._refused = None  # settings that give no sea
         self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
@@ -64,8 +65,9 @@ class Preview:
         """The pelagic.Scene of the ocean as it is set now, or the last one that the core accepts; None before that."""
         turned = obj.matrix_world.to_euler().z
         settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned, light.kept_view(bpy_scene))
-        if settings != self._settings:
-            self._settings = settings
+        keys = keyed.keys_of_sea(obj, settings[0], bpy_scene.frame_current_final)
+        if (settings, keys) != (self._settings, self._keys):
+            self._settings, self._keys = settings, keys
             try:
                 self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
                 light.see_by(settings[3], self._scene)
@@ -76,18 +78,18 @@ class Preview:
 
     def build(self, scene):
         """Begins to make whatever the scene and the views need that isn't there. Whether there is something to draw."""
-        drawing = self.drawing
+        drawing, of_shot = self.drawing, keyed.put(scene, self._keys)
         sea, lit = drawing.sea, drawing.light
         if self._job is None and self._settings != self._refused:
             finest_m = FINEST_M if sea is None else drawing.finest_m() or sea.finest_m
             finest_m = min(max(finest_m, FINEST_M), COARSEST_M)
             # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
-            keeps_sea = sea is not None and sea.serves(scene) and sea.finest_m <= finest_m <= 4 * sea.finest_m
+            keeps_sea = sea is not None and sea.serves(of_shot) and sea.finest_m <= finest_m <= 4 * sea.finest_m
             keeps_light = lit is not None and lit.serves(scene)
             if keeps_sea and keeps_light:
                 self.problem = ""
             else:
-                self._job = _job(self._settings, scene, sea if keeps_sea else None, lit if keeps_light else None, finest_m)
+                self._job = _job(self._settings, scene, of_shot, sea if keeps_sea else None, lit if keeps_light else None, finest_m)
         return sea is not None
 
     def poll(self):
@@ -163,10 +165,10 @@ class Preview:
                    for key, layer in _layers())
 
 
-def _job(key, scene, sea, lit, finest_m):
-    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, those that aren't there."""
+def _job(key, scene, of_shot, sea, lit, finest_m):
+    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, the sea with its keys, those that aren't there."""
     def begin():
-        makers = [] if sea else [lambda: pelagic.GpuSea.begin(scene, finest_m)]
+        makers = [] if sea else [lambda: pelagic.GpuSea.begin(of_shot, finest_m)]
         makers += [] if lit else [lambda: pelagic.GpuLight.begin(scene)]
         return [make() for make in makers]
 

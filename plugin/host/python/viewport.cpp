@@ -166,8 +166,8 @@ py::array triangles_of(const GpuGrid& grid) {
 class FoamThread final : public NativeWork {
   public:
     // With the interpreter held, as Enlisted.
-    explicit FoamThread(std::shared_ptr<const Sea<float>> sea)
-        : worker_(std::make_unique<FoamWorker>(std::make_shared<const SeaOverTime<float>>(std::move(sea)))) {}
+    explicit FoamThread(std::shared_ptr<const SeaOverTime<float>> sea)
+        : worker_(std::make_unique<FoamWorker>(std::move(sea))) {}
 
     FoamWorker* worker() { return worker_.get(); }  // null in a forked process
 
@@ -190,12 +190,10 @@ class GpuSea {
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(without_budget(scene))),
-          sea_(std::make_shared<const Sea<float>>(
+          sea_(std::make_shared<const SeaOverTime<float>>(
               make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
-          frame_(sea_),
-          packed_(sea_, 0) {
-        if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
-        ellipse_table_ = packed_.layout()->ellipse_texels();
+          frame_(sea_) {
+        take(sea_->first());
     }
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
@@ -212,7 +210,8 @@ class GpuSea {
         // Without other tasks of the same TBB meanwhile: the host's own might ask this sea, and wait for themselves.
         tbb::this_task_arena::isolate([&] {
             frame_.set(t_s);
-            packed_.pack(frame_);
+            if (&layout().sea() != &frame_.sea()) take(frame_.shared_sea());
+            packed_->pack(frame_);
         });
     }
 
@@ -234,12 +233,12 @@ class GpuSea {
                                   std::string(variant.fragment().body()));
         };
         py::dict made;
-        made["sea"] = pair(ShaderVariant::of_sea(*packed_.layout(), options, light.map_size));
+        made["sea"] = pair(ShaderVariant::of_sea(layout(), options, light.map_size));
         made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
         return made;
     }
 
-    py::dict uniforms() const { return dict_of(query_uniforms(*packed_.layout())); }
+    py::dict uniforms() const { return dict_of(query_uniforms(layout())); }
 
     // Views of the packed frame's memory, which `self` keeps alive.
     static py::dict textures(const py::object& self) {
@@ -247,13 +246,13 @@ class GpuSea {
         const auto reading = sea.locked();
         static constexpr std::array<const char*, 3> kNames{"cell_fields", "pixel_fields", "pixel_fields_2"};
         py::dict made;
-        for (std::size_t p = 0; p < sea.packed_.planes().size(); ++p) {
-            const SeaLayout::Plane& plane = sea.packed_.layout()->planes()[p];
+        for (std::size_t p = 0; p < sea.packed_->planes().size(); ++p) {
+            const SeaLayout::Plane& plane = sea.layout().planes()[p];
             made[kNames[p]] =
-                view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
+                view_of(self, sea.packed_->planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
         }
         if (made.empty()) return made;  // no time was set
-        const int columns = sea.packed_.layout()->ellipse_columns();
+        const int columns = sea.layout().ellipse_columns();
         made["ellipse_table"] =
             view_of(self, &sea.ellipse_table_[0].x,
                     {static_cast<py::ssize_t>(sea.ellipse_table_.size()) / columns, columns, 4});
@@ -268,15 +267,15 @@ class GpuSea {
     py::tuple at_origin(std::array<double, 2> origin_m) const {
         const glm::dvec2 origin = checked_origin(origin_m);
         const auto reading = locked();
-        const SeaLayout& layout = *packed_.layout();
+        const SeaLayout& layout = *packed_->layout();
         py::object cycles = py::none();
         if (layout.has_trains()) {
-            std::vector<float> values = layout.train_cycles(origin, packed_.time_within_loop_s());
+            std::vector<float> values = layout.train_cycles(origin, packed_->time_within_loop_s());
             values.resize(std::max<std::size_t>(values.size(), 1));  // a texture has a texel
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
-        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_.time_within_loop_s())),
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_->time_within_loop_s())),
                               cycles);
     }
 
@@ -295,7 +294,7 @@ class GpuSea {
             const ProjectedGridSize size = projected_grid_needs(view, options).size;
             options.size = {.columns = std::min(size.columns, kMostCells),
                             .rows = std::min(size.rows, kMostCells)};
-            options.has_levels = packed_.layout()->pixels().footprints_m.size() > 1;
+            options.has_levels = layout().pixels().footprints_m.size() > 1;
             grid = projected_grid(view, options);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
@@ -308,7 +307,7 @@ class GpuSea {
 
     py::dict foam(const Scene& scene, std::array<double, 2> origin_m, const GpuLight& light) const {
         const double active =
-            has_living_foam() ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
+            has_living_foam() ? active_foam(layout().sea().plan().from->scene, layout().sea().residual_coverage()) : 1.0;
         return dict_of(foam_uniforms(
             foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
     }
@@ -316,13 +315,13 @@ class GpuSea {
     py::dict water(const Scene& scene) const {
         std::string from = canonical(scene, key_parts(KeyPart::Water));
         if (water_.empty() || from != water_from_) {
-            water_ = water_uniforms(make_water(scene, prepared_->spectrum));
+            water_ = water_uniforms(make_water(scene, layout().sea().plan().from->spectrum));
             water_from_ = std::move(from);
         }
         return dict_of(water_);
     }
 
-    bool has_living_foam() const { return packed_.layout()->has_living_foam(); }
+    bool has_living_foam() const { return layout().has_living_foam(); }
     void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
         if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
             throw py::value_error("t: accepted: a time of at most 1e12 s to either side of 0");
@@ -366,24 +365,37 @@ class GpuSea {
     std::size_t bytes() const {
         std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
         if (foam_) sum += foam_->bytes() + foam_->history_bytes();
-        for (const SeaLayout::Plane& plane : packed_.layout()->planes())
+        for (const SeaLayout::Plane& plane : layout().planes())
             sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
         return sum;
     }
 
+    bool changes() const { return prepared_->weather != nullptr; }
+
   private:
+    const SeaLayout& layout() const { return *packed_->layout(); }
+
+    // The sea of a time: with its own tables.
+    void take(const std::shared_ptr<const Sea<float>>& sea) {
+        packed_.emplace(sea, 0);
+        if (layout().has_trains()) train_table_ = layout().train_texels();
+        ellipse_table_ = layout().ellipse_texels();
+        water_.clear();
+    }
+
     // Waits without the interpreter: who sets meanwhile may take long.
     std::unique_lock<std::mutex> locked() const {
         const OthersMayRun others_may_run;
         return std::unique_lock(mutex_);
     }
 
-    // The clock only by the loop that it makes and by when heroes stand: set() is given the sea's time.
+    // The clock only by the loop that it makes and by when heroes and keys stand: set() is given the sea's time.
     static std::string what_counts(const Scene& scene) {
-        std::string heroes;
+        std::string moments;
         for (const HeroWave& hero : scene.waves.heroes)
-            heroes += number_text(scene.shot.time_s(hero.frame)) + ' ';
-        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s()) + heroes +
+            moments += number_text(scene.shot.time_s(hero.frame)) + ' ';
+        for (const int frame : frames_of_sea(scene)) moments += number_text(scene.shot.time_s(frame)) + ' ';
+        return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s()) + moments +
                (has_bubbles(scene) ? " bubbles" : "");
     }
 
@@ -409,9 +421,9 @@ class GpuSea {
     std::string made_from_;
     LightingChoice lighting_;
     std::shared_ptr<const PreparedScene> prepared_;
-    std::shared_ptr<const Sea<float>> sea_;
+    std::shared_ptr<const SeaOverTime<float>> sea_;
     Frame<float> frame_;
-    PackedFrame packed_;
+    std::optional<PackedFrame> packed_;  // always there
     std::vector<glm::vec4> train_table_, ellipse_table_;
     mutable std::mutex mutex_;
     std::shared_ptr<const PackedFoam> foam_;  // what was taken last
@@ -540,7 +552,7 @@ void add_viewport(py::module_& module) {
         .def_property_readonly(
             "textures", &GpuSea::textures,
             "Textures of the sea's shader by name: float32 (height, width, 1, 2 or 4), texels as they are. "
-            "Read-only views of memory that the next set() overwrites; only train_table stays.")
+            "Read-only views of memory that the next set() overwrites; only train_table and ellipse_table stay, unless it `changes`.")
         .def(
             "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
             "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "
@@ -552,6 +564,8 @@ void add_viewport(py::module_& module) {
             "for a grid's origin [m].")
         .def("water", &GpuSea::water, py::arg("scene"),
              "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")
+        .def_property_readonly("changes", &GpuSea::changes,
+                               "Whether its scene's sea has keys: then uniforms and all textures change with set().")
         .def_property_readonly(
             "has_living_foam", &GpuSea::has_living_foam,
             "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "

@@ -57,6 +57,25 @@ class Seas(unittest.TestCase):
         self.assertIsNone(sea.water_over(view(surface_m + 0.05)))
         self.assertAlmostEqual(sea.water_over(view(surface_m - 0.05)), surface_m, delta=0.05)
 
+    def test_a_sea_that_changes_has_the_tables_of_its_time(self):
+        scene = small_scene()
+        scene.sea.wind_speed_mps = {"keys": [(1, 6.0), (49, 16.0)]}
+        shot, alone = pelagic.GpuSea(scene), pelagic.GpuSea(scene)
+        self.assertTrue(shot.changes and not self.sea.changes)
+        tables = []
+        for time_s in (0.0, 1.0):
+            shot.set(time_s)
+            tables.append({name: pixels.copy() for name, pixels in shot.textures.items()} | {"uniforms": shot.uniforms})
+        alone.set(1.0)
+        self.assertNotEqual(tables[0]["uniforms"], tables[1]["uniforms"])
+        self.assertFalse(np.array_equal(tables[0]["ellipse_table"], tables[1]["ellipse_table"]))
+        self.assertEqual(tables[1]["uniforms"], alone.uniforms)
+        for name, pixels in alone.textures.items():
+            self.assertTrue(np.array_equal(pixels, tables[1][name]), name)
+        self.assertTrue(shot.serves(scene) and not shot.serves(scene.at(25)))
+        scene.shot.fps = 12.0  # keys at other times
+        self.assertFalse(shot.serves(scene))
+
     def test_tables_follow_the_origin(self):
         here, cycles = self.sea.at_origin((0.0, 0.0))
         self.assertIsNone(cycles)

@@ -13,6 +13,7 @@ from mathutils import Vector
 from . import cages, camera, keyed, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule
+from .properties import BY_PATH
 from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
@@ -159,6 +160,8 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
             obj.pelagic.light.sky = str(Path(scene.light.sky).absolute())
         obj.pelagic.horizon = False  # the shot's surface and no more
         keyed.keyframe(obj, shot)
+        if ocean.changing(shot, BY_PATH):
+            self.report({"WARNING"}, ocean.changing(shot, BY_PATH))
         ocean.select_only(context, obj)
         simulation = self.show(context, obj)
         if simulation.problem:

@@ -151,9 +151,9 @@ FOV_DEG = (1.0, 179.0)
 NARROWEST_TAN, WIDEST_TAN = (math.tan(math.radians(angle / 2)) for angle in FOV_DEG)
 
 
-def changing(scene):
-    """What Blender doesn't animate yet, in words, "" if nothing: the keys whose numbers change over the shot."""
-    paths = [key["path"] for key in pelagic.keys() if key["may_have_keys"]
+def changing(scene, but=()):
+    """What isn't animated, in words, "" if nothing: the keys whose numbers change over the shot, without those paths that are."""
+    paths = [key["path"] for key in pelagic.keys() if key["may_have_keys"] and key["path"] not in but
              and isinstance(getattr(getattr(scene, key["path"].split(".")[0]), key["name"]), dict)]
     return f"Stays as at frame {scene.shot.frames[0]}, without the shot's keys: {', '.join(paths)}" if paths else ""
 

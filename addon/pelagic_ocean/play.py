@@ -157,7 +157,7 @@ class Simulation:
         clock = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if keys or settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] else ()
         velocity = wants_velocity(obj, bpy_scene)
         drops = tuple(settings[place] for place in DROPS_FIELDS) if settings[PLACE["effects.spray_drops"]] else ()  # they are the sea's
-        key = (tuple(settings[place] for place in SEA_FIELDS), repr(keys), clock, surface_key, velocity, drops)
+        key = (tuple(settings[place] for place in SEA_FIELDS), clock, surface_key, velocity, drops, repr(keys))
         self._time_s, self._keys = self.scene.shot.time_s(bpy_scene.frame_current_final), keys
         if key != self._key or (view is not None and self._built and not self._built.serves(view)):
             self._seek(key, make_surface, view, velocity, wait)

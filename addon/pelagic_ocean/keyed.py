@@ -99,20 +99,20 @@ def keys_of_sea(obj, settings, frame):
         if curve is None or curve.mute or not isinstance(value, float) or not len(curve.keyframe_points):
             continue
         if abs(curve.evaluate(frame) - value) <= 1e-5 * abs(value):
-            keys = _of_curve(curve)
+            keys = _of_curve(curve, field.key["is_angle"])
             if isinstance(keys, dict):
                 found[field.path] = keys
     return found
 
 
-def _of_curve(curve):
+def _of_curve(curve, is_angle):
     points = curve.keyframe_points
     numbers = np.empty((3, 2 * len(points)), np.float32)
     words = np.empty(len(points), np.int32)
     for row, name in zip(numbers, ("co", "handle_left", "handle_right")):
         points.foreach_get(name, row)
     points.foreach_get("interpolation", words)
-    made_of = numbers.tobytes(), words.tobytes(), curve.extrapolation, repr([modifier.type for modifier in curve.modifiers])
+    made_of = is_angle, numbers.tobytes(), words.tobytes(), curve.extrapolation, repr([modifier.type for modifier in curve.modifiers])
     if made_of not in _read or curve.modifiers:
         if len(_read) > 64:
             _read.clear()
@@ -121,7 +121,7 @@ def _of_curve(curve):
             scene = bpy.context.scene
             first, last = min(first, scene.frame_start), max(last, scene.frame_end)
         frames = np.unique(np.linspace(first, last, min(last - first + 1, MOST_FRAMES)).astype(int))
-        _read[made_of] = keys_through(frames, [curve.evaluate(frame) for frame in frames.tolist()], SEA_TOLERANCE)
+        _read[made_of] = keys_through(frames, [curve.evaluate(frame) for frame in frames.tolist()], SEA_TOLERANCE, is_angle)
     return _read[made_of]
 
 

@@ -115,7 +115,9 @@ void add_sea(Built& out) {
                                             .unit = "degrees",
                                             .range = limits::kAngle_deg,
                                             .soft = kTurn,
-                                            .key_parts = kWaves}),
+                                            .key_parts = kWaves,
+                                            .may_have_keys = true,
+                                            .is_angle = true}),
         row<&SeaState::fetch_m>(
             {.name = "fetch_m",
              .help = "how far the wind has blown over water: little gives a short, steep sea",

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "core/evaluate/bounds.h"
 #include "core/plan/extent.h"
@@ -223,6 +224,31 @@ TEST(Weather, HasTheHeightOfItsSpectrumAtEachFrame) {
     }
 }
 
+// A wind that turns leaves the old waves, which calm as the new ones grow: the short way round.
+TEST(Weather, OfAWindThatTurnsHasTheWavesOfBoth) {
+    Scene scene = rising();
+    give_keys(scene, "sea.wind_speed_mps", {{1, 12.0}});
+    give_keys(scene, "sea.wind_direction_deg", {{1, 315.0}, {240, 45.0}});
+    EXPECT_EQ(scene.sea.wind_direction_deg, 315.0);  // foam and gusts drift that way
+    auto frame = frame_over_time<double>(scene, {everything()});
+    const auto moments_at = [&](double f) {
+        frame.set(scene.shot.time_s(f));
+        const Realisation there = frame.realisation(0);
+        EXPECT_NEAR(there.m0 / frame.sea().total().m0, 1.0, 0.3) << f;
+        const double towards = (f - 120.5) / 239.0 * 0.5 * std::numbers::pi;
+        EXPECT_NEAR(std::atan2(there.north, there.east), towards, 0.2) << f;
+        return frame.sea().total();
+    };
+    const SpectralMoments first = moments_at(1.0), middle = moments_at(120.5), last = moments_at(240.0);
+    constexpr double kPi = std::numbers::pi;
+    EXPECT_NEAR(std::remainder(first.mean_direction() + 0.25 * kPi, 2.0 * kPi), 0.0, 0.05);
+    EXPECT_NEAR(std::remainder(last.mean_direction() - 0.25 * kPi, 2.0 * kPi), 0.0, 0.05);
+    EXPECT_NEAR(std::remainder(middle.mean_direction(), 2.0 * kPi), 0.0, 0.05);
+    EXPECT_NEAR(middle.m0 / first.m0, 1.0, 1e-3);
+    EXPECT_NEAR(middle.xx, 0.5 * (first.xx + last.xx), 1e-6 * middle.xx);
+    EXPECT_EQ(std::remainder(scene_at(scene, 120.5).sea.wind_direction_deg, 360.0), 0.0);
+}
+
 // What footprints hide is of the frame's spectrum, and as much foam breaks as the law has at its wind.
 TEST(Weather, HiddenVarianceAndFoamAreThoseOfTheTime) {
     for (const Kind& kind : kKinds) {
@@ -324,6 +350,11 @@ TEST(Weather, IsRefusedWhereTheSeaIsOne) {
     };
     EXPECT_EQ(problem([](Scene&) {}), "");
     EXPECT_NE(problem([](Scene& scene) { scene.effects.spray = true; }).find("spray flies with one wind"),
+              std::string::npos);
+    EXPECT_NE(problem([](Scene& scene) {
+                  scene.waves.model = WaveModel::Trochoid;
+                  give_keys(scene, "sea.wind_direction_deg", {{1, 0.0}, {240, 90.0}});
+              }).find("a train keeps its direction"),
               std::string::npos);
     EXPECT_NE(problem([](Scene& scene) { scene.shot.time_scale = 0.0; }).find("which stands still"),
               std::string::npos);

@@ -139,6 +139,8 @@ def curves(owner):
         return []
     if not hasattr(animation, "action_slot"):  # actions have slots since 4.4
         return animation.action.fcurves
+    if animation.action_slot is None:
+        return []
     for layer in animation.action.layers:
         for strip in layer.strips:
             bag = strip.channelbag(animation.action_slot)

@@ -78,7 +78,10 @@ def _animated(context, obj, scene):
             poses[frame] = camera.pose_of(obj, context.scene, depsgraph)
         if cage and not moving_cage and not all(map(np.array_equal, arrays(depsgraph), now)):
             moving_cage = cage.name
-    return poses, *keyed.keys_of(settings), moving_cage
+    keys, others = keyed.keys_of(settings)
+    if obj.animation_data is not None:  # a sea that plays has them beyond the scene's range, too
+        keys |= keyed.keys_of_sea(obj, ocean.settings_of(obj.evaluated_get(context.evaluated_depsgraph_get())), context.scene)
+    return poses, keys, others, moving_cage
 
 
 def set_frame_rate(render, fps):

@@ -5,6 +5,8 @@ A sea that changes is planned for all of its keys, so what plays it has to know 
 ocean's action. Light and look are those of each frame, and need no keys before a shot is written.
 """
 
+import copy
+
 import bpy
 import numpy as np
 
@@ -15,14 +17,19 @@ from .properties import BY_PATH, FIELDS, PLACE, shortest
 # Of the range of a number's values: how far straight lines between its keys may leave its curve. Each key of the sea is a sea.
 SEA_TOLERANCE, TOLERANCE = 0.02, 1e-3
 MOST_FRAMES = 20000  # a longer curve is looked at so often
+MOST_KEYS = 30  # of the sea: where a curve needs more, they leave it by more
+
+MAY_HAVE_KEYS = [field for field in FIELDS if field.key["may_have_keys"]]
+OF_SEA = [field for field in MAY_HAVE_KEYS if field.table in ("sea", "waves")]
 
 
-def may_have_keys():
-    return [field for field in FIELDS if field.key["may_have_keys"]]
-
-
-def of_sea():
-    return [field for field in may_have_keys() if field.table in ("sea", "waves")]
+def keys_of_sea_through(frames, values, is_angle):
+    tolerance = SEA_TOLERANCE
+    while True:
+        keys = keys_through(frames, values, tolerance, is_angle)
+        if not isinstance(keys, dict) or len(keys["keys"]) <= MOST_KEYS:
+            return keys
+        tolerance *= 1.5
 
 
 def keys_through(frames, values, tolerance, is_angle=False):
@@ -38,8 +45,10 @@ def keys_through(frames, values, tolerance, is_angle=False):
     rises = np.where(np.abs(rises) > 1e-6 * np.ptp(values), np.sign(rises), 0.0)
     turns = np.flatnonzero(np.diff(rises, prepend=0.0, append=0.0))  # where it begins to rise, to fall or to stay
     kept, how = turns, "smooth"
-    if np.abs(_gently(frames, values, turns) - values).max() > near:
-        kept, how = sorted({turns[0], turns[-1], *_corners(frames, values, turns[0], turns[-1], near)}), "linear"
+    if (len(turns) > MOST_KEYS or np.abs(_gently(frames, values, turns) - values).max() > near
+            or is_angle and np.abs(np.diff(values[turns])).max() >= 180.0):
+        # From key to key the core turns an angle the short way: the long one has more of them.
+        kept, how = sorted({turns[0], turns[-1], *_corners(frames, values, turns[0], turns[-1], near, 180.0 if is_angle else np.inf)}), "linear"
     return {"keys": tuple((int(frames[i]), _within(values[i], is_angle)) for i in kept), "interpolation": how}
 
 
@@ -55,16 +64,17 @@ def _gently(frames, values, turns):
     return values[first] + t * t * (3.0 - 2.0 * t) * (values[last] - values[first])
 
 
-def _corners(frames, values, first, last, near):
-    """Indices between two at which straight lines have to turn."""
+def _corners(frames, values, first, last, near, most):
+    """Indices between two at which straight lines have to turn, or which part them so that each changes by less than the most."""
     found, spans = [], [(first, last)]
     while spans:
         first, last = spans.pop()
         inside = slice(first + 1, last)
         line = np.interp(frames[inside], (frames[first], frames[last]), (values[first], values[last]))
         off = np.abs(values[inside] - line)
-        if off.size and off.max() > near:
-            middle = first + 1 + int(off.argmax())
+        is_off = off.size and off.max() > near
+        if is_off or off.size and abs(values[last] - values[first]) >= most:
+            middle = first + 1 + int(off.argmax()) if is_off else (first + last) // 2
             found.append(middle)
             spans += [(first, middle), (middle, last)]
     return found
@@ -77,51 +87,51 @@ def keys_of(settings):
         if all(value == values[0] for value in values):
             continue
         if field.key["may_have_keys"] and all(isinstance(value, float) for value in values):
-            tolerance = SEA_TOLERANCE if field in of_sea() else TOLERANCE
-            keys[field.path] = keys_through(list(settings), values, tolerance, field.key["is_angle"])
+            arguments = list(settings), values, field.key["is_angle"]
+            keys[field.path] = keys_of_sea_through(*arguments) if field in OF_SEA else keys_through(*arguments[:2], TOLERANCE, arguments[2])
         else:
             others.append(field.path)
     return keys, others
 
 
-_read = {}  # what an F-curve is made of → its keys
+_read = {}  # an F-curve's values → its keys
 
 
-def keys_of_sea(obj, settings, frame):
-    """{path: keys} of the sea's numbers that an original ocean's F-curves change. settings: as evaluated at the frame. A number whose value isn't its curve's just now (a
-    driver's, another action's, one that is being dragged) has none: the sea is then that of the frame."""
-    if obj.animation_data is None or obj.animation_data.action is None:
+def keys_of_sea(obj, settings, bpy_scene):
+    """{path: keys} of the sea's numbers that an original ocean's F-curves change. settings: as evaluated at the scene's frame. A
+    number that something else has a say in (a driver, the NLA, who drags it) has none: the sea is then that of the frame."""
+    animation = obj.animation_data
+    if animation is None or animation.action is None or animation.use_nla and len(animation.nla_tracks):
         return {}
     curves = {curve.data_path: curve for curve in compat.curves(obj)}
+    driven = {driver.data_path for driver in animation.drivers}
     found = {}
-    for field in of_sea():
-        curve, value = curves.get(f"pelagic.{field.table}.{field.name}"), settings[PLACE[field.path]]
-        if curve is None or curve.mute or not isinstance(value, float) or not len(curve.keyframe_points):
+    for field in OF_SEA:
+        path, value = f"pelagic.{field.table}.{field.name}", settings[PLACE[field.path]]
+        curve = curves.get(path)
+        if curve is None or path in driven or curve.mute or curve.group and curve.group.mute or not isinstance(value, float):
             continue
-        if abs(curve.evaluate(frame) - value) <= 1e-5 * abs(value):
-            keys = _of_curve(curve, field.key["is_angle"])
-            if isinstance(keys, dict):
-                found[field.path] = keys
+        low, high = field.key["range"]  # that Blender keeps its properties in
+        if not len(curve.keyframe_points) or abs(min(max(curve.evaluate(bpy_scene.frame_current_final), low), high) - value) > 1e-5 * abs(value):
+            continue
+        keys = _of_curve(curve, field, bpy_scene)
+        if isinstance(keys, dict):
+            found[field.path] = keys
     return found
 
 
-def _of_curve(curve, is_angle):
-    points = curve.keyframe_points
-    numbers = np.empty((3, 2 * len(points)), np.float32)
-    words = np.empty(len(points), np.int32)
-    for row, name in zip(numbers, ("co", "handle_left", "handle_right")):
-        points.foreach_get(name, row)
-    points.foreach_get("interpolation", words)
-    made_of = is_angle, numbers.tobytes(), words.tobytes(), curve.extrapolation, repr([modifier.type for modifier in curve.modifiers])
-    if made_of not in _read or curve.modifiers:
+def _of_curve(curve, field, bpy_scene):
+    ends = [curve.keyframe_points[end].co.x for end in (0, -1)]
+    if curve.modifiers or curve.extrapolation == "LINEAR":  # it goes on beyond them
+        ends = min(ends[0], bpy_scene.frame_start), max(ends[1], bpy_scene.frame_end)
+    first, last = int(np.floor(ends[0])), int(np.ceil(ends[1]))
+    frames = np.unique(np.linspace(first, last, min(last - first + 1, MOST_FRAMES)).astype(int))
+    values = np.clip([curve.evaluate(frame) for frame in frames.tolist()], *field.key["range"])
+    made_of = field.path, first, last, values.tobytes()
+    if made_of not in _read:
         if len(_read) > 64:
             _read.clear()
-        first, last = int(np.floor(numbers[0, 0])), int(np.ceil(numbers[0, -2]))
-        if curve.modifiers or curve.extrapolation == "LINEAR":
-            scene = bpy.context.scene
-            first, last = min(first, scene.frame_start), max(last, scene.frame_end)
-        frames = np.unique(np.linspace(first, last, min(last - first + 1, MOST_FRAMES)).astype(int))
-        _read[made_of] = keys_through(frames, [curve.evaluate(frame) for frame in frames.tolist()], SEA_TOLERANCE, is_angle)
+        _read[made_of] = keys_of_sea_through(frames, values, field.key["is_angle"])
     return _read[made_of]
 
 
@@ -129,7 +139,7 @@ def put(scene, keys):
     """A pelagic.Scene with these keys, {path: keys}; itself without any."""
     if not keys:
         return scene
-    made = scene.at(scene.shot.frames[0])
+    made = copy.copy(scene)
     for path, each in keys.items():
         setattr(getattr(made, BY_PATH[path].table), BY_PATH[path].name, each)
     return made
@@ -153,18 +163,20 @@ def with_numbers(settings, read, keys):
 
 def keyframe(obj, shot):
     """Gives an ocean the F-curves of a shot's numbers that have keys."""
-    for field in may_have_keys():
+    for field in MAY_HAVE_KEYS:
         number = getattr(getattr(shot, field.table), field.name)
         if not isinstance(number, dict):
             continue
         keys = dict(number["keys"])
         is_smooth = number["interpolation"] == "smooth"
-        if len(keys) > 1 and (field.key["is_angle"] or is_smooth and len(keys) > 2):  # the core's curves, which aren't Blender's
+        if is_smooth and len(keys) > 2:  # the core's curves, which aren't Blender's
             keys = {frame: getattr(getattr(shot.at(frame), field.table), field.name) for frame in range(min(keys), max(keys) + 1)}
             is_smooth = False
+        if field.key["is_angle"]:
+            keys = dict(zip(keys, np.degrees(np.unwrap(np.radians(list(keys.values()))))))
         group, path = getattr(obj.pelagic, field.table), f"pelagic.{field.table}.{field.name}"
         for frame, value in keys.items():
-            field.write(group, value)
+            field.write(group, shortest(float(value)))
             obj.keyframe_insert(path, frame=frame)
         curve = next(curve for curve in compat.curves(obj) if curve.data_path == path)
         for point in curve.keyframe_points:

@@ -64,13 +64,14 @@ def _draw_own(layout, settings, *names):
 
 
 def _draw_switch(row, group, switch, otherwise):
-    """A pencil before a value of the artist's own, or the word that says what it is without one. An empty tick box beside that
-    word reads as what is off. Returns whether there is a value."""
-    is_own = getattr(group, switch)
-    if not is_own:
-        row.label(text=otherwise)
+    """A pencil after a value of the artist's own, or after the word that says what it is without one: an empty tick box beside that
+    word reads as what is off. Returns where the value is to be drawn; None where there is none."""
+    value = row.row(align=True)
     row.prop(group, switch, text="", icon="GREASEPENCIL")
-    return is_own
+    if getattr(group, switch):
+        return value
+    value.label(text=otherwise)
+    return None
 
 
 def _draw_field(layout, group, field):
@@ -78,8 +79,10 @@ def _draw_field(layout, group, field):
         _draw_list(layout, group, field)
         return
     row = _labelled(layout, field.key["label"])
-    if field.switch and not _draw_switch(row, group, field.switch, "automatic" if field.absent is None else "infinite"):
-        return
+    if field.switch:
+        row = _draw_switch(row, group, field.switch, "automatic" if field.absent is None else "infinite")
+        if row is None:
+            return
     unit = unit_of(field.key)
     if field.key["type"] == "words":
         row.column().prop(group, field.name, text="", expand=True)
@@ -124,8 +127,9 @@ def _draw_water(layout, obj):
         if path in BY_PATH and counts(BY_PATH[path], settings) and _matters(BY_PATH[path], settings):
             _draw_field(layout, getattr(settings, BY_PATH[path].table), BY_PATH[path])
     row = _labelled(layout, settings.bl_rna.properties["see_through"].name)
-    if _draw_switch(row, settings, "see_through_by_hand", "automatic"):
-        row.prop(settings, "see_through", text="")
+    value = _draw_switch(row, settings, "see_through_by_hand", "automatic")
+    if value is not None:
+        value.prop(settings, "see_through", text="")
     clear_m = depths.clear_to_m(scene) if scene else None
     if clear_m:
         layout.label(text=say("Clear down to {:.0f} m", clear_m) if clear_m >= 3.0 else say("Clear down to {:.1f} m", clear_m), translate=False)
@@ -137,7 +141,7 @@ def _why_seen_through(obj, scene, clear_m):
     if depths.UNDER in obj:
         camera = bpy.context.scene.camera
         if camera is not None and camera.type == "CAMERA" and camera.data.clip_start > CLEAR_CLIP_M and obj[depths.UNDER] < NEAR_SURFACE_M:
-            return "The camera is under water. Where the surface comes close, its Clip Start cuts it away: 0.01 m leaves it there"
+            return "The camera is under water. Where the surface comes close, the camera's Clip Start cuts it away: 0.01 m leaves it there"
         return "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows"
     if scene.sea.depth_m >= clear_m:
         return "The floor is too deep to show: the water is opaque in Cycles"
@@ -188,8 +192,6 @@ class Main:
                 draw_words(layout.box(), simulation.problem)
             elif simulation.is_building or simulation.sea:
                 _draw_state(layout, context.object, simulation)
-                for warning in simulation.warnings:
-                    draw_words(layout.box(), warning)
 
 
 def _draw_state(layout, obj, simulation):

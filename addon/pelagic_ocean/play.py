@@ -144,7 +144,7 @@ class Simulation:
         None where that doesn't matter."""
         try:
             read = _read[obj.name_full] = settings_of(obj.evaluated_get(depsgraph))
-            keys = keyed.keys_of_sea(obj, read, bpy_scene.frame_current_final)
+            keys = keyed.keys_of_sea(obj, read, bpy_scene)
             settings = settled(keyed.with_first(read, keys), obj, bpy_scene, depsgraph)
             surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
             asked = (keyed.with_numbers(settings, read, keys), frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene

@@ -98,7 +98,7 @@ GERMAN = {
     "The object's own mesh": "Das eigene Netz des Objekts",
     "Waves of {} m (significant height)": "Signifikante Wellenhöhe {} m",
     "Clear down to {:.0f} m": "Klar bis {:.0f} m Tiefe", "Clear down to {:.1f} m": "Klar bis {:.1f} m Tiefe",
-    "The camera is under water. Where the surface comes close, its Clip Start cuts it away: 0.01 m leaves it there":
+    "The camera is under water. Where the surface comes close, the camera's Clip Start cuts it away: 0.01 m leaves it there":
         "Die Kamera ist unter Wasser. Wo die Oberfläche nahe kommt, schneidet der Anfang des Sichtbereichs sie weg: 0.01 m lassen sie stehen",
     "The camera is under water: for Cycles it is a volume. EEVEE shows it without caustics or shadows":
         "Die Kamera ist unter Wasser: Für Cycles ist es ein Volumen. EEVEE zeigt es ohne Kaustik und Schatten",

@@ -65,7 +65,7 @@ class Preview:
         """The pelagic.Scene of the ocean as it is set now, or the last one that the core accepts; None before that."""
         turned = obj.matrix_world.to_euler().z
         settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned, light.kept_view(bpy_scene))
-        keys = keyed.keys_of_sea(obj, settings[0], bpy_scene.frame_current_final)
+        keys = keyed.keys_of_sea(obj, settings[0], bpy_scene)
         if (settings, keys) != (self._settings, self._keys):
             self._settings, self._keys = settings, keys
             try:

@@ -53,6 +53,13 @@ with checking("keys through values: straight, gentle, with corners, none; of ang
         assert off <= tolerance and len(keys) < 20, (off, len(keys))
     turned = keyed.keys_through(frames, (350.0 + np.interp(frames, (1, 40), (0.0, 39.0))) % 360.0, 0.001, True)
     assert turned["keys"] == ((1, 350.0), (40, 29.0)), turned
+    for turn_deg in (270.0, -720.0):  # the long way round
+        scene = pelagic.Scene()
+        scene.light.sun_azimuth_deg = keyed.keys_through(frames, np.interp(frames, (1, 40), (0.0, turn_deg)), 0.001, True)
+        off = [(scene.at(frame).light.sun_azimuth_deg - turn_deg * (frame - 1) / 39 + 180.0) % 360.0 - 180.0 for frame in frames.tolist()]
+        assert np.abs(off).max() < 0.01, (turn_deg, scene.light.sun_azimuth_deg)
+    noise = np.random.default_rng(1).uniform(5.0, 15.0, 400)
+    assert len(keyed.keys_of_sea_through(np.arange(400), noise, False)["keys"]) <= keyed.MOST_KEYS
 
 with checking("a wind with keyframes: one sea for all frames, and it is the core's"):
     obj = ocean_of()
@@ -109,6 +116,54 @@ with checking("a driver's sea is that of each frame, and has keys in a shot"):
     assert play.simulation_of(obj).scene.sea.wind_speed_mps == 9.0
     assert exported(obj)[0].sea.wind_speed_mps["keys"] == ((1, 7.0), (4, 10.0))
 
+with checking("a shot of some of the frames has the keys of the sea that plays"):
+    obj = ocean_of(10, 30)
+    keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0})
+    assert exported(obj)[0].sea.wind_speed_mps["keys"] == ((1, 6.0), (40, 14.0))
+
+with checking("easing, a curve that goes on, and one that leaves the range of its number"):
+    def keys_now():
+        scene = bpy.context.scene
+        scene.frame_set(20)
+        return keyed.keys_of_sea(obj, ocean.settings_of(obj), scene)["sea.wind_speed_mps"]["keys"]
+
+    obj = ocean_of()
+    keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0}, "EXPO")
+    curve = curve_of(obj, "sea.wind_speed_mps")
+    before = keys_now()
+    for point in curve.keyframe_points:
+        point.easing = "EASE_OUT"
+    assert keys_now() != before
+    keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0})
+    curve.extrapolation = "LINEAR"
+    assert keys_now()[-1] == (40, 14.0)
+    bpy.context.scene.frame_end = 79
+    assert keys_now()[-1] == (79, 22.0), keys_now()
+    keyframed(obj, "sea.wind_speed_mps", {1: 79.0, 40: 60.0}, "BACK")
+    for point in curve.keyframe_points:
+        point.easing = "EASE_IN"
+    assert max(value for _, value in keys_now()) == 80.0, keys_now()
+
+with checking("what a driver or the NLA decides has no keys, though the curve has the same value"):
+    obj = ocean_of()
+    keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0})
+    assert keyed.keys_of_sea(obj, ocean.settings_of(obj), bpy.context.scene)
+    obj.driver_add("pelagic.sea.wind_speed_mps").driver.expression = "6.0"
+    assert not keyed.keys_of_sea(obj, ocean.settings_of(obj), bpy.context.scene)
+    obj.driver_remove("pelagic.sea.wind_speed_mps")
+    bpy.context.scene.frame_set(1)
+    obj.animation_data.nla_tracks.new().strips.new("Wind", 1, obj.animation_data.action)
+    assert not keyed.keys_of_sea(obj, ocean.settings_of(obj), bpy.context.scene)
+
+with checking("an angle comes in without turning back"):
+    fresh_file()
+    shot = FOLDER / "turns.toml"
+    shot.write_text("[shot]\nframes = [1, 11]\n[light]\nsun_azimuth_deg = { keys = [[1, 350.0], [11, 10.0]] }\n", encoding="utf-8")
+    assert bpy.ops.pelagic.import_shot(filepath=str(shot)) == {"FINISHED"}
+    curve = curve_of(bpy.context.object, "light.sun_azimuth_deg")
+    assert abs(curve.evaluate(10.5) - 369.0) < 0.01, curve.evaluate(10.5)
+    assert exported(bpy.context.object)[0].light.sun_azimuth_deg["keys"] == ((1, 350.0), (11, 10.0))
+
 with checking("what a changing sea can't be is said, and the old one stays"):
     obj = ocean_of()
     keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0})
@@ -125,7 +180,7 @@ for file in ("rising.toml", "sunset.toml"):
         bpy_scene.frame_end = min(bpy_scene.frame_end, bpy_scene.frame_start + 30)  # a frame of it takes long
         after, _ = exported(obj)
         found = 0
-        for field in keyed.may_have_keys():
+        for field in keyed.MAY_HAVE_KEYS:
             was, now = (getattr(getattr(shot, field.table), field.name) for shot in (before, after))
             if not isinstance(was, dict):
                 continue

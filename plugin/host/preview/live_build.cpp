@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/plan/plan.h"
+#include "core/plan/weather.h"
 #include "core/scene/budget.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -26,6 +27,11 @@ namespace {
 MemoryNeed live_memory(const Plan& plan) {
     MemoryNeed need;
     add_sea(need, plan, tbb::this_task_arena::max_concurrency());
+    if (plan.from->weather) {  // a sea that changes is another in each frame that waits
+        Plan one = plan;
+        one.from = plan.from->weather->keys.front().sea;
+        need.add("the sea at the times of frames on their way", 3 * one.sea_bytes(), "give fewer keys, or smaller cascades");
+    }
     std::size_t packed = 0;
     for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))
         packed += static_cast<std::size_t>(plane.size.x) * static_cast<std::size_t>(plane.size.y) *

@@ -439,7 +439,8 @@ class Preview {
 
     std::string water_content() const { return canonical(now_, key_parts(KeyPart::Water)); }
     void take_water() {
-        water_ = make_water(now_);
+        water_of_ = frame_ ? frame_->packed->layout() : nullptr;
+        water_ = water_of_ ? make_water(now_, water_of_->sea().plan().from->spectrum) : make_water(now_);
         water_from_ = water_content();
         take_floor(frame_ ? frame_->build->drawn->rest_m() : 0.0);
     }
@@ -484,10 +485,11 @@ class Preview {
                   floor_before(view));
         const std::shared_ptr<const LiveBuild> before = frame_ ? frame_->build : nullptr;
         frame_ = sea_.newest();
-        if ((frame_ && frame_->build != before) || water_content() != water_from_) {
+        const bool is_other = (frame_ && frame_->build != before) || water_content() != water_from_;
+        if (is_other || (frame_ && frame_->packed->layout() != water_of_)) {  // a sea that changes has its own water at each time
             take_water();
             renderer_.set_water(water_);
-            meter();
+            if (is_other) meter();
         }
         const LiveStatus status = sea_.status();
         if (!std::exchange(readout_.building_sea, status.building)) asked_at_ = Clock::now();
@@ -626,6 +628,8 @@ class Preview {
             foam_of_ = frame_->build;
             foam_view_.reset();
             if (frame_->packed->layout()->has_living_foam()) foam_worker_.emplace(foam_of_->sea);
+            if (foam_worker_ && upload_error_.empty())
+                renderer_.upload_foam(std::make_shared<const PackedFoam>());  // not the last sea's
         }
         const bool is_seen =
             controls_.draw.lighting.whitecaps || controls_.draw.false_colour == FalseColour::Coverage;
@@ -687,6 +691,7 @@ class Preview {
     WaterBody water_;
     std::shared_ptr<const Floor> floor_;  // null: the water has no body
     std::string water_from_, floor_from_;
+    std::shared_ptr<const SeaLayout> water_of_;
     Scene now_;  // the panel's at the frame that plays, without keys
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;

@@ -165,7 +165,6 @@ py::dict described_key(const Key& key) {
     out["required"] = key.is_required;
     out["may_have_keys"] = key.may_have_keys;
     out["is_angle"] = key.is_angle;
-    out["is_angle"] = key.is_angle;
     out["range"] = range_of(key);
     out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());
     out["logarithmic"] = key.soft && key.soft->is_logarithmic;

@@ -192,9 +192,8 @@ class GpuSea {
           prepared_(prepare(without_budget(scene))),
           sea_(std::make_shared<const SeaOverTime<float>>(
               make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
-          frame_(sea_) {
-        take(sea_->first());
-    }
+          frame_(sea_),
+          now_(std::make_shared<Tables>(sea_->first())) {}
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
 
@@ -210,8 +209,8 @@ class GpuSea {
         // Without other tasks of the same TBB meanwhile: the host's own might ask this sea, and wait for themselves.
         tbb::this_task_arena::isolate([&] {
             frame_.set(t_s);
-            if (&layout().sea() != &frame_.sea()) take(frame_.shared_sea());
-            packed_->pack(frame_);
+            if (&now_->layout().sea() != &frame_.sea()) now_ = std::make_shared<Tables>(frame_.shared_sea());
+            now_->packed.pack(frame_);
         });
     }
 
@@ -233,49 +232,51 @@ class GpuSea {
                                   std::string(variant.fragment().body()));
         };
         py::dict made;
-        made["sea"] = pair(ShaderVariant::of_sea(layout(), options, light.map_size));
+        made["sea"] = pair(ShaderVariant::of_sea(now()->layout(), options, light.map_size));
         made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
         return made;
     }
 
-    py::dict uniforms() const { return dict_of(query_uniforms(layout())); }
+    py::dict uniforms() const { return dict_of(query_uniforms(now()->layout())); }
 
-    // Views of the packed frame's memory, which `self` keeps alive.
-    static py::dict textures(const py::object& self) {
-        const auto& sea = self.cast<const GpuSea&>();
-        const auto reading = sea.locked();
+    // Views of the packed frame's memory, which they keep alive.
+    py::dict textures() const {
+        const auto tables = now();
+        const SeaLayout& layout = tables->layout();
+        const py::capsule owner(new std::shared_ptr<Tables>(tables),
+                                [](void* held) { delete static_cast<std::shared_ptr<Tables>*>(held); });
         static constexpr std::array<const char*, 3> kNames{"cell_fields", "pixel_fields", "pixel_fields_2"};
         py::dict made;
-        for (std::size_t p = 0; p < sea.packed_->planes().size(); ++p) {
-            const SeaLayout::Plane& plane = sea.layout().planes()[p];
+        for (std::size_t p = 0; p < tables->packed.planes().size(); ++p) {
+            const SeaLayout::Plane& plane = layout.planes()[p];
             made[kNames[p]] =
-                view_of(self, sea.packed_->planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
+                view_of(owner, tables->packed.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
         }
         if (made.empty()) return made;  // no time was set
-        const int columns = sea.layout().ellipse_columns();
+        const int columns = layout.ellipse_columns();
         made["ellipse_table"] =
-            view_of(self, &sea.ellipse_table_[0].x,
-                    {static_cast<py::ssize_t>(sea.ellipse_table_.size()) / columns, columns, 4});
-        if (!sea.train_table_.empty())
+            view_of(owner, &tables->ellipse_table[0].x,
+                    {static_cast<py::ssize_t>(tables->ellipse_table.size()) / columns, columns, 4});
+        if (!tables->train_table.empty())
             made["train_table"] =
-                view_of(self, &sea.train_table_[0].x,
+                view_of(owner, &tables->train_table[0].x,
                         {SeaLayout::kTrainTexels,
-                         static_cast<py::ssize_t>(sea.train_table_.size()) / SeaLayout::kTrainTexels, 4});
+                         static_cast<py::ssize_t>(tables->train_table.size()) / SeaLayout::kTrainTexels, 4});
         return made;
     }
 
     py::tuple at_origin(std::array<double, 2> origin_m) const {
         const glm::dvec2 origin = checked_origin(origin_m);
         const auto reading = locked();
-        const SeaLayout& layout = *packed_->layout();
+        const SeaLayout& layout = now_->layout();
         py::object cycles = py::none();
         if (layout.has_trains()) {
-            std::vector<float> values = layout.train_cycles(origin, packed_->time_within_loop_s());
+            std::vector<float> values = layout.train_cycles(origin, now_->packed.time_within_loop_s());
             values.resize(std::max<std::size_t>(values.size(), 1));  // a texture has a texel
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
-        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_->time_within_loop_s())),
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, now_->packed.time_within_loop_s())),
                               cycles);
     }
 
@@ -289,12 +290,13 @@ class GpuSea {
         }
         ProjectedGrid grid;
         std::vector<std::array<float, 8>> vertices;
+        const bool has_levels = now()->layout().pixels().footprints_m.size() > 1;
         {
             const OthersMayRun others_may_run;
             const ProjectedGridSize size = projected_grid_needs(view, options).size;
             options.size = {.columns = std::min(size.columns, kMostCells),
                             .rows = std::min(size.rows, kMostCells)};
-            options.has_levels = layout().pixels().footprints_m.size() > 1;
+            options.has_levels = has_levels;
             grid = projected_grid(view, options);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
@@ -306,22 +308,24 @@ class GpuSea {
     }
 
     py::dict foam(const Scene& scene, std::array<double, 2> origin_m, const GpuLight& light) const {
-        const double active =
-            has_living_foam() ? active_foam(layout().sea().plan().from->scene, layout().sea().residual_coverage()) : 1.0;
+        const auto tables = now();
+        const Sea<float>& sea = tables->layout().sea();
+        const double active = has_living_foam() ? active_foam(sea.plan().from->scene, sea.residual_coverage()) : 1.0;
         return dict_of(foam_uniforms(
             foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
     }
     // Hosts ask at each redraw, and it takes milliseconds.
     py::dict water(const Scene& scene) const {
         std::string from = canonical(scene, key_parts(KeyPart::Water));
-        if (water_.empty() || from != water_from_) {
-            water_ = water_uniforms(make_water(scene, layout().sea().plan().from->spectrum));
+        if (const auto tables = now(); tables != water_of_ || from != water_from_) {
+            water_ = water_uniforms(make_water(scene, tables->layout().sea().plan().from->spectrum));
             water_from_ = std::move(from);
+            water_of_ = tables;
         }
         return dict_of(water_);
     }
 
-    bool has_living_foam() const { return layout().has_living_foam(); }
+    bool has_living_foam() const { return now()->layout().has_living_foam(); }
     void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
         if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
             throw py::value_error("t: accepted: a time of at most 1e12 s to either side of 0");
@@ -365,7 +369,8 @@ class GpuSea {
     std::size_t bytes() const {
         std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
         if (foam_) sum += foam_->bytes() + foam_->history_bytes();
-        for (const SeaLayout::Plane& plane : layout().planes())
+        const auto tables = now();
+        for (const SeaLayout::Plane& plane : tables->layout().planes())
             sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
         return sum;
     }
@@ -373,14 +378,20 @@ class GpuSea {
     bool changes() const { return prepared_->weather != nullptr; }
 
   private:
-    const SeaLayout& layout() const { return *packed_->layout(); }
+    // Of a time's sea: the next set() packs another frame into it, or, where the sea changes, makes another.
+    struct Tables {
+        explicit Tables(const std::shared_ptr<const Sea<float>>& sea)
+            : packed(sea, 0), ellipse_table(layout().ellipse_texels()) {
+            if (layout().has_trains()) train_table = layout().train_texels();
+        }
+        const SeaLayout& layout() const { return *packed.layout(); }
 
-    // The sea of a time: with its own tables.
-    void take(const std::shared_ptr<const Sea<float>>& sea) {
-        packed_.emplace(sea, 0);
-        if (layout().has_trains()) train_table_ = layout().train_texels();
-        ellipse_table_ = layout().ellipse_texels();
-        water_.clear();
+        PackedFrame packed;
+        std::vector<glm::vec4> train_table, ellipse_table;
+    };
+    std::shared_ptr<Tables> now() const {
+        const auto reading = locked();
+        return now_;
     }
 
     // Waits without the interpreter: who sets meanwhile may take long.
@@ -423,13 +434,13 @@ class GpuSea {
     std::shared_ptr<const PreparedScene> prepared_;
     std::shared_ptr<const SeaOverTime<float>> sea_;
     Frame<float> frame_;
-    std::optional<PackedFrame> packed_;  // always there
-    std::vector<glm::vec4> train_table_, ellipse_table_;
+    std::shared_ptr<Tables> now_;  // of the time that was set last
     mutable std::mutex mutex_;
     std::shared_ptr<const PackedFoam> foam_;  // what was taken last
     std::optional<FoamThread> foam_thread_;   // of persistent foam that was asked for
     mutable std::vector<Uniform> water_;
     mutable std::string water_from_;
+    mutable std::shared_ptr<const Tables> water_of_;
 };
 
 void add_gpu_light(py::module_& module) {

@@ -66,7 +66,12 @@ class Seas(unittest.TestCase):
         for time_s in (0.0, 1.0):
             shot.set(time_s)
             tables.append({name: pixels.copy() for name, pixels in shot.textures.items()} | {"uniforms": shot.uniforms})
+        alone.set(0.5)
+        held = alone.textures
+        kept = {name: pixels.copy() for name, pixels in held.items()}
         alone.set(1.0)
+        for name, pixels in held.items():  # views of another time's memory
+            self.assertTrue(np.array_equal(pixels, kept[name]), name)
         self.assertNotEqual(tables[0]["uniforms"], tables[1]["uniforms"])
         self.assertFalse(np.array_equal(tables[0]["ellipse_table"], tables[1]["ellipse_table"]))
         self.assertEqual(tables[1]["uniforms"], alone.uniforms)

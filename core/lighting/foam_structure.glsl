@@ -59,19 +59,22 @@ float normal_below(float z) {
     return z > 0.0f ? 1.0f - outside : outside;
 }
 
-uint foam_hash(uint x, uint y, uint layer) {
+// A place on a layer's grid: the cell, and the place in it.
+struct FoamCell {
+    uint x;
+    uint y;
+    uint most;  // cells have numbers up to this, then from 0 again, so that there is no seam
+    vec2 rest;
+};
+
+uint foam_hash(FoamCell at, int right, int up, uint layer) {
+    uint x = (at.x + uint(right)) & at.most;
+    uint y = (at.y + uint(up)) & at.most;
     uint h = (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u + layer * 0xC2B2AE3Du);
     h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
     h = (h ^ (h >> 12u)) * 0x297A2D39u;
     return h ^ (h >> 15u);
 }
-
-// A place on a layer's grid: the cell, and the place in it.
-struct FoamCell {
-    uint x;
-    uint y;
-    vec2 rest;
-};
 
 // `halvings` from the largest cells, moved by some of its own. turned: by 45°, cells √2 times as small, so that layers don't show
 // one grid.
@@ -89,7 +92,7 @@ FoamCell foam_cell(vec2 cell, vec2 rest, int halvings, vec2 moved, bool turned) 
     vec2 low = floor(place);
     // Patterns repeat after 65536 of the largest cells, 2000 km.
     uint most = (65536u << uint(halvings)) - 1u;
-    return FoamCell((x + uint(int(low.x))) & most, (y + uint(int(low.y))) & most, place - low);
+    return FoamCell(x + uint(int(low.x)), y + uint(int(low.y)), most, place - low);
 }
 
 // Normal, variance 1: values at a grid's corners, each a sum of four bytes, and their smooth mean between, scaled to keep the variance.
@@ -101,7 +104,7 @@ float foam_clouds(FoamCell at, uint layer) {
         int x = corner & 1;
         int y = corner >> 1;
         float weight = (x == 1 ? t.x : 1.0f - t.x) * (y == 1 ? t.y : 1.0f - t.y);
-        uint h = foam_hash(at.x + uint(x), at.y + uint(y), layer);
+        uint h = foam_hash(at, x, y, layer);
         float bytes = float((h & 255u) + ((h >> 8u) & 255u) + ((h >> 16u) & 255u) + (h >> 24u));
         sum += weight * (bytes - 510.0f);
         squares += weight * weight;
@@ -116,7 +119,7 @@ float foam_holes(FoamCell at, uint layer) {
     for (int i = 0; i < 9; ++i) {
         int x = i % 3 - 1;
         int y = i / 3 - 1;
-        uint h = foam_hash(at.x + uint(x), at.y + uint(y), layer);
+        uint h = foam_hash(at, x, y, layer);
         // 0.66: no farther from their cells' middles than lets nine cells hold all that is nearer than `farthest`.
         float dx = float(x) + 0.5f + 0.66f * (float(h & 1023u) / 1024.0f - 0.5f) - at.rest.x;
         float dy = float(y) + 0.5f + 0.66f * (float((h >> 10u) & 1023u) / 1024.0f - 0.5f) - at.rest.y;

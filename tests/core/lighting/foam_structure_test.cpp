@@ -287,6 +287,24 @@ TEST(FoamStructure, StaysWithTheWater) {
     }
 }
 
+// The largest cells have numbers that begin again after 65536 of them, also where the origin of the sea's places is: no seam is
+// seen there, along the wind or across it.
+TEST(FoamStructure, HasNoSeamWhereCellsAreNumberedAnew) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> place(-500.0f, 500.0f);
+    const auto pattern = pattern_of(1.0, 0.5, 0.0);
+    for (const bool across : {false, true})
+        for (const float age_s : kAges_s)
+            for (int i = 0; i < 500; ++i) {
+                const float along_m = place(random);
+                const auto shown = [&](float aside_m) {
+                    const glm::vec2 at = across ? glm::vec2(along_m, aside_m) : glm::vec2(aside_m, along_m);
+                    return shading.foam_noise(pattern, at, 0.01f, age_s).shown;
+                };
+                ASSERT_NEAR(shown(-1e-6f), shown(1e-6f), 2e-3f) << across << ", " << age_s << ", " << along_m;
+            }
+}
+
 // Along any of place, footprint and age the pattern has no jump: steps of a 64th change it by less than a third, an eighth at the
 // edges of a net, where it rises as a root.
 TEST(FoamStructure, NeverJumps) {

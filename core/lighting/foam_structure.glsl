@@ -1,9 +1,11 @@
 // What foam looks like from near: a dense, rough roller where waves break, then lace, torn and bent, with round holes of many sizes
-// that grow as bubbles burst, then a faint film, drawn out along the wind. Pixels that don't resolve the pattern show the coverage.
+// that grow as bubbles burst and a film between its threads, drawn out along the wind. Pixels that don't resolve the pattern show the
+// coverage.
 //
 // The pattern is a sum of layers. Each has the normal distribution with variance 1 at a random place, and they are
 // independent, so that the sum with weights whose squares add up to 1 has it too. Foam is thick where the sum is high: it hides the part
-// Φ((s − q √(1 + σ²))/σ) of a place, of softness σ, where q is the quantile of what foam hides of the sea. Of each layer a pixel
+// Φ((s − q √(1 + σ²))/σ) of a place, of softness σ, where q is the quantile of what it hides of the sea: so do its threads, which are
+// crisp, and its film, which is soft. Of each layer a pixel
 // resolves the weight w that its footprint lets through, together a sum s of variance v. The rest is normal with variance 1 − v, and
 // adds that to σ². The mean over the sea is Φ(−q): at any distance, for any age, and for any strength of the pattern, which
 // only scales w.
@@ -213,7 +215,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
     float streaks = min(pattern.look.y * (0.1f + 0.85f * old), 0.65f);
-    float bubbles = 0.05f;
+    float bubbles = 0.11f;
     float lace = (0.6f - 0.3f * young) * (1.0f - kFoamGrain - bubbles - streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
@@ -250,10 +252,16 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     noise.shown += sqrt(lace / all) * lace_shown;
     noise.variance += lace / all * lace_variance;
 
-    float fine = foam_weight(1.0f / 16.0f, footprint_m);
-    if (fine > 0.0f) {
-        noise.shown += sqrt(bubbles) * fine * foam_holes(foam_cell(cells, rest, 9, 8.0f * bent, true), 60u);
-        noise.variance += bubbles * fine * fine;
+    // Bubbles from 1/16 m down, so that right before the lens edges are those of bubbles and not of a soft picture.
+    vec3 of_bubbles = bubbles * vec3(0.45f, 0.32f, 0.23f);
+    for (int k = 0; k < 3; ++k) {
+        float size_m = 0.0625f / float(1 << k);
+        float fine = foam_weight(size_m, footprint_m);
+        if (fine > 0.0f) {
+            noise.shown += sqrt(of_bubbles[k]) * fine *
+                           foam_holes(foam_cell(cells, rest, 9 + k, 0.5f * bent / size_m, k != 1), uint(60 + k));
+            noise.variance += of_bubbles[k] * fine * fine;
+        }
     }
     // Patches down to the roller's own roughness.
     ivec4 halvings = ivec4(3, 5, 6, 8);  // 4, 1, 1/2 and 1/8 m
@@ -286,19 +294,29 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     return noise;
 }
 
-// How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
-// beyond its bubbles.
-float foam_softness(float age_s) {
-    return 0.36f + 0.24f * age_s / (age_s + 4.0f);
-}
-
-// What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place
+// What a pixel hides of the sea, of which a layer of foam hides the share `mean`: where the pattern is high it is thick, and no place
 // has an edge. Thickness is spread by `softness`, as by a normal variable of its own, so that the mean over the sea is Φ(−q),
 // whatever a pixel resolves.
-float foam_opacity_in(FoamNoise noise, float mean, float softness) {
+float foam_layer(FoamNoise noise, float mean, float softness) {
     float soft = softness * softness;
     float level = foam_quantile(mean) * sqrt(1.0f + soft);
     return normal_below((noise.shown - level) * inversesqrt(1.0f - noise.variance + soft));
+}
+
+// Foam is threads and a film between and around them, through which one sees the water. The film hides at most `thin` of a place, and is
+// there on nearly twice what foam hides of the sea, mean · (2 − mean): the threads hide the rest, so that both together hide `mean`.
+// thin < ½: both grow with the mean everywhere. What is young is dense and ends within a hand's breadth; with age the film takes over.
+const float kThreadSoftness = 0.25f;
+const float kFilmSoftness = 0.8f;
+
+float foam_thin(float age_s) {
+    return 0.1f + 0.32f * age_s / (age_s + 3.0f);
+}
+
+float foam_opacity_in(FoamNoise noise, float mean, float thin) {
+    float film = mean * (2.0f - mean);
+    float threads = (mean - thin * film) / (1.0f - thin);
+    return thin * foam_layer(noise, film, kFilmSoftness) + (1.0f - thin) * foam_layer(noise, threads, kThreadSoftness);
 }
 
 // Bubbles lie in heaps: thin foam, and hollows, reflect that much less than the mean. So much light the upper part of the pattern has
@@ -306,11 +324,11 @@ float foam_opacity_in(FoamNoise noise, float mean, float softness) {
 const float kHollows = 0.75f;
 const float kHeaps = 0.7f;  // the part of what is hidden that heaps hide
 
-SeenFoam foam_in(FoamNoise noise, float mean, float white, float softness) {
+SeenFoam foam_in(FoamNoise noise, float mean, float white, float thin) {
     if (!(mean > 0.0f)) return SeenFoam(0.0f, white, 0.0f);
-    float opacity = foam_opacity_in(noise, mean, softness);
+    float opacity = foam_opacity_in(noise, mean, thin);
     float hollows = clamp((0.95f / max(white, 1.0e-3f) - 1.0f) * (kHeaps / (1.0f - kHeaps)), 0.0f, kHollows);
-    float heaps = foam_opacity_in(noise, kHeaps * mean, softness) / (kHeaps * max(opacity, 1.0e-12f));
+    float heaps = foam_opacity_in(noise, kHeaps * mean, thin) / (kHeaps * max(opacity, 1.0e-12f));
     return SeenFoam(opacity, white * (1.0f + hollows * (min(heaps, 1.0f / kHeaps) - 1.0f)), 0.0f);
 }
 
@@ -357,7 +375,7 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     white *= 1.0f + clamp(0.95f / max(white, 1.0e-3f) - 1.0f, 0.0f, kTone * strength) * foam_tone(pattern, rest_m, footprint_m);
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
     noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
-    SeenFoam seen = foam_in(noise, c * mean, white, foam_softness(since_s));
+    SeenFoam seen = foam_in(noise, c * mean, white, foam_thin(since_s));
     // Where pixels are too large for lumps their slopes are lost.
     float relief = exp(-since_s / 3.0f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
     if (relief * seen.opacity > 1.0e-3f) {

@@ -50,7 +50,7 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
                     for (std::size_t c = 0; c < kCoverages.size(); ++c)
                         for (std::size_t d = 0; d < kOpacities.size(); ++d) {
                             const auto seen = shading.foam_in(noise, kCoverages[c] * kOpacities[d], kWhite,
-                                                              shading.foam_softness(age_s));
+                                                              shading.foam_thin(age_s));
                             ASSERT_GE(seen.opacity, 0.0f);
                             ASSERT_LE(seen.opacity, 1.0f);
                             ASSERT_GT(seen.white, 0.0f);
@@ -142,6 +142,22 @@ TEST(FoamStructure, IsThereAndSoft) {
         EXPECT_GT(open, 1000) << age_s;
         EXPECT_GT(thin, 800) << age_s;
         EXPECT_GT(thick, age_s > 0.0f ? 40 : 400) << age_s;
+    }
+}
+
+// Where foam covers nearly all old foam is threads with a film between them, and little open water: of 0.4 opacity a third is
+// translucent. Fresh foam is dense.
+TEST(FoamStructure, HasAThinFilmBetweenThreads) {
+    for (const float age_s : {0.0f, 4.0f, 8.0f}) {
+        int open = 0, film = 0, thick = 0;
+        for (const auto& seen : seen_near(0.9f, age_s > 0.0f ? 0.0f : 0.9f, age_s)) {
+            open += seen.opacity < 0.05f;
+            film += seen.opacity > 0.15f && seen.opacity < 0.6f;
+            thick += seen.opacity > 0.8f;
+        }
+        EXPECT_LT(open, 800) << age_s;
+        EXPECT_TRUE(age_s > 0.0f ? film > 1200 && thick > 400 : film < 800 && thick > 2400)
+            << age_s << ": " << film << ", " << thick;
     }
 }
 

@@ -147,7 +147,7 @@ struct Functions {
                                              vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f),
                                              vec2(0.6f, 0.4f), vec4(16.0f, 0.11f, 0.3f, 0.99f));
                  FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 10.0f * cc, 0.0f);
-                 return vec4(foam_opacity_in(noise, ww, bb), noise.shown, noise.variance, 0.0f);)
+                 return vec4(foam_opacity_in(noise, ww, 0.45f * bb), noise.shown, noise.variance, 0.0f);)
     PELAGIC_BOTH(whole_sea,
                  SeaTerms t = sea_radiance(
                      vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),

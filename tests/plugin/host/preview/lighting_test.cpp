@@ -364,8 +364,9 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     EXPECT_LE(PELAGIC_COMPARE(on, water, 1e-3f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, level, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, foam, 1e-2f).worst, kBound);
-    // A hole's middle is a kink, which makes more of the last digits.
-    EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
+    // A hole's middle is a kink, which makes more of the last digits, and in cells of 1/64 m the last digit of a place is 1e-4 of one. On a
+    // GPU it was 1.9e-3 when the finest cells were four times as large: 8e-3 is not measured there.
+    EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 2e-3f : 2.0f * kEdge);
     // Between texels a place's last digit counts as many times as there are texels.
     EXPECT_LE(PELAGIC_COMPARE(on, foam_picture, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));

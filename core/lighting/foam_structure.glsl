@@ -376,8 +376,8 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
     noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
     SeenFoam seen = foam_in(noise, c * mean, white, foam_thin(since_s));
-    // Where pixels are too large for lumps their slopes are lost.
-    float relief = exp(-since_s / 3.0f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
+    // Where pixels are too large for lumps their slopes are lost. Foam is as high as bubbles are thrown up: what is old lies flat.
+    float relief = exp(-since_s / 1.2f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
     if (relief * seen.opacity > 1.0e-3f) {
         float step_m = max(footprint_m, 0.02f);
         vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);

@@ -1,9 +1,11 @@
 // What foam looks like from near: a dense, rough roller where waves break, then lace, torn and bent, with round holes of many sizes
-// that grow as bubbles burst, then a faint film, drawn out along the wind. Pixels that don't resolve the pattern show the coverage.
+// that grow as bubbles burst and a film between its threads, drawn out along the wind. Pixels that don't resolve the pattern show the
+// coverage.
 //
 // The pattern is a sum of layers. Each has the normal distribution with variance 1 at a random place, and they are
 // independent, so that the sum with weights whose squares add up to 1 has it too. Foam is thick where the sum is high: it hides the part
-// Φ((s − q √(1 + σ²))/σ) of a place, of softness σ, where q is the quantile of what foam hides of the sea. Of each layer a pixel
+// Φ((s − q √(1 + σ²))/σ) of a place, of softness σ, where q is the quantile of what it hides of the sea: so do its threads, which are
+// crisp, and its film, which is soft. Of each layer a pixel
 // resolves the weight w that its footprint lets through, together a sum s of variance v. The rest is normal with variance 1 − v, and
 // adds that to σ². The mean over the sea is Φ(−q): at any distance, for any age, and for any strength of the pattern, which
 // only scales w.
@@ -59,19 +61,22 @@ float normal_below(float z) {
     return z > 0.0f ? 1.0f - outside : outside;
 }
 
-uint foam_hash(uint x, uint y, uint layer) {
+// A place on a layer's grid: the cell, and the place in it.
+struct FoamCell {
+    uint x;
+    uint y;
+    uint most;  // cells have numbers up to this, then from 0 again, so that there is no seam
+    vec2 rest;
+};
+
+uint foam_hash(FoamCell at, int right, int up, uint layer) {
+    uint x = (at.x + uint(right)) & at.most;
+    uint y = (at.y + uint(up)) & at.most;
     uint h = (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u + layer * 0xC2B2AE3Du);
     h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
     h = (h ^ (h >> 12u)) * 0x297A2D39u;
     return h ^ (h >> 15u);
 }
-
-// A place on a layer's grid: the cell, and the place in it.
-struct FoamCell {
-    uint x;
-    uint y;
-    vec2 rest;
-};
 
 // `halvings` from the largest cells, moved by some of its own. turned: by 45°, cells √2 times as small, so that layers don't show
 // one grid.
@@ -89,7 +94,7 @@ FoamCell foam_cell(vec2 cell, vec2 rest, int halvings, vec2 moved, bool turned) 
     vec2 low = floor(place);
     // Patterns repeat after 65536 of the largest cells, 2000 km.
     uint most = (65536u << uint(halvings)) - 1u;
-    return FoamCell((x + uint(int(low.x))) & most, (y + uint(int(low.y))) & most, place - low);
+    return FoamCell(x + uint(int(low.x)), y + uint(int(low.y)), most, place - low);
 }
 
 // Normal, variance 1: values at a grid's corners, each a sum of four bytes, and their smooth mean between, scaled to keep the variance.
@@ -101,7 +106,7 @@ float foam_clouds(FoamCell at, uint layer) {
         int x = corner & 1;
         int y = corner >> 1;
         float weight = (x == 1 ? t.x : 1.0f - t.x) * (y == 1 ? t.y : 1.0f - t.y);
-        uint h = foam_hash(at.x + uint(x), at.y + uint(y), layer);
+        uint h = foam_hash(at, x, y, layer);
         float bytes = float((h & 255u) + ((h >> 8u) & 255u) + ((h >> 16u) & 255u) + (h >> 24u));
         sum += weight * (bytes - 510.0f);
         squares += weight * weight;
@@ -116,7 +121,7 @@ float foam_holes(FoamCell at, uint layer) {
     for (int i = 0; i < 9; ++i) {
         int x = i % 3 - 1;
         int y = i / 3 - 1;
-        uint h = foam_hash(at.x + uint(x), at.y + uint(y), layer);
+        uint h = foam_hash(at, x, y, layer);
         // 0.66: no farther from their cells' middles than lets nine cells hold all that is nearer than `farthest`.
         float dx = float(x) + 0.5f + 0.66f * (float(h & 1023u) / 1024.0f - 0.5f) - at.rest.x;
         float dy = float(y) + 0.5f + 0.66f * (float((h >> 10u) & 1023u) / 1024.0f - 0.5f) - at.rest.y;
@@ -210,7 +215,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
     float streaks = min(pattern.look.y * (0.1f + 0.85f * old), 0.65f);
-    float bubbles = 0.05f;
+    float bubbles = 0.11f;
     float lace = (0.6f - 0.3f * young) * (1.0f - kFoamGrain - bubbles - streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
@@ -247,10 +252,16 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     noise.shown += sqrt(lace / all) * lace_shown;
     noise.variance += lace / all * lace_variance;
 
-    float fine = foam_weight(1.0f / 16.0f, footprint_m);
-    if (fine > 0.0f) {
-        noise.shown += sqrt(bubbles) * fine * foam_holes(foam_cell(cells, rest, 9, 8.0f * bent, true), 60u);
-        noise.variance += bubbles * fine * fine;
+    // Bubbles from 1/16 m down, so that right before the lens edges are those of bubbles and not of a soft picture.
+    vec3 of_bubbles = bubbles * vec3(0.45f, 0.32f, 0.23f);
+    for (int k = 0; k < 3; ++k) {
+        float size_m = 0.0625f / float(1 << k);
+        float fine = foam_weight(size_m, footprint_m);
+        if (fine > 0.0f) {
+            noise.shown += sqrt(of_bubbles[k]) * fine *
+                           foam_holes(foam_cell(cells, rest, 9 + k, 0.5f * bent / size_m, k != 1), uint(60 + k));
+            noise.variance += of_bubbles[k] * fine * fine;
+        }
     }
     // Patches down to the roller's own roughness.
     ivec4 halvings = ivec4(3, 5, 6, 8);  // 4, 1, 1/2 and 1/8 m
@@ -283,19 +294,29 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     return noise;
 }
 
-// How deep a film foam is, in deviations of the pattern: what is young ends within a hand's breadth, and what is old fades out far
-// beyond its bubbles.
-float foam_softness(float age_s) {
-    return 0.36f + 0.24f * age_s / (age_s + 4.0f);
-}
-
-// What a pixel hides of the sea, of which foam hides the share `mean`: where the pattern is high foam is thick, and no place
+// What a pixel hides of the sea, of which a layer of foam hides the share `mean`: where the pattern is high it is thick, and no place
 // has an edge. Thickness is spread by `softness`, as by a normal variable of its own, so that the mean over the sea is Φ(−q),
 // whatever a pixel resolves.
-float foam_opacity_in(FoamNoise noise, float mean, float softness) {
+float foam_layer(FoamNoise noise, float mean, float softness) {
     float soft = softness * softness;
     float level = foam_quantile(mean) * sqrt(1.0f + soft);
     return normal_below((noise.shown - level) * inversesqrt(1.0f - noise.variance + soft));
+}
+
+// Foam is threads and a film between and around them, through which one sees the water. The film hides at most `thin` of a place, and is
+// there on nearly twice what foam hides of the sea, mean · (2 − mean): the threads hide the rest, so that both together hide `mean`.
+// thin < ½: both grow with the mean everywhere. What is young is dense and ends within a hand's breadth; with age the film takes over.
+const float kThreadSoftness = 0.25f;
+const float kFilmSoftness = 0.8f;
+
+float foam_thin(float age_s) {
+    return 0.1f + 0.32f * age_s / (age_s + 3.0f);
+}
+
+float foam_opacity_in(FoamNoise noise, float mean, float thin) {
+    float film = mean * (2.0f - mean);
+    float threads = (mean - thin * film) / (1.0f - thin);
+    return thin * foam_layer(noise, film, kFilmSoftness) + (1.0f - thin) * foam_layer(noise, threads, kThreadSoftness);
 }
 
 // Bubbles lie in heaps: thin foam, and hollows, reflect that much less than the mean. So much light the upper part of the pattern has
@@ -303,11 +324,11 @@ float foam_opacity_in(FoamNoise noise, float mean, float softness) {
 const float kHollows = 0.75f;
 const float kHeaps = 0.7f;  // the part of what is hidden that heaps hide
 
-SeenFoam foam_in(FoamNoise noise, float mean, float white, float softness) {
+SeenFoam foam_in(FoamNoise noise, float mean, float white, float thin) {
     if (!(mean > 0.0f)) return SeenFoam(0.0f, white, 0.0f);
-    float opacity = foam_opacity_in(noise, mean, softness);
+    float opacity = foam_opacity_in(noise, mean, thin);
     float hollows = clamp((0.95f / max(white, 1.0e-3f) - 1.0f) * (kHeaps / (1.0f - kHeaps)), 0.0f, kHollows);
-    float heaps = foam_opacity_in(noise, kHeaps * mean, softness) / (kHeaps * max(opacity, 1.0e-12f));
+    float heaps = foam_opacity_in(noise, kHeaps * mean, thin) / (kHeaps * max(opacity, 1.0e-12f));
     return SeenFoam(opacity, white * (1.0f + hollows * (min(heaps, 1.0f / kHeaps) - 1.0f)), 0.0f);
 }
 
@@ -354,9 +375,9 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     white *= 1.0f + clamp(0.95f / max(white, 1.0e-3f) - 1.0f, 0.0f, kTone * strength) * foam_tone(pattern, rest_m, footprint_m);
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
     noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
-    SeenFoam seen = foam_in(noise, c * mean, white, foam_softness(since_s));
-    // Where pixels are too large for lumps their slopes are lost.
-    float relief = exp(-since_s / 3.0f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
+    SeenFoam seen = foam_in(noise, c * mean, white, foam_thin(since_s));
+    // Where pixels are too large for lumps their slopes are lost. Foam is as high as bubbles are thrown up: what is old lies flat.
+    float relief = exp(-since_s / 1.2f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
     if (relief * seen.opacity > 1.0e-3f) {
         float step_m = max(footprint_m, 0.02f);
         vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);

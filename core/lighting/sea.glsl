@@ -18,6 +18,20 @@ struct SeaTerms {
     vec3 foam;
 };
 
+// The slopes of foam. It lies on the waves as a blanket, by how thick it is: of what a pixel resolves below a metre (kCrestFootprint_m)
+// opaque foam keeps this part, or the ripples below it comb it. The rest makes it rough, as where a pixel doesn't resolve it, so that
+// as much light comes back from near and far. By eye.
+const float kRipplesInFoam = 0.15f;
+
+SlopeFrame frame_of_foam(vec3 normal, vec3 slope_variance, float opacity, vec3 to_eye, vec3 crest) {
+    vec2 slope = vec2(-normal.x, -normal.y) / max(normal.z, 0.1f);
+    vec2 hidden = (opacity * (1.0f - kRipplesInFoam)) * (slope - vec2(crest.x, crest.y));
+    hidden /= max(sqrt(dot(hidden, hidden)), 1.0f);  // of a crest that folds
+    vec2 shown = slope - hidden;
+    return slope_frame(facing_normal(normalize(vec3(-shown.x, -shown.y, 1.0f)), to_eye),
+                       slope_variance + vec3(hidden.x * hidden.x, hidden.y * hidden.y, hidden.x * hidden.y));
+}
+
 // to_eye, normal: unit vectors, world axes; the normal may face away. slope_variance: (σxx, σyy, σxy) of the
 // unresolved waves, world axes. Each term is weighted by its share of the pixel (what opaque foam hides, and the rest for the others);
 // their sum is the radiance.
@@ -29,7 +43,10 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam se
     if (kWhitecaps) {
         // Waves hide foam as they hide the water between: its share of what is seen is its share of the sea.
         clear = 1.0f - seen.opacity;
-        terms.foam = seen.opacity * foam_radiance(to_eye, light.sun_direction, frame, light.sun_radiance,
+        SlopeFrame foam = frame;
+        if (seen.opacity > 1.0e-3f && dot(body.crest, body.crest) > 0.0f)  // 0: nobody knows
+            foam = frame_of_foam(normal, slope_variance, seen.opacity, to_eye, body.crest);
+        terms.foam = seen.opacity * foam_radiance(to_eye, light.sun_direction, foam, light.sun_radiance,
                                                   light.sun_angular_radius, light.sky_irradiance, seen.white, seen.slope);
     }
     if (kSky) terms.sky = clear * sky_reflection(to_eye, frame);

@@ -12,6 +12,16 @@ float film_curve(float x) {
     return 1.0f / (1.0f + pow(half_way / max(x, least), contrast));
 }
 
+// The toe: what is left of light of this luminance. By day the darks of a sea are only one to three stops below middle grey, and the curve
+// goes by the strongest component, a sea's blue, where it is still flat: shadows were grey. Luminances between black and middle grey are
+// lowered, most at a third of it, which makes the first stop's contrast 1.8 (1.4 without) and the second's 1.6; what is much darker is
+// hardly lowered, so that dusk and night keep their tones. Middle grey and all that is brighter stay.
+float toe(float luminance) {
+    float lowered = 0.2f;
+    float part = clamp(luminance / 0.18f, 0.0f, 1.0f);
+    return 1.0f - lowered * 6.75f * part * (1.0f - part) * (1.0f - part);  // p(1 − p)² is 1/6.75 at most
+}
+
 // IEC 61966-2-1, for linear values 0 … 1.
 float srgb_encoded(float linear) {
     if (linear <= 0.0031308f) return 12.92f * linear;
@@ -48,6 +58,7 @@ vec3 colour_of_oklab(vec3 lab) {
 // a low sun's light keeps two thirds of its saturation two stops above white paper, and the sun's disc is white.
 vec3 display_colour(vec3 radiance, float exposure) {
     vec3 light = clamp(radiance * exposure, vec3(0.0f), vec3(1e30f));  // no ratios of infinities
+    light *= toe(dot(vec3(0.2126f, 0.7152f, 0.0722f), light));
     float strongest = max(max(light.x, light.y), light.z);
     if (!(strongest > 0.0f)) return vec3(0.0f);
     float shown = film_curve(strongest);

@@ -391,6 +391,18 @@ void keep_horizon(std::vector<Row>& rows, double horizon_m) {
     if (nearest + 1 < rows.size()) rows[nearest].radius_m = horizon_m;
 }
 
+// The half width of a row of whose neighbourhood `seen` is in view, as waves move its points by reach_m: within the reach all of
+// the circle, and from kNear reaches on no more than that asks for. Between it narrows evenly: columns that jump there make a row of
+// long, skewed triangles right before a camera in a trough, which look like a wall with combed ripples.
+double reached_width(double seen, double radius_m, double reach_m) {
+    if (!(reach_m > 0.0)) return seen;
+    const double reaches = radius_m / reach_m;
+    const double asked = std::min(seen + std::asin(1.0 / reaches), kPi);
+    if (reaches >= kNear) return asked;
+    const double far = std::min(seen + std::asin(1.0 / kNear), kPi);
+    return std::max(asked, far + (kPi - far) * (kNear - reaches) / (kNear - 1.0));
+}
+
 // The rows of a pose: count + 1 of them, or as many as the pose needs if count is 0.
 std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, const Station& at,
                          double cell_angle, int count) {
@@ -440,9 +452,9 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
                             std::min(at.earth.flat_of(ring.last), 8.0 * at.farthest_m)};
         std::optional<double> half;
         if (ring.first <= reach_m && reach_m > 0.0)
-            half = kPi;
+            half = kPi;  // whatever is in view
         else if (const auto seen_half = half_width(slab, reached))
-            half = *seen_half + (reach_m > 0.0 ? std::asin(reach_m / ring.first) : 0.0);
+            half = reached_width(*seen_half, ring.first, reach_m);
         rows[i].half_width = std::min(half.value_or(std::atan(view.tan_half_width)), kPi);
         rows[i].in_view = rows[i].radius_m >= seen.first && rows[i].radius_m <= seen.last;
         rows[i].fine = rows[i].in_view && rows[i].radius_m >= kNear * reach_m;

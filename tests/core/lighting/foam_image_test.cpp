@@ -56,7 +56,7 @@ TEST(FoamImage, HasTheCoverageAsItsMean) {
             variance = static_cast<double>(noise.variance);
             for (std::size_t c = 0; c < kShares.size(); ++c)
                 sum[c] +=
-                    static_cast<double>(of_picture.foam_opacity_in(noise, 0.4f * kShares[c], 0.6f)) / kPlaces;
+                    static_cast<double>(of_picture.foam_opacity_in(noise, 0.4f * kShares[c], 0.3f)) / kPlaces;
         }
         EXPECT_NEAR(squares, variance, 0.06 * variance + 1e-3) << footprint_m;
         for (std::size_t c = 0; c < kShares.size(); ++c) {

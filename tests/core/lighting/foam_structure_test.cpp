@@ -50,7 +50,7 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
                     for (std::size_t c = 0; c < kCoverages.size(); ++c)
                         for (std::size_t d = 0; d < kOpacities.size(); ++d) {
                             const auto seen = shading.foam_in(noise, kCoverages[c] * kOpacities[d], kWhite,
-                                                              shading.foam_softness(age_s));
+                                                              shading.foam_thin(age_s));
                             ASSERT_GE(seen.opacity, 0.0f);
                             ASSERT_LE(seen.opacity, 1.0f);
                             ASSERT_GT(seen.white, 0.0f);
@@ -142,6 +142,22 @@ TEST(FoamStructure, IsThereAndSoft) {
         EXPECT_GT(open, 1000) << age_s;
         EXPECT_GT(thin, 800) << age_s;
         EXPECT_GT(thick, age_s > 0.0f ? 40 : 400) << age_s;
+    }
+}
+
+// Where foam covers nearly all old foam is threads with a film between them, and little open water: of 0.4 opacity a third is
+// translucent. Fresh foam is dense.
+TEST(FoamStructure, HasAThinFilmBetweenThreads) {
+    for (const float age_s : {0.0f, 4.0f, 8.0f}) {
+        int open = 0, film = 0, thick = 0;
+        for (const auto& seen : seen_near(0.9f, age_s > 0.0f ? 0.0f : 0.9f, age_s)) {
+            open += seen.opacity < 0.05f;
+            film += seen.opacity > 0.15f && seen.opacity < 0.6f;
+            thick += seen.opacity > 0.8f;
+        }
+        EXPECT_LT(open, 800) << age_s;
+        EXPECT_TRUE(age_s > 0.0f ? film > 1200 && thick > 400 : film < 800 && thick > 2400)
+            << age_s << ": " << film << ", " << thick;
     }
 }
 
@@ -285,6 +301,24 @@ TEST(FoamStructure, StaysWithTheWater) {
         const double mean = sum / count;
         EXPECT_NEAR(squares / count - mean * mean, 0.9, 0.35);
     }
+}
+
+// The largest cells have numbers that begin again after 65536 of them, also where the origin of the sea's places is: no seam is
+// seen there, along the wind or across it.
+TEST(FoamStructure, HasNoSeamWhereCellsAreNumberedAnew) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> place(-500.0f, 500.0f);
+    const auto pattern = pattern_of(1.0, 0.5, 0.0);
+    for (const bool across : {false, true})
+        for (const float age_s : kAges_s)
+            for (int i = 0; i < 500; ++i) {
+                const float along_m = place(random);
+                const auto shown = [&](float aside_m) {
+                    const glm::vec2 at = across ? glm::vec2(along_m, aside_m) : glm::vec2(aside_m, along_m);
+                    return shading.foam_noise(pattern, at, 0.01f, age_s).shown;
+                };
+                ASSERT_NEAR(shown(-1e-6f), shown(1e-6f), 2e-3f) << across << ", " << age_s << ", " << along_m;
+            }
 }
 
 // Along any of place, footprint and age the pattern has no jump: steps of a 64th change it by less than a third, an eighth at the

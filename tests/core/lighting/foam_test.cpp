@@ -166,5 +166,36 @@ TEST(Water, ShareThatStaysInside) {
     EXPECT_NEAR(sum, 0.48, 0.01);
 }
 
+// Opaque foam damps the ripples below it: of the difference that they make to its light a part is left, and the mean stays (at slopes of 0.3
+// it is 6 % less). A film rides on them, and without foam, or where nothing is hidden, the frame is the water's.
+TEST(Foam, LiesOnRipplesAsABlanket) {
+    Optics optics;
+    const vec3 to_sun = normalize(vec3(0.6f, 0.0f, 0.5f)), to_eye = normalize(vec3(-0.5f, 0.1f, 0.5f)),
+               variance(0.01f, 0.01f, 0.0f), crest(0.05f, -0.02f, 0.3f);
+    const auto light = [&](float slope, float opacity) {
+        const auto frame = optics.frame_of_foam(normalize(vec3(-crest.x - slope, -crest.y, 1.0f)), variance,
+                                                opacity, to_eye, crest);
+        return static_cast<double>(
+            optics
+                .foam_radiance(to_eye, to_sun, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), 1.0f, 0.0f)
+                .x);
+    };
+    for (const float ripple : {0.12f, 0.16f, 0.2f}) {
+        const double high = light(ripple, 0.0f), low = light(-ripple, 0.0f),
+                     difference = std::abs(high - low);
+        EXPECT_GT(difference, 0.1 * (high + low)) << ripple;
+        EXPECT_LT(std::abs(light(ripple, 1.0f) - light(-ripple, 1.0f)), 0.25 * difference) << ripple;
+        EXPECT_GT(std::abs(light(ripple, 0.2f) - light(-ripple, 0.2f)), 0.75 * difference) << ripple;
+        EXPECT_NEAR((light(ripple, 1.0f) + light(-ripple, 1.0f)) / (high + low), 1.0, 0.03) << ripple;
+    }
+    // A crest that folds: finite, and no rougher than slopes of 1.
+    for (const float z : {1.0f, 0.1f, 0.0f, -0.5f}) {
+        const auto frame =
+            optics.frame_of_foam(normalize(vec3(1.0f, 0.2f, z)), variance, 1.0f, to_eye, crest);
+        EXPECT_LT(frame.variance.x + frame.variance.y, 1.1f) << z;
+        EXPECT_TRUE(std::isfinite(frame.normal.x) && std::isfinite(frame.normal.z)) << z;
+    }
+}
+
 }  // namespace
 }  // namespace pelagic::optics

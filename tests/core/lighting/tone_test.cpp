@@ -31,6 +31,22 @@ TEST(Tone, MiddleGreyStaysWhereItIs) {
     }
 }
 
+// The darks of a sea by day, up to two stops below middle grey, go down steeply. What is brighter is as without a toe, and the tones of
+// a night are nearly as far apart.
+TEST(Tone, HasBlacksByDayAndKeepsTheNight) {
+    const auto shown = [](float light) { return light_of(display_colour(glm::vec3(light), 1.0f).y); };
+    const auto contrast = [&](float bright, float dark) {
+        return std::log(shown(bright) / shown(dark)) / std::log(static_cast<double>(bright / dark));
+    };
+    const auto without = [](double light) { return 1.0 / (1.0 + std::pow(0.4644 / light, 1.6)); };
+    EXPECT_NEAR(contrast(0.18f, 0.09f), 1.8, 0.1);
+    EXPECT_NEAR(contrast(0.09f, 0.045f), 1.6, 0.1);
+    EXPECT_NEAR(shown(0.06f) / without(0.06), std::pow(0.8, 1.6), 0.01);
+    EXPECT_GT(contrast(0.02f, 0.002f), 1.45);
+    for (const double light : {0.18, 0.3, 1.0, 5.0})
+        EXPECT_NEAR(shown(static_cast<float>(light)) / without(light), 1.0, 1e-3);
+}
+
 // More light never makes any component darker, and all stay in 0 … 1, over sixty orders of magnitude. 2e-6:
 // some units in the last place at 1.
 TEST(Tone, RisesWithTheLightAndStaysInRange) {

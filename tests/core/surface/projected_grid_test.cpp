@@ -208,6 +208,33 @@ TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
                         }
 }
 
+// A camera in a trough sees the sea within the waves' reach, where rows span the circle, and beyond it, where they don't: on the way
+// columns leave their direction by less than twice the way to the next row, also at the picture's edge.
+TEST(ProjectedGrid, ColumnsDoNotJumpBeforeACameraInATrough) {
+    for (const double height_m : {0.5, 3.0})
+        for (const double reach_m : {3.0, 12.0}) {
+            const ProjectedGrid grid = projected_grid(
+                view_of({.height_m = height_m, .pitch_deg = 5.0, .fov_deg = 38.0}),
+                {.bounds = {.height_m = reach_m, .reach_m = reach_m}, .significant_height_m = reach_m});
+            const int stride = grid.columns + 1;
+            const glm::vec2 ahead =
+                glm::normalize(grid.rest_m[static_cast<std::size_t>(grid.rows) * stride + grid.columns / 2]);
+            double worst = 0.0;
+            for (int row = 1; row < grid.rows; ++row)
+                for (int column = 0; column < stride; ++column) {
+                    const glm::vec2 here = grid.rest_m[static_cast<std::size_t>(row) * stride + column],
+                                    next = grid.rest_m[static_cast<std::size_t>(row + 1) * stride + column];
+                    if (!(glm::dot(here, ahead) > std::cos(0.35f) * glm::length(here))) continue;  // 20°
+                    const auto sideways = static_cast<double>(std::abs(here.x * next.y - here.y * next.x)) /
+                                          static_cast<double>(glm::length(next));
+                    worst = std::max(worst,
+                                     sideways / static_cast<double>(glm::length(next) - glm::length(here)));
+                }
+            std::printf("    %.1f m, reach %.0f m: %.2f\n", height_m, reach_m, worst);
+            EXPECT_LT(worst, 2.0) << height_m << ' ' << reach_m;
+        }
+}
+
 // The largest side on the screen of a cell whose corners are all in view, not nearer than nearest_m, over a
 // sea at rest.
 double largest_cell_px(const View& view, const ProjectedGrid& grid, double nearest_m) {

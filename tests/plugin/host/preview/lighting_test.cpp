@@ -147,7 +147,7 @@ struct Functions {
                                              vec4(0.6f, 0.8f, 0.02f, 0.006f), vec4(1.0f, 0.5f, 0.8f, 0.1f),
                                              vec2(0.6f, 0.4f), vec4(16.0f, 0.11f, 0.3f, 0.99f));
                  FoamNoise noise = foam_noise(p, 40.0f * vec2(vv.x, nn.y), 10.0f * cc, 0.0f);
-                 return vec4(foam_opacity_in(noise, ww, bb), noise.shown, noise.variance, 0.0f);)
+                 return vec4(foam_opacity_in(noise, ww, 0.45f * bb), noise.shown, noise.variance, 0.0f);)
     PELAGIC_BOTH(whole_sea,
                  SeaTerms t = sea_radiance(
                      vv, nn, ss, SeenFoam(ww, bb, 0.3f - aa),
@@ -364,8 +364,9 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     EXPECT_LE(PELAGIC_COMPARE(on, water, 1e-3f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, level, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, foam, 1e-2f).worst, kBound);
-    // A hole's middle is a kink, which makes more of the last digits.
-    EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
+    // A hole's middle is a kink, which makes more of the last digits, and in cells of 1/64 m the last digit of a place is 1e-4 of one. On a
+    // GPU it was 1.9e-3 when the finest cells were four times as large: 8e-3 is not measured there.
+    EXPECT_LE(PELAGIC_COMPARE(on, foam_structure, 1e-1f).worst, gpu::is_software() ? 2e-3f : 2.0f * kEdge);
     // Between texels a place's last digit counts as many times as there are texels.
     EXPECT_LE(PELAGIC_COMPARE(on, foam_picture, 1e-1f).worst, gpu::is_software() ? 1e-3f : kEdge);
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, bound(kLookedUp));

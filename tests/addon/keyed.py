@@ -147,6 +147,7 @@ with checking("easing, a curve that goes on, and one that leaves the range of it
 with checking("what a driver or the NLA decides has no keys, though the curve has the same value"):
     obj = ocean_of()
     keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0})
+    bpy.context.scene.frame_set(1)
     assert keyed.keys_of_sea(obj, ocean.settings_of(obj), bpy.context.scene)
     obj.driver_add("pelagic.sea.wind_speed_mps").driver.expression = "6.0"
     assert not keyed.keys_of_sea(obj, ocean.settings_of(obj), bpy.context.scene)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/plan/effects.h"
+#include "core/plan/masks.h"
 #include "core/plan/weather.h"
 #include "core/scene/budget.h"
 #include "core/scene/number_keys.h"
@@ -42,6 +43,10 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
     if (spectrum.m0() > 0.0) {
         extent.height_m = std::hypot(extent.height_m, hero_m);
         extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);
+    }
+    if (const std::optional<MasksPlan> masks = plan_masks(scene)) {
+        extent.height_m *= masks->largest();
+        extent.reach_m *= masks->largest();
     }
     return extent;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/plan/breaking.h"
+#include "core/plan/masks.h"
 #include "core/plan/random_tiling.h"
 #include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
@@ -213,6 +214,33 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     return warnings;
 }
 
+// A sea that is cut off within half a wave shows it.
+std::vector<std::string> mask_warning(const PreparedScene& prepared) {
+    const Scene& scene = prepared.scene;
+    const std::optional<MasksPlan> plan = plan_masks(scene);
+    if (!plan || !(prepared.spectrum.m0() > 0.0)) return {};
+    std::vector<std::string> warnings;
+    const double longest_m = kTwoPi / prepared.spectrum.longest_peak_wavenumber();
+    for (std::size_t i = 0; i < scene.waves.masks.size(); ++i) {
+        const WaveMask& mask = scene.waves.masks[i];
+        const double enough_m = std::ceil(0.5 * longest_m);
+        if (mask.waves == 1.0 || mask.edge_m >= 0.5 * longest_m) continue;
+        warnings.push_back(
+            "waves.masks[" + std::to_string(i) + "].edge_m = " + number_text(mask.edge_m) +
+            ": narrower than half the longest waves, of " + number_text(std::round(longest_m)) +
+            " m, which will be seen to end there; edge_m = " + number_text(enough_m) + " would do");
+    }
+    for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {
+        const HeroWave& hero = scene.waves.heroes[h];
+        const double gain = plan->at({hero.east_m, hero.north_m}).waves;
+        if (std::abs(gain - 1.0) < 0.01) continue;
+        warnings.push_back("waves.heroes[" + std::to_string(h) + "].height_m = " +
+                           number_text(hero.height_m) + ": stands where waves.masks make waves " +
+                           number_text(std::round(100.0 * gain) / 100.0) + " times as high, it as well");
+    }
+    return warnings;
+}
+
 }  // namespace
 
 double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
@@ -254,7 +282,7 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     if (prepared.weather) return weather_warnings(*prepared.weather);
     std::vector<std::string> warnings = folding_warning(prepared);
     for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
-                       &hero_warning})
+                       &hero_warning, &mask_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
         warnings.push_back(std::move(thin));

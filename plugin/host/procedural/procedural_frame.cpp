@@ -87,6 +87,7 @@ double most_of(const Frame<float>& frame, Field field) {
     if (plan.trains)
         for (const float amplitude : frame.sea().trains().amplitude[index(field)])
             most += std::abs(static_cast<double>(amplitude));
+    if (plan.masks) most *= plan.masks->largest();
     constexpr double kRounding = 1e-4;  // of hundreds of sums in single precision
     return (1.0 + kRounding) * most;
 }

@@ -361,14 +361,14 @@ class MapPart final : public OutputPart {
             const std::size_t l = texels.size();
             std::vector<glm::vec3>& level = texels.emplace_back(moments.size());
             const auto n = static_cast<std::size_t>(exr::mip_level_size(n_, n_, static_cast<int>(l)).first);
-            // Of a level's texel that of its middle.
             const auto gain = [&](std::size_t i) {
                 if (!plan_.masks || output_.cascade) return 1.0f;
                 const glm::dvec2 texel(static_cast<double>(i % n), static_cast<double>(i / n));
-                const glm::dvec2 from_first =
-                    (texel + 0.5) * static_cast<double>(n_) / static_cast<double>(n) - 0.5;
                 return static_cast<float>(
-                    plan_.masks->at(query().lattice->first_m + query().lattice->spacing_m * from_first).foam);
+                    plan_.masks
+                        ->at(query().lattice->first_m +
+                             query().lattice->spacing_m * n_ / static_cast<double>(n) * texel)
+                        .foam);
             };
             tbb::parallel_for(std::size_t(0), moments.size(), [&](std::size_t i) {
                 const Moments& j = moments[i];

@@ -230,6 +230,22 @@ std::vector<std::string> mask_warning(const PreparedScene& prepared) {
             ": narrower than half the longest waves, of " + number_text(std::round(longest_m)) +
             " m, which will be seen to end there; edge_m = " + number_text(enough_m) + " would do");
     }
+    // Where waves are rougher than a sea that doesn't fold.
+    constexpr double kMuch = 0.05;
+    const SpectralMoments all = all_of(prepared.spectrum, Choppiness::asked(scene));
+    for (std::size_t i = 0; i < scene.waves.masks.size() && !(share_of(all, 1.0) > kMuch); ++i) {
+        const double gain = scene.waves.masks[i].waves, share = gain > 1.0 ? share_of(all, gain) : 0.0;
+        if (!(share > kMuch)) continue;
+        double less = 1.0, more = gain;
+        for (int step = 0; step < 40; ++step) {
+            const double middle = 0.5 * (less + more);
+            (share_of(all, middle) > kMuch ? more : less) = middle;
+        }
+        warnings.push_back("waves.masks[" + std::to_string(i) + "].waves = " + number_text(gain) +
+                           ": the surface folds over itself on " + percent_text(share) +
+                           " % of that place; " + number_text(std::floor(100.0 * less) / 100.0) +
+                           " leaves 5 %");
+    }
     for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {
         const HeroWave& hero = scene.waves.heroes[h];
         const double gain = plan->at({hero.east_m, hero.north_m}).waves;

@@ -270,6 +270,26 @@ TEST(Masks, ACalmHasNoFoamNorHadIt) {
     EXPECT_EQ(foam_round(scene, 0.0), foam_round(plain, 0.0));
 }
 
+// In a sea whose wind has keys, between two of them.
+TEST(Masks, StandInASeaThatChanges) {
+    Scene scene = young_sea();
+    scene.quality.level = QualityLevel::Final;
+    scene.waves.second_order = 0.0;
+    scene.keyed = {{"sea.wind_speed_mps", {{{1, 4.0}, {100, 8.0}}, CameraInterpolation::Linear}}};
+    const auto moved = [&](const Scene& of) {
+        Frame<float> frame(
+            std::make_shared<const SeaOverTime<float>>(make_plan(of, {unfiltered(products(Displacement))})));
+        frame.set(2.0);
+        return sample(frame, 0, {{3.0f, 4.0f}, {700.0f, 0.0f}}).vectors(Displacement);
+    };
+    const auto before = moved(scene);
+    scene.waves.masks = {{.edge_m = 60.0, .waves = 0.5}};
+    const auto after = moved(scene);
+    EXPECT_EQ(after[0], 0.5f * before[0]);
+    EXPECT_EQ(after[1], before[1]);
+    EXPECT_NE(before[0], glm::vec3(0.0f));
+}
+
 TEST(Masks, AreWarnedOfWhereTheirEdgesCutWavesAndRefusedWhereTheyCannotBe) {
     Scene scene;
     scene.waves.masks = {{.edge_m = 5.0, .waves = 0.5}};
@@ -281,6 +301,9 @@ TEST(Masks, AreWarnedOfWhereTheirEdgesCutWavesAndRefusedWhereTheyCannotBe) {
     EXPECT_NE(warned().find("waves.masks[0].edge_m = 5"), std::string::npos) << warned();
     scene.waves.masks[0].edge_m = 200.0;
     EXPECT_EQ(warned().find("waves.masks"), std::string::npos) << warned();
+    scene.waves.masks[0].waves = 4.0;
+    EXPECT_NE(warned().find("waves.masks[0].waves = 4: the surface folds"), std::string::npos) << warned();
+    scene.waves.masks[0].waves = 0.5;
     scene.waves.heroes = {{}};
     EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: stands where waves.masks"), std::string::npos)
         << warned();

@@ -507,25 +507,20 @@ void PreparedQuery<T>::mask_unresolved(const Call& call, Work& work) const {
     for (std::size_t i = 0; i < count; ++i) {
         const LevelBlend<T> blend = call.has_levels ? work.pixels.of[i].blend : LevelBlend<T>{};
         if (const T kept = masks.gains.ripples[i]; kept != T(1)) {
-            std::array<T, kUnresolvedSlopes> calmed{};
-            if (planned_->query.pixel_m[blend.lower] < kSlick_m) {
-                if (call.has_levels && masks.calm_pixels.of[i].is_ellipse) {
-                    Footprint<T> calm = masks.calm_pixels.of[i];
-                    calm.blend = level_blend_of(planned_->query.pixel_m, calm.width_m);
-                    const UnresolvedMoments<double> beside = beside_round(calm);
-                    for (std::size_t m = 0; m < calmed.size(); ++m) calmed[m] = static_cast<T>(beside[m]);
-                }
-            } else {
-                const auto left = [&](std::size_t m) {
-                    return static_cast<double>(moments[m][i]) - slick[m];
-                };
-                const auto possible = possible_moments(
-                    PixelMoments<double>(left(0), left(1), left(2), 0.0, 0.0, 0.0, 0.0, 0.0));
-                calmed = {static_cast<T>(possible.xx), static_cast<T>(possible.xy),
-                          static_cast<T>(possible.yy)};
+            // What is hidden besides a slick's waves: by coarse pixels and grids, or by the ellipse as long as a slick is wide.
+            const auto left = [&](std::size_t m) { return static_cast<double>(moments[m][i]) - slick[m]; };
+            const auto possible =
+                possible_moments(PixelMoments<double>(left(0), left(1), left(2), 0.0, 0.0, 0.0, 0.0, 0.0));
+            std::array<double, kUnresolvedSlopes> calmed{possible.xx, possible.xy, possible.yy};
+            if (call.has_levels && masks.calm_pixels.of[i].is_ellipse) {
+                Footprint<T> calm = masks.calm_pixels.of[i];
+                calm.blend = level_blend_of(planned_->query.pixel_m, calm.width_m);
+                const UnresolvedMoments<double> beside = beside_round(calm);
+                if (beside[0] + beside[2] > calmed[0] + calmed[2])
+                    std::copy_n(beside.begin(), calmed.size(), calmed.begin());
             }
             for (std::size_t m = 0; m < calmed.size(); ++m)
-                moments[m][i] = hidden_with_ripples(moments[m][i], calmed[m], kept);
+                moments[m][i] = hidden_with_ripples(moments[m][i], static_cast<T>(calmed[m]), kept);
         }
         const T waves = masks.gains.waves[i], x = masks.gains.x[i], y = masks.gains.y[i];
         for (auto& moment : moments) moment[i] *= waves * waves;

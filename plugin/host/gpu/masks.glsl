@@ -52,13 +52,13 @@ PixelMoments masked_moments(PixelMoments hidden, Footprint footprint, MaskGains 
     LevelBlend blend = footprint.blend;
     vec3 slopes = vec3(hidden.xx, hidden.xy, hidden.yy);
     if (masks.ripples != 1.0) {
-        vec3 calmed = vec3(0.0);
-        if (levels[kCellLevels + blend.lower].x < kSlick_m) {
-            if (kCalmPixel >= 0) calmed = ellipse_unresolved(calm_footprint(footprint, kCalmPixel)).low.xyz;
-        } else {
-            vec3 left = slopes - gusts[kMasks > 0 ? kGustRows + 3 * kMasks : 0].xyz;
-            PixelMoments possible = possible_moments(PixelMoments(left.x, left.y, left.z, 0.0, 0.0, 0.0, 0.0, 0.0));
-            calmed = vec3(possible.xx, possible.xy, possible.yy);
+        // What is hidden besides a slick's waves: by coarse pixels and grids, or by the ellipse as long as a slick is wide.
+        vec3 left = slopes - gusts[kMasks > 0 ? kGustRows + 3 * kMasks : 0].xyz;
+        PixelMoments possible = possible_moments(PixelMoments(left.x, left.y, left.z, 0.0, 0.0, 0.0, 0.0, 0.0));
+        vec3 calmed = vec3(possible.xx, possible.xy, possible.yy);
+        if (kCalmPixel >= 0 && levels[kCellLevels + blend.lower].x < kSlick_m) {
+            vec3 beside = ellipse_unresolved(calm_footprint(footprint, kCalmPixel)).low.xyz;
+            if (beside.x + beside.z > calmed.x + calmed.z) calmed = beside;
         }
         for (int i = 0; i < 3; ++i) slopes[i] = hidden_with_ripples(slopes[i], calmed[i], masks.ripples);
     }

@@ -194,6 +194,8 @@ TEST(Masks, ShowAndHideWhatASlickLeaves) {
         Query levels = queries[0];
         levels.cell_m = levels.pixel_m = {0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0};
         queries.push_back(levels);
+        queries.push_back(filtered(queries[0].products,
+                                   0.0));  // finer than all waves of the grids, whose shortest is a ripple
         Scene plain = scene;
         plain.waves.masks.clear();
         const auto frame = frame_of<float>(scene, queries, kTime_s),
@@ -217,10 +219,29 @@ TEST(Masks, ShowAndHideWhatASlickLeaves) {
             EXPECT_NEAR((slopes_of(frame, query, footprint_m) - there) / said, 1.0, 0.01)
                 << ripples << ' ' << query << ' ' << footprint_m;
         };
+        judge(5, 0.0f);
         constexpr std::array kFootprints_m{0.06f, 0.125f, 0.5f, 2.0f};
         for (int query = 0; query < 4; ++query) judge(query, kFootprints_m[query]);
         for (const float footprint_m : {0.04f, 0.1f, 0.2f, 1.5f}) judge(4, footprint_m);
     }
+}
+
+// Waves of a metre that no grid holds are hidden, and stay so.
+TEST(Masks, ASlickTakesNoLongerWavesThanItsOwn) {
+    Scene scene = young_sea({{.length_m = 1e3, .width_m = 1e3, .ripples = 0.0}});
+    scene.waves.cascades = {{64.0, 64}};
+    scene.effects.breaking_from_m = 1.0;
+    Scene plain = scene;
+    plain.waves.masks.clear();
+    const std::vector<Query> queries{unfiltered(products(SlopeVarianceAtRest))};
+    const auto hidden = [&](const Frame<double>& frame) {
+        const glm::dvec3 at = sample(frame, 0, {{3.0, 4.0}}).vectors(SlopeVarianceAtRest)[0];
+        return at.x + at.y;
+    };
+    const auto frame = frame_of<double>(scene, queries);
+    const double all = hidden(frame_of<double>(plain, queries)), slick = frame.sea().slick().mss();
+    EXPECT_GT(all, 1.1 * slick);
+    EXPECT_NEAR(hidden(frame), all - slick, 1e-6);
 }
 
 // Cox and Munk 1954: 0.008 + 1.56e-3 U ± 0.004 in slicks.

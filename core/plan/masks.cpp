@@ -58,6 +58,14 @@ MaskGains<double> MasksPlan::at(glm::dvec2 place_m) const {
     return gains;
 }
 
+HeroMask hero_mask(const Scene& scene, const HeroWave& hero) {
+    const std::optional<MasksPlan> masks = plan_masks(scene);
+    if (!masks) return {};
+    const MaskGains<double> at = masks->at({hero.east_m, hero.north_m});
+    if (!(at.waves * kMostHeroRaise > 1.0)) return {.raise = kMostHeroRaise};
+    return {.raise = 1.0 / at.waves, .change_per_m = glm::dvec2(at.x, at.y) / at.waves};
+}
+
 SpectralMoments slick_moments(const DirectionalSpectrum& spectrum, const FootprintFilter& filter) {
     constexpr int kSteps = 32;  // of the octave in which waves fade
     const double end = filter.cutoff(kSlick_m), begin = end * filter.n_min / filter.n_max;

@@ -47,6 +47,15 @@ struct MasksPlan {
 // None where no mask changes anything.
 std::optional<MasksPlan> plan_masks(const Scene& scene);
 
+// How much higher than it is shown a hero stands in the sea without masks, at most kMostHeroRaise; and how the gain of waves changes there
+// over itself [1/m]: m η is level where η is not.
+struct HeroMask {
+    double raise = 1.0;
+    glm::dvec2 change_per_m{0.0};
+};
+inline constexpr double kMostHeroRaise = 10.0;
+HeroMask hero_mask(const Scene& scene, const HeroWave& hero);
+
 // The slopes that a slick's footprint hides, in expectation; of other moments there are none.
 SpectralMoments slick_moments(const DirectionalSpectrum& spectrum, const FootprintFilter& filter);
 

@@ -187,21 +187,22 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     double wanted_m2 = 0.0, raised_m2 = 0.0;
     for (std::size_t h = 0; h < heroes.size(); ++h) {
         const HeroWave& hero = heroes[h];
-        wanted_m2 += hero.height_m * hero.height_m;
+        const double raise = hero_mask(prepared.scene, hero).raise, raised_m = raise * hero.height_m;
+        wanted_m2 += raised_m * raised_m;
         const std::string name =
             "waves.heroes[" + std::to_string(h) + "].height_m = " + number_text(hero.height_m) + ": ";
         const HeroShape shape =
             hero_shape(trains, {hero.east_m, hero.north_m}, hero_time_s(prepared.scene, hero));
-        if (std::abs(shape.height_m - hero.height_m) > 0.05 * std::abs(hero.height_m))
+        if (std::abs(shape.height_m - raised_m) > 0.05 * std::abs(raised_m))
             warnings.push_back(name + "heroes before it are too near, in place and time, and make it " +
-                               tenths(shape.height_m) + " m high");
-        else if (shape.compression > kSteepestHero)
+                               tenths(shape.height_m / raise) + " m high");
+        else if (shape.compression > raise * kSteepestHero)
             warnings.push_back(name + "the crest folds over itself at its top; at most " +
-                               tenths(kSteepestHero / shape.compression * hero.height_m) +
+                               tenths(raise * kSteepestHero / shape.compression * hero.height_m) +
                                " m in this sea, or a lower waves.choppiness");
-        else if (std::abs(hero.height_m) > kHighestHero * deviation_m)
+        else if (std::abs(raised_m) > kHighestHero * deviation_m)
             warnings.push_back(name + "no such sea has one as high; at most " +
-                               tenths(kHighestHero * deviation_m) + " m is met, or a higher sea");
+                               tenths(kHighestHero * deviation_m / raise) + " m is met, or a higher sea");
     }
     // Of heroes far apart the sums are equal.
     for (const HeroTrain& train : trains)
@@ -248,11 +249,12 @@ std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     }
     for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {
         const HeroWave& hero = scene.waves.heroes[h];
-        const double gain = plan->at({hero.east_m, hero.north_m}).waves;
-        if (std::abs(gain - 1.0) < 0.01) continue;
-        warnings.push_back("waves.heroes[" + std::to_string(h) + "].height_m = " +
-                           number_text(hero.height_m) + ": stands where waves.masks make waves " +
-                           number_text(std::round(100.0 * gain) / 100.0) + " times as high, it as well");
+        const double raised = hero_mask(scene, hero).raise * plan->at({hero.east_m, hero.north_m}).waves;
+        if (raised > 0.99) continue;
+        warnings.push_back("waves.heroes[" + std::to_string(h) +
+                           "].height_m = " + number_text(hero.height_m) +
+                           ": stands where waves.masks leave less than a tenth of the waves, and is " +
+                           number_text(std::round(100.0 * raised * hero.height_m) / 100.0) + " m high");
     }
     return warnings;
 }

@@ -291,6 +291,26 @@ TEST(Masks, ACalmHasNoFoamNorHadIt) {
     EXPECT_EQ(foam_round(scene, 0.0), foam_round(plain, 0.0));
 }
 
+// As high as it is asked for, and the highest round it, also where a lee begins.
+TEST(Masks, AHeroStandsInALeeAsHighAsItIsAskedFor) {
+    for (const double east_m : {0.0, 120.0}) {
+        Scene scene;
+        scene.sea.wind_speed_mps = 14.0;
+        scene.waves.cascades = {{700.0, 256}, {90.0, 128}};
+        scene.waves.second_order = 0.0;
+        scene.waves.masks = {{.edge_m = 70.0, .waves = 0.4}};
+        scene.waves.heroes = {{.frame = 30.0, .east_m = east_m, .height_m = 2.5}};
+        const auto frame =
+            frame_of<double>(scene, {filtered(products(Displacement), 1.0)}, scene.shot.time_s(30.0));
+        std::vector<glm::dvec2> rest{{east_m, 0.0}};
+        for (int i = 0; i < 400; ++i) rest.emplace_back(east_m + (i % 20 - 9.5), i / 20 - 9.5);
+        const std::vector<glm::dvec3> moved = sample(frame, 0, rest).vectors(Displacement);
+        EXPECT_NEAR(moved[0].z, 2.5, 0.05);
+        EXPECT_LT(std::hypot(moved[0].x, moved[0].y), 0.1);
+        for (const glm::dvec3& there : moved) EXPECT_LT(there.z, 2.6);
+    }
+}
+
 // In a sea whose wind has keys, between two of them.
 TEST(Masks, StandInASeaThatChanges) {
     Scene scene = young_sea();
@@ -325,9 +345,15 @@ TEST(Masks, AreWarnedOfWhereTheirEdgesCutWavesAndRefusedWhereTheyCannotBe) {
     scene.waves.masks[0].waves = 4.0;
     EXPECT_NE(warned().find("waves.masks[0].waves = 4: the surface folds"), std::string::npos) << warned();
     scene.waves.masks[0].waves = 0.5;
-    scene.waves.heroes = {{}};
-    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: stands where waves.masks"), std::string::npos)
+    scene.waves.heroes = {{.height_m = 1.0}};
+    EXPECT_EQ(warned().find("waves.heroes"), std::string::npos) << warned();
+    scene.waves.heroes[0].height_m = 5.0;
+    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: no such sea"), std::string::npos) << warned();
+    scene.waves.masks[0].waves = 0.05;
+    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: stands where waves.masks leave less"),
+              std::string::npos)
         << warned();
+    scene.waves.masks[0].waves = 0.5;
     scene.waves.heroes.clear();
     scene.waves.masks[0].ripples = 0.0;
     EXPECT_TRUE(validate(scene).empty());

@@ -182,7 +182,7 @@ class ListOperator(NeedsOcean):
 
 
 class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
-    """Add an entry; of a hero wave, at the 3D cursor in the current frame"""
+    """Add an entry; of a hero wave, at the 3D cursor in the current frame; of a mask, a calm at the 3D cursor"""
 
     bl_idname = "pelagic.list_add"
     bl_label = "Add"
@@ -190,8 +190,11 @@ class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
 
     def execute(self, context):
         row, obj = self.rows(context).add(), context.object
+        at = obj.matrix_world.inverted_safe() @ context.scene.cursor.location
+        if self.path == "waves.masks":
+            row.east_m, row.north_m, row.waves = at.x, at.y, 0.5
         if self.path == "waves.heroes":
-            at, simulation = obj.matrix_world.inverted_safe() @ context.scene.cursor.location, play.simulation_of(obj)
+            simulation = play.simulation_of(obj)
             row.frame, row.east_m, row.north_m = context.scene.frame_current_final, at.x, at.y
             if simulation.sea and simulation.significant_height_m > 0.0:  # of crests one in three thousand is as high
                 row.height_m = simulation.significant_height_m

@@ -27,7 +27,7 @@ GERMAN = {
     "Gust size": "Böengröße", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
     "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",
     "Lean": "Vorneigung", "Second order": "Zweite Ordnung",
-    "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen", "Heroes": "Einzelwellen", "East": "Osten", "North": "Norden",
+    "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen", "Heroes": "Einzelwellen", "Masks": "Masken", "Edge": "Rand", "Ripples": "Kräuselwellen", "Foam": "Schaum", "East": "Osten", "North": "Norden",
     "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
@@ -602,12 +603,27 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
 }
 
 template <class T>
+glm::dvec2 FoamHistory<T>::first_node_m(const Place& place, double time_s) const {
+    return foam_.cell_of(place.level) * FoamPlan::kTileCells * glm::dvec2(place.x, place.y) +
+           foam_.drift_of(place.level) * time_s;
+}
+
+template <class T>
+void FoamHistory<T>::calm(std::uint16_t* shares, const Place& place, std::int64_t interval) const {
+    const glm::dvec2 first_m = first_node_m(place, (static_cast<double>(interval) + 0.5) * foam_.step_s);
+    const std::vector<glm::vec<2, T>>& rest_m = levels_[static_cast<std::size_t>(place.level)]->rest_m;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        const auto gain = static_cast<float>(sea_->plan().masks->at(first_m + glm::dvec2(rest_m[i])).foam);
+        if (gain == 1.0f) continue;
+        const float share = gain * std::bit_cast<float>(static_cast<std::uint32_t>(shares[i]) << 16);
+        shares[i] = static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(share) >> 16);
+    }
+}
+
+template <class T>
 void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) const {
     const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
-    const double tile_m = level.cell_m * FoamPlan::kTileCells;
-    const double t_s = static_cast<double>(n) * foam_.step_s;
-    const glm::dvec2 origin_m =
-        tile_m * glm::dvec2(tile.place.x, tile.place.y) + foam_.drift_of(tile.place.level) * t_s;
+    const glm::dvec2 origin_m = first_node_m(tile.place, static_cast<double>(n) * foam_.step_s);
     static thread_local std::vector<glm::vec<3, T>> moments(kStride);
     static thread_local std::vector<float> mean(kStride + 16), variance(kStride + 16), third(kStride + 16),
         threshold(kStride + 16);
@@ -633,13 +649,23 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
                           sea_->plan().knobs.third_moment, {deviates(n), kNodes});
     else
         std::fill_n(deviates(n), kNodes, kNoBreaking);
+    // In a calm J is 1 throughout, as far from breaking as can be.
+    if (const auto& masks = sea_->plan().masks) {
+        const double side_m = level.cell_m * FoamPlan::kTileCells;
+        if (masks->gains_in(origin_m, origin_m + side_m).least < 1.0)
+            for (std::size_t i = 0; i < kNodes; ++i)
+                if (masks->at(origin_m + glm::dvec2(level.rest_m[i])).waves < 1.0)
+                    deviates(n)[i] = std::max(deviates(n)[i], kNoBreaking);
+    }
     tile.next = n + 1;
     const std::int64_t interval = n - 3;
     if (interval < tile.end) return;
     const float* const six[kSamples] = {deviates(n - 5), deviates(n - 4), deviates(n - 3),
                                         deviates(n - 2), deviates(n - 1), deviates(n)};
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
-    kernels_.share(six, {tile.shares.data() + modulo(interval, kept) * kStride, kNodes});
+    std::uint16_t* shares = tile.shares.data() + modulo(interval, kept) * kStride;
+    kernels_.share(six, {shares, kNodes});
+    if (sea_->plan().masks && sea_->plan().masks->calms_foam) calm(shares, tile.place, interval);
     tile.end = interval + 1;
 }
 

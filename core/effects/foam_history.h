@@ -133,6 +133,9 @@ class FoamHistory {
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n, const Whitecaps& whitecaps) const;
+    glm::dvec2 first_node_m(const Place& place, double time_s) const;
+    // Of what broke in an interval, what masks leave of it (WaveMask::foam).
+    void calm(std::uint16_t* shares, const Place& place, std::int64_t interval) const;
     Level& level(int index, const std::atomic<bool>* cancel);
 
     std::shared_ptr<const Sea<T>> sea_;            // of a sea that changes the first key's

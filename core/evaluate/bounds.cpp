@@ -223,6 +223,9 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
         std::lower_bound(levels_m.begin() + first, levels_m.end(), cells.coarsest_m) - levels_m.begin(),
         std::ssize(levels_m) - 1);
     levels_.assign(planned_->cell_levels.begin() + first, planned_->cell_levels.begin() + last + 1);
+    // A slick's points lie between their own level and what a slick leaves.
+    if (cells.finest_m < kSlick_m)
+        levels_.insert(levels_.end(), planned_->calm_cells.begin(), planned_->calm_cells.end());
     for (double* of : {&cells_.finest_m, &cells_.coarsest_m}) *of = std::max(*of, levels_m.front());
     if (plan.trains && !query.only_cascade) {
         const Trains<T>& trains = frame.sea().trains();
@@ -448,6 +451,12 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
     }
     for (std::size_t f = 0; f < kFields.size(); ++f)
         widen(bounds.*axes()[f], std::abs(slopes[f].x) * half.x + std::abs(slopes[f].y) * half.y);
+    if (const auto& masks = frame_->sea().plan().masks; masks && !planned_->query.only_cascade) {
+        const MasksPlan::Gains gains = masks->gains_in(origin_m + block.min_m, origin_m + block.max_m);
+        const double rounding = 1.0 + kRounding<T> * static_cast<double>(masks->masks.size());
+        for (const auto axis : axes())
+            bounds.*axis = times({gains.least / rounding, gains.largest * rounding}, bounds.*axis);
+    }
     return bounds;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -63,6 +64,25 @@ struct PreparedQuery<T>::Call {
     bool differ_in_unresolved;  // where trains use each point's own pixel, or cascades have levels
 };
 
+// What a chunk of a sea with masks needs besides.
+template <class T>
+struct PreparedQuery<T>::MaskWork {
+    MaskChunk<T> gains;
+    Chunk<T> calm;                     // as a slick leaves it
+    Chunk<T> values, breaking_values;  // heights and horizontal displacements in the derivatives' footprints
+    ChunkFootprints<T> calm_cells, calm_pixels;
+    alignas(64) typename Chunk<T>::Values calm_share_of_cells, calm_share_of_pixels;
+    bool has_values = false;
+
+    static void begin(Chunk<T>& chunk, const Chunk<T>& like) {
+        chunk.count = like.count;
+        chunk.rest_x = like.rest_x;
+        chunk.rest_y = like.rest_y;
+        for (auto& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + like.padded(), T(0));
+        std::fill(chunk.turn.begin(), chunk.turn.begin() + like.padded(), T(0));
+    }
+};
+
 // The state of one chunk.
 template <class T>
 struct PreparedQuery<T>::Work {
@@ -72,6 +92,8 @@ struct PreparedQuery<T>::Work {
     GustChunk<T> gusts;
     FieldSet needed;
     bool apart;  // the displacement gradient of the waves that break is in `breaking`, not in `chunk`
+    std::optional<MaskWork> masks{};  // of a sea that has some
+    bool masked = false;              // whether they change something at the chunk's points
     std::array<TilingPlaces<T>, limits::kCascades> tiling;  // of the chunk's points, by cascade
     TilingReader<T> tiling_reader;
     std::vector<std::vector<std::unique_ptr<RowPlaces<T>>>> places;  // of grids by level; empty: not kept
@@ -135,8 +157,10 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                          std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                      [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
     breaks_ = (wanted & breaking_products()).any();
+    has_masks_ = plan.masks && !query.only_cascade;
     for (const std::vector<int>* levels :
-         {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels})
+         {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels, &planned_->calm_cells,
+          &planned_->calm_pixels})
         for (const int level : *levels)
             if (std::none_of(levels_.begin(), levels_.end(),
                              [&](const LevelGrids& there) { return there.level == level; }))
@@ -174,7 +198,7 @@ void PreparedQuery<T>::refresh() {
                             : statistics_->whole));
     FieldSet needed = fields_of(wanted_) & ~plan.dropped;
     if (breaks_) needed |= displacement_gradient_fields();
-    if (has_random_tiling_) needed |= gradient_fields(needed);
+    if (has_random_tiling_ || has_masks_) needed |= gradient_fields(needed) & ~plan.dropped;
     for (LevelGrids& of : levels_) {
         of.grids.clear();
         of.cascades.clear();
@@ -336,6 +360,10 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     }
     for (std::size_t c = 0; c < call.place.tiling.size(); ++c) work.tiling[c].forget(work.row);
     work.apart = breaks_apart(call, work);
+    if (has_masks_) {
+        if (!work.masks) work.masks.emplace();
+        work.masked = work.masks->gains.take(*plan.masks, call.points.origin_m, chunk);
+    }
     work.needed = call.needed;
     if (call.breaks && !work.apart) work.needed |= displacement_gradient_fields();
     if (work.apart) {
@@ -353,23 +381,160 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     } else {
         add_only_footprint(call, work);
     }
+    if (work.masked) {
+        if (work.masks->gains.has_ripples) calm_ripples(call, work);
+        add_values(call, work);
+    }
     add_own_footprints(call, first, work);
+    if (work.masked) mask_chunks(call, work);
     const bool has_gusts = gusts_ && (call.results.given() & gusty_products()).any();
     if (has_gusts) take_gusts(call, first, work);
-    kernels_.derive(
-        {.chunk = &chunk,
-         .breaking = work.apart ? &work.breaking : &chunk,
-         .results = call.results.from_point(first),
-         .unresolved = unresolved_,
-         .unresolved_of = call.wants_unresolved && call.differ_in_unresolved ? &work.unresolved_of : nullptr,
-         .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
-         .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
-         .third_moment = plan.knobs.third_moment,
-         .rest_normal =
-             call.points.rest_normal ? from_point(call.points.rest_normal, first) : call.points.rest_normal});
+    kernels_.derive({.chunk = &chunk,
+                     .breaking = work.apart ? &work.breaking : &chunk,
+                     .results = call.results.from_point(first),
+                     .unresolved = unresolved_,
+                     .unresolved_of = call.wants_unresolved && (call.differ_in_unresolved || work.masked)
+                                          ? &work.unresolved_of
+                                          : nullptr,
+                     .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
+                     .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
+                     .third_moment = plan.knobs.third_moment,
+                     .rest_normal = call.points.rest_normal ? from_point(call.points.rest_normal, first)
+                                                            : call.points.rest_normal});
     const auto unresolved = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && unresolved)
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
+    if (const auto breaking = call.results.numbers(Product::Breaking); breaking && work.masked)
+        for (std::size_t i = 0; i < chunk.count; ++i) breaking[first + i] *= work.masks->gains.foam[i];
+}
+
+template <class T>
+void PreparedQuery<T>::calm_ripples(const Call& call, Work& work) const {
+    MaskWork& masks = *work.masks;
+    const Query& query = planned_->query;
+    Chunk<T>& chunk = work.chunk;
+    const auto share = [&](const std::vector<int>& calm, const std::vector<double>& levels_m,
+                           const ChunkFootprints<T>& of, typename Chunk<T>::Values& shares,
+                           ChunkFootprints<T>& to) {
+        to.any_round = to.any_ellipse = false;
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const double footprint_m = call.has_levels ? levels_m[of.of[i].blend.lower] : levels_m.front();
+            shares[i] = !calm.empty() && footprint_m < kSlick_m ? T(1) - masks.gains.ripples[i] : T(0);
+            to.of[i] = call.has_levels && shares[i] > T(0) ? of.of[i] : Footprint<T>{};
+            to.of[i].blend = {};
+            to.of[i].width_m = static_cast<T>(kSlick_m);
+            to.of[i].is_ellipse = to.of[i].is_ellipse && to.of[i].length_m > to.of[i].width_m;
+            (to.of[i].is_ellipse ? to.any_ellipse : to.any_round) = true;
+        }
+    };
+    share(planned_->calm_cells, query.cell_m, work.cells, masks.calm_share_of_cells, masks.calm_cells);
+    share(planned_->calm_pixels, query.pixel_m, work.pixels, masks.calm_share_of_pixels, masks.calm_pixels);
+    FieldSet fields;
+    if (!planned_->calm_cells.empty()) fields |= cell_fields();
+    if (!planned_->calm_pixels.empty()) fields |= ~cell_fields();
+    fields &= work.needed;
+    if (fields.none()) return;
+    masks.begin(masks.calm, chunk);
+    if (call.has_levels) {
+        const Seen cells{planned_->calm_cells, masks.calm_cells},
+            pixels{planned_->calm_pixels, masks.calm_pixels};
+        FieldSet round;
+        if (masks.calm_cells.any_round) round |= cell_fields();
+        if (masks.calm_pixels.any_round) round |= ~cell_fields();
+        add_round(call, round & fields, cells, pixels, work, masks.calm);
+        if (masks.calm_cells.any_ellipse) add_ellipses(call, cell_fields() & fields, cells, masks.calm);
+        if (masks.calm_pixels.any_ellipse) add_ellipses(call, ~cell_fields() & fields, pixels, masks.calm);
+    } else {
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            FieldSet here;
+            if (std::ranges::count(planned_->calm_cells, levels_[l].level)) here |= cell_fields();
+            if (std::ranges::count(planned_->calm_pixels, levels_[l].level)) here |= ~cell_fields();
+            add_grids(call, l, {.fields = here & fields}, work, masks.calm);
+        }
+    }
+    const auto mix = [&](const auto& calm, const auto& shares, auto& to) {
+        for (std::size_t i = 0; i < chunk.count; ++i)
+            if (shares[i] > T(0)) to[i] += shares[i] * (calm[i] - to[i]);
+    };
+    for (std::size_t f = 0; f < kFieldCount; ++f)
+        if (fields[f])
+            mix(masks.calm.sums[f], cell_fields()[f] ? masks.calm_share_of_cells : masks.calm_share_of_pixels,
+                chunk.sums[f]);
+    if (fields[index(Field::Dxy)]) mix(masks.calm.turn, masks.calm_share_of_pixels, chunk.turn);
+}
+
+template <class T>
+void PreparedQuery<T>::add_values(const Call& call, Work& work) const {
+    MaskWork& masks = *work.masks;
+    masks.has_values = masks.gains.has_edges && ((work.needed & ~cell_fields()).any() || work.apart);
+    if (!masks.has_values) return;
+    const FieldSet values = fields(Field::Height, Field::Dx, Field::Dy) & ~frame_->sea().plan().dropped;
+    masks.begin(masks.values, work.chunk);
+    masks.begin(masks.breaking_values, work.chunk);
+    const auto add = [&](const std::vector<int>& levels, const ChunkFootprints<T>& footprints, Chunk<T>& to) {
+        if (!call.has_levels) {
+            for (std::size_t l = 0; l < levels_.size(); ++l)
+                if (levels_[l].level == levels.front()) add_grids(call, l, {.fields = values}, work, to);
+            return;
+        }
+        const Seen seen{levels, footprints};
+        if (footprints.any_round) add_round(call, values, seen, seen, work, to);
+        if (footprints.any_ellipse) add_ellipses(call, values, seen, to);
+    };
+    if ((work.needed & ~cell_fields()).any()) add(planned_->pixel_levels, work.pixels, masks.values);
+    if (work.apart) add(planned_->breaking_levels, work.breaking_pixels, masks.breaking_values);
+}
+
+template <class T>
+void PreparedQuery<T>::mask_chunks(const Call& call, Work& work) const {
+    MaskWork& masks = *work.masks;
+    masks.gains.has_edges = masks.has_values;  // else nobody asks for derivatives
+    mask_sums(masks.gains, masks.values, work.chunk);
+    if (work.apart) mask_sums(masks.gains, masks.breaking_values, work.breaking);
+    if (call.wants_unresolved) mask_unresolved(call, work);
+}
+
+template <class T>
+void PreparedQuery<T>::mask_unresolved(const Call& call, Work& work) const {
+    const MaskWork& masks = *work.masks;
+    auto& moments = work.unresolved_of.moments;
+    const std::size_t count = work.chunk.count;
+    if (!call.differ_in_unresolved)
+        for (std::size_t m = 0; m < moments.size(); ++m)
+            std::fill_n(moments[m].begin(), work.chunk.padded(), unresolved_[m]);
+    const UnresolvedMoments<double> slick = unresolved_moments<double>(frame_->sea().slick());
+    const double whole_m0 = has_trains_ ? frame_->sea().trains().outside.m0 : statistics_->whole.m0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const LevelBlend<T> blend = call.has_levels ? work.pixels.of[i].blend : LevelBlend<T>{};
+        if (const T kept = masks.gains.ripples[i]; kept != T(1)) {
+            // What is hidden besides a slick's waves: by coarse pixels and grids, or by the ellipse as long as a slick is wide.
+            const auto left = [&](std::size_t m) { return static_cast<double>(moments[m][i]) - slick[m]; };
+            const auto possible =
+                possible_moments(PixelMoments<double>(left(0), left(1), left(2), 0.0, 0.0, 0.0, 0.0, 0.0));
+            std::array<double, kUnresolvedSlopes> calmed{possible.xx, possible.xy, possible.yy};
+            if (call.has_levels && masks.calm_pixels.of[i].is_ellipse) {
+                Footprint<T> calm = masks.calm_pixels.of[i];
+                calm.blend = level_blend_of(planned_->query.pixel_m, calm.width_m);
+                const UnresolvedMoments<double> beside = beside_round(calm);
+                if (beside[0] + beside[2] > calmed[0] + calmed[2])
+                    std::copy_n(beside.begin(), calmed.size(), calmed.begin());
+            }
+            for (std::size_t m = 0; m < calmed.size(); ++m)
+                moments[m][i] = hidden_with_ripples(moments[m][i], static_cast<T>(calmed[m]), kept);
+        }
+        const T waves = masks.gains.waves[i], x = masks.gains.x[i], y = masks.gains.y[i];
+        for (auto& moment : moments) moment[i] *= waves * waves;
+        if (x == T(0) && y == T(0)) continue;
+        const double t = static_cast<double>(blend.t), shown = statistics_->resolved[blend.lower].m0;
+        const double hidden =
+            whole_m0 - (t > 0.0 ? blended_moment(shown, statistics_->resolved_next[blend.lower].m0,
+                                                 statistics_->resolved[blend.lower + 1].m0, t)
+                                : shown);
+        const T hidden_m2 = static_cast<T>(std::max(hidden, 0.0));
+        moments[0][i] += x * x * hidden_m2;
+        moments[1][i] += x * y * hidden_m2;
+        moments[2][i] += y * y * hidden_m2;
+    }
 }
 
 template <class T>
@@ -465,22 +630,22 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 // Ellipses: see add_ellipses().
 template <class T>
 void PreparedQuery<T>::add_levels(const Call& call, Work& work) const {
-    auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, tiling,
-           tiling_reader, places, row] = work;
+    auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, masks,
+           masked, tiling, tiling_reader, places, row] = work;
+    const Seen by_cell{planned_->cell_levels, cells}, by_pixel{planned_->pixel_levels, pixels};
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
-    add_round(call, round & needed, cells, planned_->pixel_levels, pixels, work, chunk);
-    if (cells.any_ellipse) add_ellipses(call, planned_->cell_levels, cell_fields() & needed, cells, chunk);
-    if (pixels.any_ellipse)
-        add_ellipses(call, planned_->pixel_levels, ~cell_fields() & needed, pixels, chunk);
+    add_round(call, round & needed, by_cell, by_pixel, work, chunk);
+    if (cells.any_ellipse) add_ellipses(call, cell_fields() & needed, by_cell, chunk);
+    if (pixels.any_ellipse) add_ellipses(call, ~cell_fields() & needed, by_pixel, chunk);
     if (apart) {
-        const std::vector<int>& levels = planned_->breaking_levels;
         breaking_pixels.take_breaking(pixels, frame_->sea().plan().breaking, chunk.count);
+        const Seen by_breaking{planned_->breaking_levels, breaking_pixels};
         if (breaking_pixels.any_round)
-            add_round(call, displacement_gradient_fields(), cells, levels, breaking_pixels, work, breaking);
+            add_round(call, displacement_gradient_fields(), by_cell, by_breaking, work, breaking);
         if (breaking_pixels.any_ellipse)
-            add_ellipses(call, levels, displacement_gradient_fields(), breaking_pixels, breaking);
+            add_ellipses(call, displacement_gradient_fields(), by_breaking, breaking);
     }
     if (!call.wants_unresolved || !call.differ_in_unresolved || has_trains_) return;
     const UnresolvedMoments<double> whole = unresolved_moments<double>(statistics_->whole);
@@ -494,14 +659,13 @@ void PreparedQuery<T>::add_levels(const Call& call, Work& work) const {
 }
 
 template <class T>
-void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
-                                 const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Work& work,
-                                 Chunk<T>& chunk) const {
+void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const Seen& cells, const Seen& pixels,
+                                 Work& work, Chunk<T>& chunk) const {
     if (fields.none()) return;
     const std::size_t count = chunk.count, padded = chunk.padded();
     typename Chunk<T>::Values cell_weight, pixel_weight;
-    const auto shares = [&](const std::vector<int>& of, int level, const ChunkFootprints<T>& footprints,
-                            typename Chunk<T>::Values& weight) {
+    const auto shares = [&](const Seen& seen, int level, typename Chunk<T>::Values& weight) {
+        const auto& [of, footprints] = seen;
         bool any = false;
         std::fill(weight.begin(), weight.begin() + padded, T(0));
         for (std::size_t i = 0; i < count; ++i) {
@@ -517,8 +681,8 @@ void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkF
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const int level = levels_[l].level;
         FieldSet here;
-        if (of_cells.any() && shares(planned_->cell_levels, level, cells, cell_weight)) here |= of_cells;
-        if (of_pixels.any() && shares(levels, level, pixels, pixel_weight)) here |= of_pixels;
+        if (of_cells.any() && shares(cells, level, cell_weight)) here |= of_cells;
+        if (of_pixels.any() && shares(pixels, level, pixel_weight)) here |= of_pixels;
         add_grids(call, l, {here, cell_weight.data(), pixel_weight.data()}, work, chunk);
     }
 }
@@ -534,9 +698,10 @@ UnresolvedMoments<double> PreparedQuery<T>::beside_round(const Footprint<T>& pix
 // Points whose footprints are ellipses: each of a cascade's grids is read at their taps (core/plan/taps.inl), which
 // are gathered to chunks of their own.
 template <class T>
-void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
-                                    const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const {
+void PreparedQuery<T>::add_ellipses(const Call& call, FieldSet fields, const Seen& seen,
+                                    Chunk<T>& chunk) const {
     if (fields.none()) return;
+    const auto& [levels, footprints] = seen;
     std::size_t lowest = levels.size(), highest = 0;
     for (std::size_t i = 0; i < chunk.count; ++i) {
         if (!footprints.of[i].is_ellipse) continue;
@@ -578,8 +743,8 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
 template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
-    auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, tiling,
-           tiling_reader, places, row] = work;
+    auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, masks,
+           masked, tiling, tiling_reader, places, row] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {
@@ -615,19 +780,31 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
     if (varied)
         for (auto& moment : unresolved_of.moments)
             std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
-    add_trains<T>({.trains = &frame_->sea().trains(),
-                   .start_cycles = call.place.start_cycles.data(),
-                   .filter = plan.filter,
-                   .wanted = needed,
-                   .cell_m = static_cast<T>(query.cell_m.front()),
-                   .pixel_m = static_cast<T>(query.pixel_m.front()),
-                   .cell_of = points.cell_m ? cell.width.data() : nullptr,
-                   .pixel_of = points.pixel_m ? pixel.width.data() : nullptr,
-                   .cell_stretch = cell_stretch,
-                   .pixel_stretch = pixel_stretch,
-                   .unresolved = varied ? &unresolved_of : nullptr,
-                   .breaking = apart ? &breaking : nullptr},
-                  chunk);
+    const TrainArgs<T> all{.trains = &frame_->sea().trains(),
+                           .start_cycles = call.place.start_cycles.data(),
+                           .filter = plan.filter,
+                           .wanted = needed,
+                           .cell_m = static_cast<T>(query.cell_m.front()),
+                           .pixel_m = static_cast<T>(query.pixel_m.front()),
+                           .cell_of = points.cell_m ? cell.width.data() : nullptr,
+                           .pixel_of = points.pixel_m ? pixel.width.data() : nullptr,
+                           .cell_stretch = cell_stretch,
+                           .pixel_stretch = pixel_stretch,
+                           .unresolved = varied ? &unresolved_of : nullptr,
+                           .breaking = apart ? &breaking : nullptr};
+    add_trains<T>(all, chunk);
+    if (masked && masks->has_values) {
+        TrainArgs<T> values = all;
+        values.wanted = pelagic::fields(Field::Height, Field::Dx, Field::Dy) & ~plan.dropped;
+        values.cell_m = all.pixel_m;
+        values.cell_of = all.pixel_of;
+        values.cell_stretch = all.pixel_stretch;
+        values.unresolved = nullptr;
+        values.breaking = nullptr;
+        add_trains<T>(values, masks->values);
+        // The waves that break are long against a pixel that tells them from the others.
+        if (apart) add_trains<T>(values, masks->breaking_values);
+    }
     if (!varied || plan.cascades.empty()) return;
     for (std::size_t i = 0; i < chunk.count; ++i) {
         UnresolvedMoments<double> whole;

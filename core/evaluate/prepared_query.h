@@ -8,6 +8,7 @@
 #include "core/evaluate/footprints.h"
 #include "core/evaluate/gusts.h"
 #include "core/evaluate/kernels.h"
+#include "core/evaluate/masks.h"
 #include "core/evaluate/random_tiling.h"
 
 namespace pelagic {
@@ -59,7 +60,13 @@ class PreparedQuery {
     // What one call has in common for all its points.
     struct Call;
     struct Work;
+    struct MaskWork;
     struct Cut;
+    // The footprints of points, among these levels.
+    struct Seen {
+        const std::vector<int>& levels;
+        const ChunkFootprints<T>& footprints;
+    };
     // Which of a level's grids, by breaks_alike.
     enum class Part { All, Alike, Other };
     // How a level's grids count at a chunk's points.
@@ -81,13 +88,17 @@ class PreparedQuery {
     bool breaks_apart(const Call& call, const Work& work) const;
     void add_only_footprint(const Call& call, Work& work) const;
     void add_levels(const Call& call, Work& work) const;
-    // Points whose footprints are round: those of `fields` that cells filter, and the others from `levels`.
-    void add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
-                   const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Work& work,
+    // Points whose footprints are round: those of `fields` that cells filter, and the others.
+    void add_round(const Call& call, FieldSet fields, const Seen& cells, const Seen& pixels, Work& work,
                    Chunk<T>& chunk) const;
-    void add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
-                      const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const;
+    void add_ellipses(const Call& call, FieldSet fields, const Seen& seen, Chunk<T>& chunk) const;
     void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
+    // Calm and rough places (core/plan/masks.h). What a slick leaves of waves, in place of a part of them; heights and displacements as
+    // the derivatives' footprints show them; and the gains, of the sums and of what is unresolved.
+    void calm_ripples(const Call& call, Work& work) const;
+    void add_values(const Call& call, Work& work) const;
+    void mask_chunks(const Call& call, Work& work) const;
+    void mask_unresolved(const Call& call, Work& work) const;
     // What gusts do to the chunk's points.
     void take_gusts(const Call& call, std::size_t first, Work& work) const;
     // What an ellipse leaves unresolved of the cascades' waves beyond a round footprint of its width.
@@ -103,7 +114,7 @@ class PreparedQuery {
     std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
-    bool has_trains_ = false, has_random_tiling_ = false, breaks_ = false;
+    bool has_trains_ = false, has_random_tiling_ = false, breaks_ = false, has_masks_ = false;
     const Whitecaps* given_whitecaps_;  // null: the sea's
     const Whitecaps* whitecaps_;
     const Gusts* gusts_ = nullptr;       // none, or nothing that they change is wanted

@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "core/scene/limits.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -38,6 +39,18 @@ std::string about_whitecaps(const Plan& plan) {
                 ? ""
                 : ", as a choppiness of " + number_text(plan.breaking.choppiness.largest()) +
                       " would press them");
+}
+
+std::string about_masks(const Plan& plan) {
+    const MasksPlan& masks = *plan.masks;
+    const MasksPlan::Gains gains = masks.gains_in(glm::dvec2(-limits::kCameraCoordinate_m.high),
+                                                  glm::dvec2(limits::kCameraCoordinate_m.high));
+    std::string about = std::to_string(masks.masks.size()) + (masks.masks.size() == 1 ? " mask" : " masks");
+    if (masks.changes_waves)
+        about += "; waves " + rough_text(gains.least) + " … " + rough_text(gains.largest) + " times as high";
+    if (masks.calms_ripples) about += "; slicks, of waves below 50 cm";
+    if (masks.calms_foam) about += "; less foam";
+    return about + "; pairs of waves (second order) change as the waves do, not as their square";
 }
 
 std::string about_living_foam(const Plan& plan) {
@@ -149,6 +162,12 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .key_parts = key_parts(KeyPart::Gusts),
      .shapes =
          [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); }},
+    {.effect = Effect::Masks,
+     .name = "calm and rough places",
+     .is_asked_for = [](const Scene& scene) { return plan_masks(scene).has_value(); },
+     .why_not = "waves.masks are none, or change nothing",
+     .turn_off = [](Scene& scene) { scene.waves.masks.clear(); },
+     .about = about_masks},
 });
 
 }  // namespace

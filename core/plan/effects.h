@@ -16,7 +16,16 @@ namespace pelagic {
 
 struct Plan;
 
-enum class Effect { HorizontalDisplacement, SecondOrder, Whitecaps, LivingFoam, FoamStructure, Spray, Gusts };
+enum class Effect {
+    HorizontalDisplacement,
+    SecondOrder,
+    Whitecaps,
+    LivingFoam,
+    FoamStructure,
+    Spray,
+    Gusts,
+    Masks
+};
 
 // Members that aren't given: the effect has nothing of the kind.
 struct EffectRow {

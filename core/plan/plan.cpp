@@ -109,7 +109,7 @@ FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool
     FieldSet wanted;
     const FieldSet zero = cascade.choppiness > 0.0 ? FieldSet() : horizontal_fields();
     const auto derivatives = [&](const FieldSet& fields) {
-        return blends ? fields | (gradient_fields(fields) & ~plan.dropped) : fields;
+        return blends || plan.masks ? fields | (gradient_fields(fields) & ~plan.dropped) : fields;
     };
     for (const PlannedQuery& planned : plan.queries) {
         const auto uses = [&](const std::vector<int>& levels) {
@@ -119,6 +119,8 @@ FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool
         if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
         if (uses(planned.pixel_levels)) wanted |= derivatives(needed & ~cell_fields());
         if (uses(planned.breaking_levels)) wanted |= derivatives(displacement_gradient_fields());
+        if (uses(planned.calm_cells)) wanted |= needed & cell_fields();
+        if (uses(planned.calm_pixels)) wanted |= derivatives(needed & ~cell_fields());
     }
     return wanted & ~zero;
 }
@@ -346,6 +348,11 @@ int add_query(Plan& plan, const Query& query) {
     if ((query.products & breaking_products()).any())
         for (double footprint_m : query.pixel_m)
             planned.breaking_levels.push_back(level_of(plan.breaking.footprint_of(footprint_m), is_of_light));
+    const bool shows_ripples = fields_of(query.products & ~breaking_products()).any();
+    if (plan.masks && plan.masks->calms_ripples && !query.only_cascade && shows_ripples) {
+        if (query.cell_m.front() < kSlick_m) planned.calm_cells = {level_of(kSlick_m, false)};
+        if (query.pixel_m.front() < kSlick_m) planned.calm_pixels = {level_of(kSlick_m, is_of_light)};
+    }
     plan.queries.push_back(std::move(planned));
     return static_cast<int>(plan.queries.size()) - 1;
 }
@@ -362,6 +369,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.breaking = breaking_of(scene, plan.filter);
+    plan.masks = plan_masks(scene);  // before the queries: a slick is one of their levels
     // In pictures the edge of what breaks is as wide as a breaker's roller is thick, and the foam's pattern tears it: to a pixel it would be cut.
     // Two thirds of the height are by eye; a mean over footprints stays.
     constexpr double kRollerOverHeight = 2.0 / 3.0;
@@ -491,6 +499,8 @@ std::vector<int> summed_levels(const Plan& plan, const PlannedQuery& planned) {
     add(planned.cell_levels, cell_fields());
     add(planned.pixel_levels, ~cell_fields());
     levels.insert(levels.end(), planned.breaking_levels.begin(), planned.breaking_levels.end());
+    add(planned.calm_cells, cell_fields());
+    add(planned.calm_pixels, ~cell_fields());
     return levels;
 }
 

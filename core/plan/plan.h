@@ -17,6 +17,7 @@
 #include "core/plan/filter.h"
 #include "core/plan/foam.h"
 #include "core/plan/gusts.h"
+#include "core/plan/masks.h"
 #include "core/plan/outputs.h"
 #include "core/plan/prepared_scene.h"
 #include "core/plan/products.h"
@@ -105,6 +106,8 @@ struct PlannedQuery {
     // Parallel to pixel_levels: the levels of the breaking waves' displacement gradient. The same levels, except for
     // pixels finer than Breaking::footprint_m. Empty where nobody asks.
     std::vector<int> breaking_levels;
+    // The level of what a slick leaves of finer cells and pixels (kSlick_m). Empty where there are none, or no slick.
+    std::vector<int> calm_cells{}, calm_pixels{};
 };
 
 struct Plan {
@@ -122,6 +125,7 @@ struct Plan {
     double second_order_gain = 0.0;
     std::optional<FoamPlan> foam;        // with persistent foam, where a query asks for any of it
     std::optional<GustsPlan> gusts;      // where the wind varies over the surface
+    std::optional<MasksPlan> masks;      // where waves are calmer or rougher from place to place
     FieldSet dropped;                    // fields that are zero in this scene, whoever asks: never computed
     std::vector<PlannedOutput> outputs;  // of a bake; each has a query
     std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are

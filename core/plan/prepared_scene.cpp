@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/plan/effects.h"
+#include "core/plan/masks.h"
 #include "core/plan/weather.h"
 #include "core/scene/budget.h"
 #include "core/scene/number_keys.h"
@@ -38,10 +39,15 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
     extent.height_m *= 1.0 + skewness * (kExtentDeviations - 1.0 / kExtentDeviations) / 6.0;
     // A hero takes of the sea's variance what it has of its own shape: η = ρA + √(1 − ρ²) 5σ is highest at √(A² + (5σ)²).
     double hero_m = 0.0;
-    for (const HeroWave& hero : scene.waves.heroes) hero_m = std::max(hero_m, std::abs(hero.height_m));
+    for (const HeroWave& hero : scene.waves.heroes)
+        hero_m = std::max(hero_m, hero_mask(scene, hero).raise * std::abs(hero.height_m));
     if (spectrum.m0() > 0.0) {
         extent.height_m = std::hypot(extent.height_m, hero_m);
         extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);
+    }
+    if (const std::optional<MasksPlan> masks = plan_masks(scene)) {
+        extent.height_m *= masks->largest();
+        extent.reach_m *= masks->largest();
     }
     return extent;
 }

@@ -64,6 +64,11 @@ inline constexpr Range kBandEdge_m{1e-3, 1e5};
 inline constexpr Range kBandGain{0.0, 10.0};
 inline constexpr int kHeroes = 8;  // each has trains of its own
 inline constexpr Range kHeroHeight_m{-50.0, 50.0};
+inline constexpr int kMasks = 16;  // each is looked at for every point
+inline constexpr Range kMaskSize_m{1.0, 1e5};
+inline constexpr Range kMaskEdge_m{1.0, 1e5};
+inline constexpr Range kMaskWaves{0.0, 4.0};
+inline constexpr Range kMaskShare{0.0, 1.0};
 inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)

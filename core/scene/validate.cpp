@@ -579,6 +579,30 @@ void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) 
     }
 }
 
+// What calm and rough places can't do yet.
+void check_masks(SceneChecker& check, const Scene& scene) {
+    const Waves& waves = scene.waves;
+    constexpr double kShortestBreaker_m = 0.25;  // a slick's waves are shorter
+    for (std::size_t i = 0; i < waves.masks.size(); ++i) {
+        const WaveMask& mask = waves.masks[i];
+        if (mask.ripples == 1.0) continue;
+        const auto refuse = [&](const std::string& problem, const std::string& accepted) {
+            check.refuse({indexed("waves.masks", i) + ".ripples", number_text(mask.ripples), problem,
+                          "1, or " + accepted});
+        };
+        if (waves.model == WaveModel::Trochoid)
+            refuse("calms ripples, and wave trains are calmed all alike", "waves.model = \"fft\"");
+        else if (scene.effects.whitecaps && scene.effects.breaking_from_m < kShortestBreaker_m)
+            refuse("calms ripples, and effects.breaking_from_m = " +
+                       number_text(scene.effects.breaking_from_m) + " lets them break",
+                   "effects.breaking_from_m of " + number_text(kShortestBreaker_m) + " or more");
+    }
+    if (scene.output.cascade_tiles && !waves.masks.empty())
+        check.refuse({"output.cascade_tiles", "true",
+                      "asks for tiles, which are alike everywhere, and waves.masks make places differ",
+                      "false, or no waves.masks"});
+}
+
 void check_output(SceneChecker& check, const Scene& scene) {
     const Effects& effects = scene.effects;
     const Output& output = scene.output;
@@ -682,6 +706,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_scheme(check, scene.output, scene.surface);
     check_budget(check, scene.quality);
     check_tiles(check, scene.output, scene.waves);
+    check_masks(check, scene);
     check_volumes(check, scene);
     return check.take();
 }

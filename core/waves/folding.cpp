@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/plan/breaking.h"
+#include "core/plan/masks.h"
 #include "core/plan/random_tiling.h"
 #include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
@@ -186,21 +187,22 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     double wanted_m2 = 0.0, raised_m2 = 0.0;
     for (std::size_t h = 0; h < heroes.size(); ++h) {
         const HeroWave& hero = heroes[h];
-        wanted_m2 += hero.height_m * hero.height_m;
+        const double raise = hero_mask(prepared.scene, hero).raise, raised_m = raise * hero.height_m;
+        wanted_m2 += raised_m * raised_m;
         const std::string name =
             "waves.heroes[" + std::to_string(h) + "].height_m = " + number_text(hero.height_m) + ": ";
         const HeroShape shape =
             hero_shape(trains, {hero.east_m, hero.north_m}, hero_time_s(prepared.scene, hero));
-        if (std::abs(shape.height_m - hero.height_m) > 0.05 * std::abs(hero.height_m))
+        if (std::abs(shape.height_m - raised_m) > 0.05 * std::abs(raised_m))
             warnings.push_back(name + "heroes before it are too near, in place and time, and make it " +
-                               tenths(shape.height_m) + " m high");
-        else if (shape.compression > kSteepestHero)
+                               tenths(shape.height_m / raise) + " m high");
+        else if (shape.compression > raise * kSteepestHero)
             warnings.push_back(name + "the crest folds over itself at its top; at most " +
-                               tenths(kSteepestHero / shape.compression * hero.height_m) +
+                               tenths(raise * kSteepestHero / shape.compression * hero.height_m) +
                                " m in this sea, or a lower waves.choppiness");
-        else if (std::abs(hero.height_m) > kHighestHero * deviation_m)
+        else if (std::abs(raised_m) > kHighestHero * deviation_m)
             warnings.push_back(name + "no such sea has one as high; at most " +
-                               tenths(kHighestHero * deviation_m) + " m is met, or a higher sea");
+                               tenths(kHighestHero * deviation_m / raise) + " m is met, or a higher sea");
     }
     // Of heroes far apart the sums are equal.
     for (const HeroTrain& train : trains)
@@ -210,6 +212,50 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
             "waves.heroes: some contradict each other, crest and trough within a part of a wave, and the sea round them is " +
             tenths(std::sqrt(raised_m2 / wanted_m2)) +
             " times as high as they are; stand them farther apart");
+    return warnings;
+}
+
+// A sea that is cut off within half a wave shows it.
+std::vector<std::string> mask_warning(const PreparedScene& prepared) {
+    const Scene& scene = prepared.scene;
+    const std::optional<MasksPlan> plan = plan_masks(scene);
+    if (!plan || !(prepared.spectrum.m0() > 0.0)) return {};
+    std::vector<std::string> warnings;
+    const double longest_m = kTwoPi / prepared.spectrum.longest_peak_wavenumber();
+    for (std::size_t i = 0; i < scene.waves.masks.size(); ++i) {
+        const WaveMask& mask = scene.waves.masks[i];
+        const double enough_m = std::ceil(0.5 * longest_m);
+        if (mask.waves == 1.0 || mask.edge_m >= 0.5 * longest_m) continue;
+        warnings.push_back(
+            "waves.masks[" + std::to_string(i) + "].edge_m = " + number_text(mask.edge_m) +
+            ": narrower than half the longest waves, of " + number_text(std::round(longest_m)) +
+            " m, which will be seen to end there; edge_m = " + number_text(enough_m) + " would do");
+    }
+    // Where waves are rougher than a sea that doesn't fold.
+    constexpr double kMuch = 0.05;
+    const SpectralMoments all = all_of(prepared.spectrum, Choppiness::asked(scene));
+    for (std::size_t i = 0; i < scene.waves.masks.size() && !(share_of(all, 1.0) > kMuch); ++i) {
+        const double gain = scene.waves.masks[i].waves, share = gain > 1.0 ? share_of(all, gain) : 0.0;
+        if (!(share > kMuch)) continue;
+        double less = 1.0, more = gain;
+        for (int step = 0; step < 40; ++step) {
+            const double middle = 0.5 * (less + more);
+            (share_of(all, middle) > kMuch ? more : less) = middle;
+        }
+        warnings.push_back("waves.masks[" + std::to_string(i) + "].waves = " + number_text(gain) +
+                           ": the surface folds over itself on " + percent_text(share) +
+                           " % of that place; " + number_text(std::floor(100.0 * less) / 100.0) +
+                           " leaves 5 %");
+    }
+    for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {
+        const HeroWave& hero = scene.waves.heroes[h];
+        const double raised = hero_mask(scene, hero).raise * plan->at({hero.east_m, hero.north_m}).waves;
+        if (raised > 0.99) continue;
+        warnings.push_back("waves.heroes[" + std::to_string(h) +
+                           "].height_m = " + number_text(hero.height_m) +
+                           ": stands where waves.masks leave less than a tenth of the waves, and is " +
+                           number_text(std::round(100.0 * raised * hero.height_m) / 100.0) + " m high");
+    }
     return warnings;
 }
 
@@ -254,7 +300,7 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     if (prepared.weather) return weather_warnings(*prepared.weather);
     std::vector<std::string> warnings = folding_warning(prepared);
     for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
-                       &hero_warning})
+                       &hero_warning, &mask_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
         warnings.push_back(std::move(thin));

@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/plan/choppiness.h"
+#include "core/plan/masks.h"
 #include "core/spectrum/energy_shares.h"
 #include "core/waves/loop.h"
 #include "core/waves/trains.h"
@@ -120,12 +121,12 @@ std::vector<HeroTrain> hero_trains(const PreparedScene& prepared, std::span<cons
     std::vector<double> missing(n);
     for (std::size_t h = 0; h < heroes.size(); ++h) {
         const LocalWaves& there = around[h];
-        const std::array<double, kDemands> lacks{heroes[h].height_m - there.height_m,
-                                                 -there.slope.x,
-                                                 -there.slope.y,
-                                                 -there.rate_mps,
-                                                 -there.displacement_m.x,
-                                                 -there.displacement_m.y};
+        const HeroMask mask = hero_mask(prepared.scene, heroes[h]);
+        const double height_m = mask.raise * heroes[h].height_m;
+        const glm::dvec2 slope = -height_m * mask.change_per_m - there.slope;
+        const std::array<double, kDemands> lacks{
+            height_m - there.height_m, slope.x, slope.y, -there.rate_mps, -there.displacement_m.x,
+            -there.displacement_m.y};
         std::ranges::copy(lacks, missing.begin() + static_cast<std::ptrdiff_t>(kDemands * h));
     }
     std::vector<double> of_cosine(n * modes.size()), of_sine(n * modes.size()), covariance(n * n);

@@ -274,6 +274,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
             moments_with_breaking(spectrum, 0.0, std::numeric_limits<double>::infinity(), plan_.breaking);
     }
     whitecaps_ = whitecaps(foam_life(plan_));
+    if (plan_.masks && plan_.masks->calms_ripples) slick_ = slick_moments(spectrum, plan_.filter);
 
     for (const PlannedQuery& planned : plan_.queries) {
         const std::size_t levels = planned.pixel_levels.size();
@@ -334,6 +335,7 @@ Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s
         total_ = between(first.total_, second.total_, share);
     }
     whitecaps_ = whitecaps(foam_life(plan_));
+    slick_ = between(first.slick_, second.slick_, share);
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
         const QueryStatistics &a = first.statistics_[q], &b = second.statistics_[q];
         QueryStatistics& made = statistics_.emplace_back();

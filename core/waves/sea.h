@@ -110,6 +110,8 @@ class Sea {
     // Σ over this cascade's modes within the plan's mode_radius of E|h|² [m²]: its band's m0 where that
     // reaches the band's end.
     double expected_m0(int cascade) const { return expected_m0_.at(cascade); }
+    // What a slick hides of the slopes (core/plan/masks.h); nothing where the plan has none.
+    const SpectralMoments& slick() const { return slick_; }
 
   private:
     class Progress;
@@ -127,6 +129,7 @@ class Sea {
     std::vector<QueryStatistics> statistics_;
     std::vector<EllipseMoments> ellipses_;
     std::vector<double> expected_m0_;
+    SpectralMoments slick_;
 };
 
 }  // namespace pelagic

@@ -268,9 +268,9 @@ class MapPart final : public OutputPart {
     }
 
     // Only if the patch is a common period of every cascade that shows in this map, whatever other outputs
-    // show; trains have none, nor have copies at random offsets.
+    // show; trains have none, nor have copies at random offsets or places of the world.
     bool patch_is_periodic() const {
-        if (plan_.trains || scene().waves.tiling == Tiling::Random) return false;
+        if (plan_.trains || plan_.masks || scene().waves.tiling == Tiling::Random) return false;
         const std::vector<int> levels = summed_levels(plan_, plan_.queries[output_.query]);
         for (const CascadePlan& cascade : plan_.cascades) {
             const double periods = scene().surface.size_m / cascade.size_m;
@@ -360,10 +360,20 @@ class MapPart final : public OutputPart {
         const auto add_level = [&](const std::vector<Moments>& moments) {
             const std::size_t l = texels.size();
             std::vector<glm::vec3>& level = texels.emplace_back(moments.size());
+            const auto n = static_cast<std::size_t>(exr::mip_level_size(n_, n_, static_cast<int>(l)).first);
+            const auto gain = [&](std::size_t i) {
+                if (!plan_.masks || output_.cascade) return 1.0f;
+                const glm::dvec2 texel(static_cast<double>(i % n), static_cast<double>(i / n));
+                return static_cast<float>(
+                    plan_.masks
+                        ->at(query().lattice->first_m +
+                             query().lattice->spacing_m * n_ / static_cast<double>(n) * texel)
+                        .foam);
+            };
             tbb::parallel_for(std::size_t(0), moments.size(), [&](std::size_t i) {
                 const Moments& j = moments[i];
                 const float threshold = thresholds.empty() ? slot.whitecap_threshold : thresholds[l][i];
-                level[i] = {coverage(j, threshold, third), j.mean, j.variance};
+                level[i] = {gain(i) * coverage(j, threshold, third), j.mean, j.variance};
             });
         };
         std::vector<Moments> full;

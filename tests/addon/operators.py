@@ -159,6 +159,22 @@ with checking("a hero wave stands at the cursor in the current frame"):
     later = (numbers(sea.data)[:, 2])[near].max()
     assert later < 0.8 * hero.height_m, later
 
+with checking("a calm place stands at the cursor"):
+    sea, scene = add_ocean(), bpy.context.scene
+    sea.location, sea.rotation_euler[2] = (5.0, 2.0, 0.0), 0.5
+    bpy.context.view_layer.update()
+    before = numbers(sea.data)
+    scene.cursor.location = (16.0, -9.0, 3.0)
+    bpy.ops.pelagic.list_add(path="waves.masks")
+    mask, = sea.pelagic.waves.masks
+    mask.length_m = mask.width_m = mask.edge_m = 20.0
+    bpy.context.view_layer.update()
+    heights, after = before[:, 2], numbers(sea.data)[:, 2]
+    spots = before @ np.array(sea.matrix_world.to_3x3()).T + np.array(sea.location)
+    away = np.hypot(spots[:, 0] - 16.0, spots[:, 1] + 9.0)
+    assert np.allclose(after[away < 8.0], 0.5 * heights[away < 8.0], atol=1e-5)
+    assert np.array_equal(after[away > 34.0], heights[away > 34.0]) and (away > 34.0).any()
+
 with checking("a new ocean brings water, sun and sky; a world of the artist's own stays unless the operator is asked"):
     fresh_file()
     scene = bpy.context.scene

@@ -141,6 +141,17 @@ struct HeroWave {
     double height_m = 5.0;               // of the crest over the mean level; below 0 a trough
 };
 
+// A calm or rough place of the world (core/plan/masks.h): an ellipse, and gains of the sea within it.
+struct WaveMask {
+    double east_m = 0.0, north_m = 0.0;        // its middle
+    double length_m = 200.0, width_m = 200.0;  // of the ellipse, > 0, where it holds whole
+    double direction_deg = 0.0;                // of its length, counter-clockwise from +x
+    double edge_m = 50.0;                      // > 0: round the ellipse, where it fades
+    double waves = 1.0;                        // ≥ 0, times the amplitude of all waves
+    double ripples = 1.0;                      // 0 … 1, times that of short waves: 0 is a slick
+    double foam = 1.0;                         // 0 … 1, times the coverage of what breaks
+};
+
 struct CascadeSize {
     double size_m = 400.0;               // period, > 0
     int resolution = 512;                // even, 16 … 8192
@@ -161,6 +172,7 @@ struct Waves {
     Tiling tiling = Tiling::Random;    // of the cascades (core/plan/random_tiling.h)
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     std::vector<HeroWave> heroes;
+    std::vector<WaveMask> masks;  // where they overlap, their gains multiply
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
     int trains = 250;  // 1 … 10000

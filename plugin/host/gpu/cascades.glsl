@@ -9,12 +9,12 @@ layout(std140) uniform SeaTables {
     ivec4 tile_first[(kCellLevels + kPixelLevels + kBreakingLevels) * kTileCascades];
     ivec4 tile_origin[(kCellLevels + kPixelLevels + kBreakingLevels) * kTileCascades];  // .xy: node at or below the origin; .zw: which tile that is in, modulo 2³²
     vec4 tile_scale[(kCellLevels + kPixelLevels + kBreakingLevels) * kTileCascades];    // .xy: fraction; .zw: nodes/m, split
-    vec4 levels[kCellLevels + kPixelLevels];  // .x: footprint [m]
+    vec4 levels[kCellLevels + kPixelLevels];  // .x: footprint [m]; .yz with masks, of pixels: what it leaves of m0 [m²], alone and mixed with the next
     // Four vectors per level of pixels: its unresolved moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and the
     // same eight mixed with the next level.
     vec4 unresolved_levels[4 * kPixelLevels];
     vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: the key of its random tiling; .z: tiles per metre
-    vec4 gusts[kGustRows];         // gusts.glsl
+    vec4 gusts[kGustRows + kMaskRows];  // gusts.glsl; then masks.glsl
 };
 
 uniform vec2 finest_m;             // the finest footprints of cells and pixels; trains and gusts are filtered no finer
@@ -117,6 +117,7 @@ struct FieldSums {
     vec4 first;
     float second;
     float turn;  // Dyx − Dxy, where tiles blend
+    vec3 values;  // with masks: Height, Dx, Dy
 };
 
 // The tiles that a point reads along an axis, as in core/evaluate/random_tiling.h: the cell that it lies in, and the side on
@@ -169,6 +170,7 @@ FieldSums add_tiles(sampler2D first, sampler2D second, bool both, int tile, int 
         float along_x = weight * (next_x ? x.weights.own : -x.weights.next) * x.weights.rate * weight_y;
         float along_y = weight * (next_y ? y.weights.own : -y.weights.next) * y.weights.rate * weight_x;
         sums.first += vec4(along_x * beside.y, along_y * beside.y, along_x * beside.z, along_y * beside.w);
+        if (kMasks > 0) sums.values += own * beside.yzw;
         sums.second += own * beside.x + along_y * beside.z;
         sums.turn += along_x * beside.w - along_y * beside.z;
     }
@@ -176,7 +178,7 @@ FieldSums add_tiles(sampler2D first, sampler2D second, bool both, int tile, int 
 }
 
 FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_level, vec2 rest_m, Footprint footprint) {
-    FieldSums sums = FieldSums(vec4(0.0), 0.0, 0.0);
+    FieldSums sums = FieldSums(vec4(0.0), 0.0, 0.0, vec3(0.0));
     for (int c = 0; c < kCascades; ++c) {
         Taps taps = taps_in(c, footprint);
         int last = last_tap(taps);
@@ -199,7 +201,10 @@ FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_l
                 bspline_weights(place.rest.x, wx);
                 bspline_weights(place.rest.y, wy);
                 sums.first += weight * spline_sum(first, place.texel, wx, wy);
-                if (both) sums.second += weight * spline_sum(second, place.texel, wx, wy).x;
+                if (!both) continue;
+                vec4 beside = spline_sum(second, place.texel, wx, wy);
+                sums.second += weight * beside.x;
+                if (kMasks > 0) sums.values += weight * beside.yzw;
             }
         }
     }
@@ -214,13 +219,14 @@ vec3 cell_cascades(vec2 rest_m, Footprint footprint) {
 
 struct PixelFields {
     float slope_x, slope_y, dxx, dyy, dxy, dyx;
+    vec3 values;  // with masks: Height, Dx, Dy
 };
 
 PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
-    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, kChoppy || kRandomTiling, kCellLevels, rest_m, footprint);
+    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, kChoppy || kRandomTiling || kMasks > 0, kCellLevels, rest_m, footprint);
     vec4 sum = sums.first;
-    if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0, 0.0);
-    return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second, sums.second + sums.turn);
+    if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0, 0.0, vec3(sums.values.x, 0.0, 0.0));
+    return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second, sums.second + sums.turn, sums.values);
 }
 
 uniform float breaking_footprint_m;
@@ -231,13 +237,17 @@ bool breaks_apart(Footprint footprint) {
            (!kChoppy || kTrains || levels[kCellLevels + footprint.blend.lower].x < breaking_footprint_m);
 }
 
-// Their Dxx, Dyy, Dxy, Dyx.
-vec4 breaking_cascades(vec2 rest_m, Footprint pixel) {
+struct BreakingFields {
+    vec4 gradient;  // Dxx, Dyy, Dxy, Dyx
+    vec2 values;    // with masks: Dx, Dy
+};
+
+BreakingFields breaking_cascades(vec2 rest_m, Footprint pixel) {
     Footprint footprint = pixel;
     footprint.width = max(pixel.width, breaking_footprint_m);
     if (!(footprint.along > footprint.width)) footprint.along = 0.0;
     FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, true, kCellLevels + kPixelLevels, rest_m, footprint);
-    return vec4(sums.first.zw, sums.second, sums.second + sums.turn);
+    return BreakingFields(vec4(sums.first.zw, sums.second, sums.second + sums.turn), kChoppy ? sums.values.yz : vec2(0.0));
 }
 
 // What an ellipse leaves unresolved beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy,

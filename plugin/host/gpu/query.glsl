@@ -16,17 +16,20 @@ vec3 train_footprint(vec3 given, float finest) {
 
 // Height, Dx, Dy of the point that rests at x.
 vec3 query_cell(vec2 rest_m, vec3 cell) {
-    vec3 sum = cell_cascades(rest_m, footprint_of(0, kCellLevels, cell));
+    Footprint footprint = footprint_of(0, kCellLevels, cell);
+    vec3 sum = cell_cascades(rest_m, footprint);
+    if (kCalmCell >= 0) sum = calm_cell(rest_m, footprint, sum);
     if (kTrains) sum += cell_trains(split_metres(rest_m), train_footprint(cell, finest_m.x));
-    return sum;
+    return kMasks > 0 ? masks_at(rest_m).waves * sum : sum;
 }
 
 // The slopes that a mesh of such cells leaves unresolved, at rest: variances (xx, yy, xy).
 vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(kCellLevels, kPixelLevels, cell);
-    TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), vec4(0.0), unresolved_of(footprint));
+    TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec3(0.0)), vec4(0.0), unresolved_of(footprint));
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y), sums);
     PixelMoments unresolved = possible_moments(sums.unresolved);
+    if (kMasks > 0) unresolved = masked_moments(unresolved, footprint, masks_at(rest_m));
     return vec3(unresolved.xx, unresolved.yy, unresolved.xy);
 }
 
@@ -47,11 +50,22 @@ struct PixelAnswer {
 PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     Footprint footprint = footprint_of(kCellLevels, kPixelLevels, pixel);
     bool apart = kCoverage && breaks_apart(footprint);
-    vec4 breaking = apart ? breaking_cascades(rest_m, footprint) : vec4(0.0);
-    TrainSums sums = TrainSums(pixel_cascades(rest_m, footprint), breaking, unresolved_of(footprint));
+    BreakingFields breaking = BreakingFields(vec4(0.0), vec2(0.0));
+    if (apart) breaking = breaking_cascades(rest_m, footprint);
+    PixelFields cascades_here = pixel_cascades(rest_m, footprint);
+    if (kCalmPixel >= 0) cascades_here = calm_pixel(rest_m, footprint, cascades_here);
+    vec2 before_trains = cascades_here.values.yz;
+    TrainSums sums = TrainSums(cascades_here, breaking.gradient, unresolved_of(footprint));
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
     PixelFields f = sums.fields;
     PixelMoments unresolved = possible_moments(sums.unresolved);
+    MaskGains masks = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
+    if (kMasks > 0) {
+        masks = masks_at(rest_m);
+        sums.breaking = masked_gradient(sums.breaking, breaking.values + (f.values.yz - before_trains), masks);
+        f = masked_fields(f, masks);
+        unresolved = masked_moments(unresolved, footprint, masks);
+    }
     SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dyx);
     if (kShaped)
         n = normal_on(SurfaceNormal(rest_normal.x, rest_normal.y, rest_normal.z), f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy,
@@ -67,6 +81,7 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
                                          UnresolvedGradients(unresolved.xxxx, unresolved.xxxy, unresolved.xxyy, unresolved.xyyy,
                                                       unresolved.yyyy)),
                         gust.whitecap_threshold, kThirdMoment);
+    if (kMasks > 0) foam *= masks.foam;
     return PixelAnswer(vec3(n.x, n.y, n.z), gust.factor * vec3(carried.xx, carried.yy, carried.xy),
                        vec3(unresolved.xx, unresolved.yy, unresolved.xy), foam, float(footprint.blend.lower) + footprint.blend.t);
 }

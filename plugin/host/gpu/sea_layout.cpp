@@ -53,8 +53,8 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Le
     if (breaks && (!is_choppy || plan.trains || planned.breaking_levels != planned.pixel_levels))
         breaking = levels_of(plan, planned.query.pixel_m, planned.breaking_levels);
     const glm::ivec2 cell_size = place(plan, {&cells}), pixel_size = place(plan, {&pixels, &breaking});
-    // Where tiles blend, derivatives need the fields that they are derivatives of.
-    if (blends_tiles(plan))
+    // Where tiles blend, or the sea's amplitude changes with the place, derivatives need the fields that they are derivatives of.
+    if (blends_tiles(plan) || plan.masks)
         return {is_choppy ? Plane{true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size}
                           : Plane{true, 1, {Field::Height}, cell_size},
                 {false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size},
@@ -92,10 +92,21 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
             unresolved[i] = static_cast<float>(whole[i] - shown[i]);
         return unresolved;
     };
-    for (std::size_t i = 0; i < pixels_.footprints_m.size(); ++i)
-        unresolved_.push_back({left(statistics.resolved[i]), i + 1 < pixels_.footprints_m.size()
-                                                                 ? left(statistics.resolved_next[i])
-                                                                 : UnresolvedMoments<float>{}});
+    const double whole_m0 = has_trains() ? sea_->trains().outside.m0 : statistics.whole.m0;
+    for (std::size_t i = 0; i < pixels_.footprints_m.size(); ++i) {
+        unresolved_.push_back(
+            {.alone = left(statistics.resolved[i]), .m0_alone = whole_m0 - statistics.resolved[i].m0});
+        if (i + 1 == pixels_.footprints_m.size()) break;
+        unresolved_.back().with_next = left(statistics.resolved_next[i]);
+        unresolved_.back().m0_with_next = whole_m0 - statistics.resolved_next[i].m0;
+    }
+    const PlannedQuery& planned = plan.queries[query];
+    const auto place_among = [](const std::vector<int>& calm, const std::vector<int>& all) {
+        const auto found = calm.empty() ? all.end() : std::ranges::find(all, calm.front());
+        return found == all.end() ? -1 : static_cast<int>(found - all.begin());
+    };
+    calm_cell_ = place_among(planned.calm_cells, planned.cell_levels);
+    calm_pixel_ = place_among(planned.calm_pixels, planned.pixel_levels);
 }
 
 SeaLayout::Levels SeaLayout::levels_of(const Plan& plan, const std::vector<double>& footprints_m,

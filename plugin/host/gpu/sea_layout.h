@@ -34,6 +34,12 @@ class SeaLayout {
     bool has_living_foam() const { return has_coverage_ && sea_->plan().foam.has_value(); }
     bool has_trains() const { return sea_->plan().trains.has_value(); }
     bool has_gusts() const { return sea_->gusts().has_value(); }
+    // Calm and rough places (masks.glsl): how many, their rows of the uniform block, and the levels of cells and pixels that show what a
+    // slick leaves; −1: none is finer.
+    int masks() const { return sea_->plan().masks ? static_cast<int>(sea_->plan().masks->masks.size()) : 0; }
+    int mask_rows() const { return masks() > 0 ? 3 * masks() + 1 : 0; }
+    int calm_cell() const { return calm_cell_; }
+    int calm_pixel() const { return calm_pixel_; }
     int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }
 
     // A texture: rows of `width` texels, fields interleaved, zeros up to `channels`.
@@ -74,6 +80,7 @@ class SeaLayout {
     // The unresolved moments of a level of pixels without the trains' part: alone, and mixed with the next level.
     struct UnresolvedLevel {
         UnresolvedMoments<float> alone{}, with_next{};
+        double m0_alone = 0.0, m0_with_next = 0.0;  // of heights [m²]
     };
     const std::vector<UnresolvedLevel>& unresolved() const { return unresolved_; }
 
@@ -105,6 +112,7 @@ class SeaLayout {
     std::shared_ptr<const Sea<float>> sea_;
     int query_ = 0;
     bool is_choppy_ = false, has_coverage_ = false;
+    int calm_cell_ = -1, calm_pixel_ = -1;
     std::vector<Plane> planes_;
     Levels cells_, pixels_, breaking_;
     std::vector<UnresolvedLevel> unresolved_;

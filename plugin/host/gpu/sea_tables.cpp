@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/plan/masks.h"
 #include "core/plan/random_tiling.h"
 #include "core/plan/taps.h"
 #include "plugin/host/gpu/sea_layout.h"
@@ -65,6 +66,24 @@ std::vector<std::array<float, 4>> rows_of(const Gusts& gusts, glm::dvec2 origin_
     return rows;
 }
 
+// Those of masks.glsl.
+std::vector<std::array<float, 4>> rows_of(const MasksPlan& plan, const SpectralMoments& slick,
+                                          glm::dvec2 origin_m) {
+    const auto row = [](double a, double b, double c, double d) {
+        return std::array{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c),
+                          static_cast<float>(d)};
+    };
+    std::vector<std::array<float, 4>> rows;
+    for (const MasksPlan::Mask& mask : plan.masks) {
+        const glm::dvec2 from = origin_m - mask.middle_m, in = mask.inner_per_m, out = mask.outer_per_m;
+        rows.push_back(row(from.x, from.y, mask.along.x, mask.along.y));
+        rows.push_back(row(in.x, in.y, out.x, out.y));
+        rows.push_back(row(mask.waves, mask.ripples, mask.foam, mask.reach_m));
+    }
+    rows.push_back(row(slick.xx, slick.xy, slick.yy, 0.0));
+    return rows;
+}
+
 }  // namespace
 
 std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within_loop_s) const {
@@ -82,6 +101,11 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
         }
         for (const double footprint_m : all->footprints_m)
             if (all != &breaking_) level.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
+        for (std::size_t i = 0; masks() > 0 && all == &pixels_ && i < unresolved_.size(); ++i) {
+            std::array<float, 4>& row = level[level.size() - unresolved_.size() + i];
+            row[1] = static_cast<float>(unresolved_[i].m0_alone);
+            row[2] = static_cast<float>(unresolved_[i].m0_with_next);
+        }
     }
     first.resize(tiles);
     origin.resize(tiles);
@@ -112,6 +136,7 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
     append(cascades);
     append(sea_->gusts() ? rows_of(*sea_->gusts(), origin_m, time_within_loop_s)
                          : std::vector<std::array<float, 4>>(SeaLayout::kGustRows));
+    if (masks() > 0) append(rows_of(*sea_->plan().masks, sea_->slick(), origin_m));
     return block;
 }
 

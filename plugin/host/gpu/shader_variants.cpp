@@ -88,17 +88,27 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl",  "plugin/host/gpu/prelude.glsl",
-        "core/plan/filter.inl",        "core/plan/taps.inl",
-        "core/plan/random_tiling.inl", "core/waves/spline.inl",
-        "core/waves/whitecaps.inl",    "core/waves/gusts.inl",
-        "core/evaluate/surface.inl",   "core/evaluate/rest_normal.inl",
-        "core/waves/trains.inl",       "core/evaluate/unresolved.inl",
-        "core/surface/earth.inl",      "core/surface/pixel_footprint.inl",
-        "plugin/host/gpu/places.glsl", "plugin/host/gpu/cascades.glsl",
-        "plugin/host/gpu/trains.glsl", "plugin/host/gpu/gusts.glsl",
-        "plugin/host/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
+                                                     "plugin/host/gpu/prelude.glsl",
+                                                     "core/plan/filter.inl",
+                                                     "core/plan/masks.inl",
+                                                     "core/plan/taps.inl",
+                                                     "core/plan/random_tiling.inl",
+                                                     "core/waves/spline.inl",
+                                                     "core/waves/whitecaps.inl",
+                                                     "core/waves/gusts.inl",
+                                                     "core/evaluate/surface.inl",
+                                                     "core/evaluate/rest_normal.inl",
+                                                     "core/waves/trains.inl",
+                                                     "core/evaluate/unresolved.inl",
+                                                     "core/surface/earth.inl",
+                                                     "core/surface/pixel_footprint.inl",
+                                                     "plugin/host/gpu/places.glsl",
+                                                     "plugin/host/gpu/cascades.glsl",
+                                                     "plugin/host/gpu/trains.glsl",
+                                                     "plugin/host/gpu/gusts.glsl",
+                                                     "plugin/host/gpu/masks.glsl",
+                                                     "plugin/host/gpu/query.glsl"};
     return files;
 }
 
@@ -114,6 +124,9 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            constant("kRandomTiling", layout.has_random_tiling()) + constant("kCoverage", coverage) +
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
            constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
+           constant("kMasks", layout.masks()) + constant("kMaskRows", layout.mask_rows()) +
+           constant("kCalmCell", layout.calm_cell()) + constant("kCalmPixel", layout.calm_pixel()) +
+           "const float kSlick_m = " + std::to_string(kSlick_m) + ";\n" +
            constant("kGustRows", SeaLayout::kGustRows) + constant("kGustWaves", GustsPlan::kWaves) +
            constant("kGustLevelTerms", Gusts::kLevelTerms) + constant("kGustKeptTerms", Gusts::kKeptTerms) +
            constant("kNodesALevel", EllipseTable::kNodesALevel) +

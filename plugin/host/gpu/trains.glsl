@@ -69,6 +69,7 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
     vec4 first = vec4(0.0);
     float dxy = 0.0;
     vec3 breaking = vec3(0.0);
+    vec3 values = vec3(0.0);
     for (int i = 0; i < end; ++i) {
         vec2 wave = train_sine_cosine(i, x);
         vec4 train = texelFetch(train_table, ivec2(i, 3), 0);
@@ -83,7 +84,9 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
             high += gradient_part * texelFetch(train_table, ivec2(i, 5), 0);
         }
         vec4 amplitude = texelFetch(train_table, ivec2(i, 1), 0);
-        float across = texelFetch(train_table, ivec2(i, 2), 0).x;
+        vec4 more = texelFetch(train_table, ivec2(i, 2), 0);
+        float across = more.x;
+        if (kMasks > 0) values += vec3(more.y * wave.y, more.z * wave.x, more.w * wave.x);
         first += amplitude * vec4(wave.x, wave.x, wave.y, wave.y);
         dxy += across * wave.y;
         breaking += vec3(amplitude.zw, across) * most;
@@ -95,7 +98,7 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
     PixelFields f = sums.fields;
     PixelMoments m = sums.unresolved;
     return TrainSums(PixelFields(f.slope_x + first.x, f.slope_y + first.y, f.dxx + first.z, f.dyy + first.w,
-                                 f.dxy + dxy, f.dyx + dxy),
+                                 f.dxy + dxy, f.dyx + dxy, f.values + (kChoppy ? values : vec3(values.x, 0.0, 0.0))),
                      sums.breaking + vec4(breaking, breaking.z),
                      PixelMoments(m.xx + low.x, m.xy + low.y, m.yy + low.z, m.xxxx + low.w, m.xxxy + high.x,
                                   m.xxyy + high.y, m.xyyy + high.z, m.yyyy + high.w));

@@ -95,6 +95,7 @@ double most_of(const Frame<float>& frame, Field field) {
         for (const std::size_t axis : {0, 1, 2})
             if (field == kVelocities[axis]) add(trains.growth[axis]);
     }
+    if (plan.masks) most *= plan.masks->largest();
     constexpr double kRounding = 1e-4;  // of hundreds of sums in single precision
     return (1.0 + kRounding) * most;
 }

@@ -18,6 +18,7 @@ Scene with_all() {
     scene.waves.cascades = {{400.0, 128}};
     scene.sea.gust_strength = 0.5;
     scene.effects.spray = true;
+    scene.waves.masks = {{.waves = 0.5}};
     return scene;
 }
 

@@ -87,6 +87,18 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) { s.waves.heroes = {{.frame = v}}; }},
         {"waves.heroes[0].height_m", limits::kHeroHeight_m,
          [](Scene& s, double v) { s.waves.heroes = {{.frame = 1.0, .height_m = v}}; }},
+        {"waves.masks[0].length_m", limits::kMaskSize_m,
+         [](Scene& s, double v) { s.waves.masks = {{.length_m = v}}; }},
+        {"waves.masks[0].width_m", limits::kMaskSize_m,
+         [](Scene& s, double v) { s.waves.masks = {{.width_m = v}}; }},
+        {"waves.masks[0].edge_m", limits::kMaskEdge_m,
+         [](Scene& s, double v) { s.waves.masks = {{.edge_m = v}}; }},
+        {"waves.masks[0].waves", limits::kMaskWaves,
+         [](Scene& s, double v) { s.waves.masks = {{.waves = v}}; }},
+        {"waves.masks[0].ripples", limits::kMaskShare,
+         [](Scene& s, double v) { s.waves.masks = {{.ripples = v}}; }},
+        {"waves.masks[0].foam", limits::kMaskShare,
+         [](Scene& s, double v) { s.waves.masks = {{.foam = v}}; }},
         {"waves.shortest_m", limits::kTrain_m,
          [](Scene& s, double v) {
              s.waves.model = WaveModel::Trochoid;

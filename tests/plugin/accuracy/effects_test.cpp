@@ -56,6 +56,8 @@ constexpr auto kSwitches = std::to_array<Switch>({
          scene.effects.spray_gain = 10.0;
      }},
     {"gusts", [](Scene& scene) { scene.sea.gust_strength = 0.4; }},
+    {"calm and rough places",
+     [](Scene& scene) { scene.waves.masks = {{.waves = 0.5, .ripples = 0.0, .foam = 0.5}}; }},
 });
 
 Scene with_all_but(const std::string& name) {

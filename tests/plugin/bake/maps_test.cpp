@@ -129,6 +129,33 @@ TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
     EXPECT_GT(std::abs(whole / fine_coverage - 1.0), 1e-4);
 }
 
+// What breaks has its gain in coarser levels as well, and a sea with places repeats nowhere.
+TEST_F(BakedMaps, WhitecapLevelsHaveTheGainsOfPlaces) {
+    scene_.effects.foam_decay_s = 0.0;
+    const auto level_of = [&](int level) {
+        const fs::path file = bake_map(MapKind::Whitecaps, "maps/sea.whitecaps.0001.exr");
+        return test::read_level(file, "R", level);
+    };
+    const auto plain = level_of(0);
+    scene_.waves.masks = {
+        {.east_m = -150.0, .length_m = 240.0, .width_m = 1200.0, .edge_m = 30.0, .foam = 0.0}};
+    for (const int l : {0, 2}) {
+        const auto foam = level_of(l);
+        double within = 0.0, beyond = 0.0;
+        for (int y = foam.n / 4; y < 3 * foam.n / 4; ++y)
+            for (int x = 0; x < foam.n; ++x) {
+                const double east_m = -300.0 + 600.0 * x / foam.n, of = static_cast<double>(foam.at(x, y));
+                if (l == 0 && east_m > 10.0) {
+                    EXPECT_EQ(foam.at(x, y), plain.at(x, y));
+                }
+                if (std::abs(east_m + 150.0) < 100.0) within += of;
+                if (east_m > 10.0) beyond += of;
+            }
+        EXPECT_EQ(within, 0.0) << l;
+        EXPECT_GT(beyond, 0.01) << l;
+    }
+}
+
 // Beside rays of the sun that know only Fresnel and Snell, and meet the slopes that the map doesn't resolve by chance.
 TEST_F(BakedMaps, FloorsHaveTheLightOfRaysThroughTheSea) {
     constexpr int kSide = 128, kTexels = 4, kBins = kSide / kTexels;

@@ -240,6 +240,30 @@ TEST(QueryOnTheGpu, OfHeroesIsEvaluates) {
         compare(scene, picture_query(), {}, 5000);
     }
 }
+TEST(QueryOnTheGpu, OfCalmAndRoughPlacesIsEvaluates) {
+    Query fine = picture_query();
+    fine.cell_m = {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+    fine.pixel_m = fine.cell_m;
+    const std::vector<WaveMask> masks{
+        {.east_m = 10.0,
+         .length_m = 300.0,
+         .width_m = 60.0,
+         .direction_deg = 35.0,
+         .edge_m = 60.0,
+         .waves = 0.3},
+        {.north_m = 40.0, .edge_m = 70.0, .waves = 1.4, .foam = 0.5},
+        {.east_m = -20.0, .length_m = 70.0, .width_m = 40.0, .edge_m = 15.0, .ripples = 0.3}};
+    const Compared at{.unresolved_mss = 4e-6f};  // in a rough place there is twice as much of them
+    Scene scene = copied(WaveModel::Fft);
+    scene.waves.masks = masks;
+    compare(scene, fine, at, 3000);
+    for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
+        scene = scene_of_model(model);
+        scene.waves.tiling = Tiling::Periodic;
+        scene.waves.masks = {masks[0], masks[1]};
+        compare(scene, picture_query(), at, 3000);
+    }
+}
 TEST(QueryOnTheGpu, OfFourTapsAndTwoMomentsIsEvaluates) {
     Scene scene = scene_of_model(WaveModel::Fft);
     scene.quality.level = QualityLevel::Draft;

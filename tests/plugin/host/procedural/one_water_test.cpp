@@ -74,8 +74,10 @@ std::vector<float> water_in_python(const std::string& text, const std::vector<gl
 }
 
 TEST(OneWater, IsTheSameInCAndCppAndPython) {
-    for (const double choppiness : {1.0, 8.0}) {  // a sea, and one that has folded over itself
-        const std::string text = sea_text(choppiness);
+    // A sea, one with a lee and a slick, and one that has folded over itself.
+    const std::string places_text =
+        "masks = [ { east_m = -50.0, north_m = 40.0, edge_m = 90.0, waves = 0.3, ripples = 0.0 } ]\n";
+    for (const std::string& text : {sea_text(1.0), sea_text(1.0) + places_text, sea_text(8.0)}) {
         const auto at = places();
         Ocean ocean(parse_shot(text, "shot.toml", check_scene), kFootprint_m);
         ocean.set(kTime_s);

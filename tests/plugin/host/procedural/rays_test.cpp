@@ -380,9 +380,14 @@ TEST_P(RaysAgainstMesh, MeetTheSeaWhereItIs) {
 
 constexpr char kStorm[] = "[sea]\nwind_speed_mps = 22.0\n[waves]\nchoppiness = 1.2\n";
 constexpr char kTrains[] = "[sea]\nwind_speed_mps = 9.0\n[waves]\nmodel = \"trochoid\"\n";
+// A rough place and a lee within reach of each other.
+constexpr char kPlaces[] =
+    "[[waves.masks]]\neast_m = 8.0\nnorth_m = 0.0\nlength_m = 10.0\nwidth_m = 6.0\nedge_m = 8.0\nwaves = 2.0\n"
+    "[[waves.masks]]\neast_m = -10.0\nnorth_m = 4.0\nlength_m = 12.0\nwidth_m = 12.0\nedge_m = 9.0\nwaves = 0.1\n";
 INSTANTIATE_TEST_SUITE_P(Seas, RaysAgainstMesh,
                          ::testing::Values(Sea{"storm", kStorm, 0.0, {2e6, -7e5}},
-                                           Sea{"shutter", "", 0.02, {}}, Sea{"trains", kTrains, 0.0, {}}),
+                                           Sea{"places", kPlaces, 0.01, {}}, Sea{"shutter", "", 0.02, {}},
+                                           Sea{"trains", kTrains, 0.0, {}}),
                          [](const auto& sea) { return std::string(sea.param.name); });
 
 }  // namespace

@@ -1,0 +1,83 @@
+#include "core/plan/masks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/constants.h"
+
+namespace pelagic {
+
+std::optional<MasksPlan> plan_masks(const Scene& scene) {
+    MasksPlan plan;
+    for (const WaveMask& mask : scene.waves.masks) {
+        if (mask.waves == 1.0 && mask.ripples == 1.0 && mask.foam == 1.0) continue;
+        const double turn = mask.direction_deg * kPi / 180.0;
+        const glm::dvec2 half_m(0.5 * mask.length_m, 0.5 * mask.width_m);
+        plan.masks.push_back({.middle_m = {mask.east_m, mask.north_m},
+                              .along = {std::cos(turn), std::sin(turn)},
+                              .inner_per_m = 1.0 / half_m,
+                              .outer_per_m = 1.0 / (half_m + mask.edge_m),
+                              .reach_m = std::max(half_m.x, half_m.y) + mask.edge_m,
+                              .waves = mask.waves,
+                              .ripples = mask.ripples,
+                              .foam = mask.foam});
+        plan.changes_waves = plan.changes_waves || mask.waves != 1.0;
+        plan.calms_ripples = plan.calms_ripples || mask.ripples != 1.0;
+        plan.calms_foam = plan.calms_foam || mask.foam != 1.0;
+    }
+    if (plan.masks.empty()) return std::nullopt;
+    return plan;
+}
+
+MasksPlan::Gains MasksPlan::gains_in(glm::dvec2 min_m, glm::dvec2 max_m) const {
+    Gains gains;
+    for (const Mask& mask : masks) {
+        const glm::dvec2 low = min_m - mask.middle_m, high = max_m - mask.middle_m;
+        const double away = std::max({low.x, low.y, -high.x, -high.y});
+        if (away > mask.reach_m) continue;
+        gains.least *= std::min(mask.waves, 1.0);
+        gains.largest *= std::max(mask.waves, 1.0);
+    }
+    return gains;
+}
+
+double MasksPlan::largest() const {
+    constexpr double kAll_m = std::numeric_limits<double>::max();
+    return gains_in(glm::dvec2(-kAll_m), glm::dvec2(kAll_m)).largest;
+}
+
+MaskGains<double> MasksPlan::at(glm::dvec2 place_m) const {
+    MaskGains<double> gains{1.0, 0.0, 0.0, 1.0, 1.0};
+    for (const Mask& mask : masks) {
+        const glm::dvec2 from = place_m - mask.middle_m;
+        gains = with_mask(gains, from.x, from.y, mask.along.x, mask.along.y, mask.inner_per_m.x,
+                          mask.inner_per_m.y, mask.outer_per_m.x, mask.outer_per_m.y, mask.waves,
+                          mask.ripples, mask.foam);
+    }
+    return gains;
+}
+
+HeroMask hero_mask(const Scene& scene, const HeroWave& hero) {
+    const std::optional<MasksPlan> masks = plan_masks(scene);
+    if (!masks) return {};
+    const MaskGains<double> at = masks->at({hero.east_m, hero.north_m});
+    if (!(at.waves * kMostHeroRaise > 1.0)) return {.raise = kMostHeroRaise};
+    return {.raise = 1.0 / at.waves, .change_per_m = glm::dvec2(at.x, at.y) / at.waves};
+}
+
+SpectralMoments slick_moments(const DirectionalSpectrum& spectrum, const FootprintFilter& filter) {
+    constexpr int kSteps = 32;  // of the octave in which waves fade
+    const double end = filter.cutoff(kSlick_m), begin = end * filter.n_min / filter.n_max;
+    SpectralMoments hidden = moments(spectrum, end, std::numeric_limits<double>::infinity());
+    const auto edge = [&](int i) { return begin * std::pow(end / begin, i / double{kSteps}); };
+    for (int i = 0; i < kSteps; ++i) {
+        const double low = edge(i), high = edge(i + 1),
+                     weight = filter.weight(std::sqrt(low * high), kSlick_m);
+        SpectralMoments part = moments(spectrum, low, high);
+        hidden += part *= 1.0 - weight * weight;
+    }
+    return hidden.scale_gradients(0.0);
+}
+
+}  // namespace pelagic

@@ -1,0 +1,57 @@
+// Calm and rough places (core/plan/masks.h), for plain numbers and for GLSL: see core/base/number.h. After filter.inl, of which it
+// is made.
+
+// A mask's share at a place: 1 within its ellipse, 0 beyond its edge, smooth between; and how it changes with the place [1/m].
+template <class T>
+struct MaskShare {
+    T share, x, y;
+};
+
+// u, v: from the middle, along the ellipse and across [m]; per metre: one over the half axes of the ellipse (inner) and of the one
+// round its edge (outer). Along each ray from the middle the edge goes from q₁ = 1 to q₂ = 1.
+template <class T>
+inline MaskShare<T> mask_share(T u, T v, T inner_u, T inner_v, T outer_u, T outer_v) {
+    const T u1 = u * inner_u, v1 = v * inner_v, u2 = u * outer_u, v2 = v * outer_v;
+    const T q1 = maximum(square_root(u1 * u1 + v1 * v1), T(1e-6)),
+            q2 = maximum(square_root(u2 * u2 + v2 * v2), T(1e-6));
+    const T between = maximum(q1 - q2, T(1e-6));
+    const T t = minimum(maximum((q1 - T(1)) * q2 / between, T(0)), T(1));
+    const T u1_rate = u1 * inner_u / q1, v1_rate = v1 * inner_v / q1, u2_rate = u2 * outer_u / q2,
+            v2_rate = v2 * outer_v / q2;
+    const T rate = T(-6) * t * (T(1) - t) / between;
+    return MaskShare<T>(T(1) - smooth_rise(t),
+                        rate * (u1_rate * q2 + (q1 - T(1)) * u2_rate - t * (u1_rate - u2_rate)),
+                        rate * (v1_rate * q2 + (q1 - T(1)) * v2_rate - t * (v1_rate - v2_rate)));
+}
+
+// The gains of all masks at a place, and how that of the waves changes with it [1/m].
+template <class T>
+struct MaskGains {
+    T waves, x, y, ripples, foam;
+};
+
+// With one more, whose ellipse lies along (along_x, along_y). The place: from its middle [m].
+template <class T>
+inline MaskGains<T> with_mask(MaskGains<T> all, T x, T y, T along_x, T along_y, T inner_u, T inner_v,
+                              T outer_u, T outer_v, T waves, T ripples, T foam) {
+    MaskShare<T> at =
+        mask_share(x * along_x + y * along_y, y * along_x - x * along_y, inner_u, inner_v, outer_u, outer_v);
+    const T more = waves - T(1), own = T(1) + more * at.share;
+    return MaskGains<T>(all.waves * own, all.x * own + all.waves * more * (at.x * along_x - at.y * along_y),
+                        all.y * own + all.waves * more * (at.x * along_y + at.y * along_x),
+                        all.ripples * (T(1) + (ripples - T(1)) * at.share),
+                        all.foam * (T(1) + (foam - T(1)) * at.share));
+}
+
+// Where the waves are m times as high: derivatives of m f, of which f and its derivatives are given.
+template <class T>
+inline T masked_slope(T slope, T value, T gain, T gain_rate) {
+    return gain * slope + value * gain_rate;
+}
+
+// A variance of slopes that a pixel hides: `hidden` all, `calmed` without ripples where a slick leaves none, `kept` what it leaves of
+// their amplitude.
+template <class T>
+inline T hidden_with_ripples(T hidden, T calmed, T kept) {
+    return kept * kept * hidden + (T(1) - kept * kept) * calmed;
+}

@@ -1,0 +1,370 @@
+// Calm and rough places (waves.masks): slopes, velocities and J are those of the positions, what is shown and hidden adds up to what the
+// masks say, a calm has no foam, and where no mask reaches the sea is the same, to the bit.
+#include "core/plan/masks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/effects/sea_at_time.h"
+#include "core/waves/folding.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+constexpr double kTime_s = 2.5;
+
+// Young wind waves, of which masks of a hundred metres hold many.
+Scene young_sea(std::vector<WaveMask> masks = {}) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 5.0;
+    scene.sea.fetch_m = 3e3;
+    scene.waves.cascades = {{64.0, 64}, {18.0, 64}};
+    scene.quality.level = QualityLevel::Reference;
+    scene.effects.breaking_from_m = 0.0;
+    scene.waves.masks = std::move(masks);
+    return scene;
+}
+
+// A lee and a rough place whose edges cross.
+const std::vector<WaveMask> kTwo{
+    {.east_m = 5.0,
+     .north_m = -3.0,
+     .length_m = 60.0,
+     .width_m = 25.0,
+     .direction_deg = 30.0,
+     .edge_m = 12.0,
+     .waves = 0.2},
+    {.east_m = 30.0, .north_m = 8.0, .length_m = 20.0, .width_m = 20.0, .edge_m = 25.0, .waves = 1.7}};
+
+TEST(Masks, HaveTheNormalsTheJacobianAndTheVelocityOfTheirPositions) {
+    constexpr double kStep = 1e-4;
+    const ProductSet wanted = products(Position, Normal, Velocity, Product::JacobianMoments);
+    const auto rest = random_points<double>(160.0, 1500);
+    for (const bool is_trains : {false, true})
+        for (const Tiling tiling : {Tiling::Random, Tiling::Periodic})
+            for (const double footprint_m : {0.0, 1.0}) {
+                Scene scene = young_sea(kTwo);
+                scene.waves.tiling = tiling;
+                if (is_trains) {
+                    scene.waves.model = WaveModel::Trochoid;
+                    scene.waves.cascades.clear();
+                    scene.waves.trains = 40;
+                }
+                SCOPED_TRACE(testing::Message()
+                             << is_trains << ' ' << (tiling == Tiling::Random) << ' ' << footprint_m);
+                const std::vector<Query> queries{filtered(wanted, footprint_m)};
+                auto frame = frame_of<double>(scene, queries, kTime_s);
+                const Where<double> at{.origin_m = {3.0, -2.0}, .cell_m = {}, .pixel_m = {}};
+                const auto moved = [&](glm::dvec2 by) {
+                    std::vector<glm::dvec2> there = rest;
+                    for (glm::dvec2& x : there) x += by;
+                    return sample(frame, 0, there, at).vectors(Position);
+                };
+                const auto east = moved({kStep, 0.0}), west = moved({-kStep, 0.0}),
+                           north = moved({0.0, kStep}), south = moved({0.0, -kStep});
+                const auto answers = sample(frame, 0, rest, at);
+                frame.set(kTime_s + kStep);
+                const auto after = moved({});
+                frame.set(kTime_s - kStep);
+                const auto before = moved({});
+                for (std::size_t i = 0; i < rest.size(); ++i) {
+                    const glm::dvec3 tx = (east[i] - west[i]) / (2.0 * kStep),
+                                     ty = (north[i] - south[i]) / (2.0 * kStep);
+                    const glm::dvec3 across = glm::cross(tx, ty);
+                    ASSERT_NEAR(glm::length(answers.vectors(Normal)[i] - glm::normalize(across)), 0.0, 2e-5)
+                        << i;
+                    ASSERT_NEAR(answers.vectors(Product::JacobianMoments)[i].x, across.z, 2e-5) << i;
+                    const glm::dvec3 velocity = (after[i] - before[i]) / (2.0 * kStep);
+                    ASSERT_NEAR(glm::length(answers.vectors(Velocity)[i] - velocity), 0.0, 1e-5) << i;
+                }
+            }
+}
+
+// Whoever asks for what else: a query of levels, one footprint, with points of a slick and an edge beside them.
+TEST(Masks, LeaveTheSeaBeyondThemAsItIsToTheBit) {
+    std::vector<WaveMask> masks = kTwo;
+    masks.push_back(
+        {.east_m = -40.0, .length_m = 20.0, .width_m = 10.0, .edge_m = 4.0, .ripples = 0.0, .foam = 0.5});
+    Query levels = unfiltered(products(Position, Normal, Velocity, SlopeVariance, Product::Breaking));
+    levels.cell_m = {0.0, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0};
+    levels.pixel_m = {0.0, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0};
+    Query one = levels;
+    one.cell_m = one.pixel_m = {0.0625};
+    Scene plain = young_sea(), masked = young_sea(masks);
+    plain.effects.breaking_from_m = masked.effects.breaking_from_m = 1.0;
+    const auto a = frame_of<float>(plain, {levels, one}, kTime_s),
+               b = frame_of<float>(masked, {levels, one}, kTime_s);
+    const auto rest = random_points<float>(160.0, 3000);
+    Where<float> where;
+    for (std::size_t i = 0; i < rest.size(); ++i) where.cell_m.push_back(0.05f * static_cast<float>(i % 40));
+    where.pixel_m = where.cell_m;
+    const MasksPlan& plan = *b.sea().plan().masks;
+    for (int query = 0; query < 2; ++query) {
+        const auto was = sample(a, query, rest, where), is = sample(b, query, rest, where);
+        int beyond = 0, changed = 0;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const MaskGains<double> gains = plan.at(glm::dvec2(rest[i]));
+            const bool is_same = was.vectors(Position)[i] == is.vectors(Position)[i] &&
+                                 was.vectors(Normal)[i] == is.vectors(Normal)[i] &&
+                                 was.vectors(Velocity)[i] == is.vectors(Velocity)[i] &&
+                                 was.vectors(SlopeVariance)[i] == is.vectors(SlopeVariance)[i] &&
+                                 was.numbers(Product::Breaking)[i] == is.numbers(Product::Breaking)[i];
+            if (gains.waves == 1.0 && gains.ripples == 1.0 && gains.foam == 1.0) {
+                ++beyond;
+                ASSERT_TRUE(is_same) << i;
+            }
+            changed += !is_same;
+            const auto alone =
+                sample(b, query, {rest[i]},
+                       {.origin_m = {}, .cell_m = {where.cell_m[i]}, .pixel_m = {where.pixel_m[i]}});
+            ASSERT_EQ(alone.vectors(Normal)[0], is.vectors(Normal)[i]) << i;
+            ASSERT_EQ(alone.vectors(SlopeVariance)[0], is.vectors(SlopeVariance)[i]) << i;
+        }
+        EXPECT_GT(beyond, 1000);
+        EXPECT_GT(changed, 500);
+    }
+}
+
+TEST(Masks, ThatChangeNothingAreNone) {
+    EXPECT_FALSE(plan_masks(young_sea()));
+    EXPECT_FALSE(plan_masks(young_sea({{.east_m = 5.0}})));
+    EXPECT_EQ(make_plan(young_sea({{.east_m = 5.0}}), {unfiltered(products(Normal))}).transforms_per_frame(),
+              make_plan(young_sea(), {unfiltered(products(Normal))}).transforms_per_frame());
+}
+
+// What is shown and what is hidden of the squares of the slopes, of a sea whose points stay over theirs at rest.
+double slopes(const ProductArrays<float>& values) {
+    return mean_of(values.vectors(Normal),
+                   [](const glm::vec3& n) { return (n.x * n.x + n.y * n.y) / (n.z * n.z); }) +
+           mean_of(values.vectors(SlopeVarianceAtRest), [](const glm::vec3& v) { return v.x + v.y; });
+}
+
+// Along lines across an edge: the squares of the slopes that are shown and what is hidden of them, against m² Σ + (∇m ⊗ ∇m) m0.
+TEST(Masks, ShowAndHideWhatTheySayAcrossAnEdge) {
+    constexpr double kEdge_m = 8.0;
+    Scene scene = young_sea(
+        {{.length_m = 1e5, .width_m = 100.0, .direction_deg = 90.0, .edge_m = kEdge_m, .waves = 0.25}});
+    scene.quality.level = QualityLevel::Final;
+    std::vector<Query> queries;
+    for (const double footprint_m : {0.3, 2.0, 8.0})
+        queries.push_back(filtered(products(Position, Normal, SlopeVarianceAtRest), footprint_m));
+    const Scene flat = [&] {  // slopes are those of heights
+        Scene of = scene;
+        of.waves.choppiness = 0.0;
+        return of;
+    }();
+    Scene plain = flat;
+    plain.waves.masks.clear();
+    const auto frame = frame_of<float>(flat, queries, kTime_s),
+               without = frame_of<float>(plain, queries, kTime_s);
+    const SpectralMoments all = frame.sea().total();
+    for (int query = 0; query < 3; ++query)
+        for (const double share : {-0.2, 0.25, 0.5, 0.75, 1.2}) {
+            const double x = 50.0 + share * kEdge_m;
+            auto rest = random_points<float>(16000.0, 60000);
+            for (glm::vec2& at : rest) at.x = static_cast<float>(x);
+            // A realisation has its own part of what the spectrum says.
+            const double there = slopes(sample(without, query, rest)) / all.mss();
+            EXPECT_NEAR(there, 1.0, 0.02);
+            const double said = there * mean_of(rest, [&](const glm::vec2& at) {
+                                    const MaskGains<double> m = frame.sea().plan().masks->at(glm::dvec2(at));
+                                    return m.waves * m.waves * all.mss() + (m.x * m.x + m.y * m.y) * all.m0;
+                                });
+            EXPECT_NEAR(slopes(sample(frame, query, rest)) / said, 1.0, 0.01) << query << ' ' << share;
+        }
+}
+
+// The same in a slick, for footprints finer and coarser than it, and half a slick.
+TEST(Masks, ShowAndHideWhatASlickLeaves) {
+    for (const double ripples : {0.0, 0.5}) {
+        Scene scene = young_sea({{.length_m = 1e5, .width_m = 1e5, .ripples = ripples}});
+        scene.quality.level = QualityLevel::Final;
+        scene.waves.choppiness = 0.0;
+        scene.waves.cascades = {{64.0, 256}, {5.0, 256}};
+        scene.effects.breaking_from_m = 1.0;
+        std::vector<Query> queries;
+        for (const double footprint_m : {0.06, 0.125, 0.5, 2.0})
+            queries.push_back(filtered(products(Normal, SlopeVarianceAtRest), footprint_m));
+        Query levels = queries[0];
+        levels.cell_m = levels.pixel_m = {0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0};
+        queries.push_back(levels);
+        queries.push_back(filtered(queries[0].products,
+                                   0.0));  // finer than all waves of the grids, whose shortest is a ripple
+        Scene plain = scene;
+        plain.waves.masks.clear();
+        const auto frame = frame_of<float>(scene, queries, kTime_s),
+                   without = frame_of<float>(plain, queries, kTime_s);
+        const double all = frame.sea().total().mss(),
+                     said = all - (1.0 - ripples * ripples) * frame.sea().slick().mss();
+        const auto rest = random_points<float>(4000.0, 60000);
+        const auto slopes_of = [&](const Frame<float>& of, int query, float footprint_m) {
+            return slopes(sample(of, query, rest,
+                                 {{},
+                                  std::vector<float>(rest.size(), footprint_m),
+                                  std::vector<float>(rest.size(), footprint_m)}));
+        };
+        const auto judge = [&](int query, float footprint_m) {
+            // A realisation has its own part of what the spectrum says.
+            const double own = slopes_of(without, query, footprint_m) - all,
+                         calm =
+                             slopes_of(without, 4, std::max(footprint_m, static_cast<float>(kSlick_m))) - all;
+            const double there = ripples * ripples * own + (1.0 - ripples * ripples) * calm;
+            EXPECT_LT(std::abs(there), 0.02 * said);
+            EXPECT_NEAR((slopes_of(frame, query, footprint_m) - there) / said, 1.0, 0.01)
+                << ripples << ' ' << query << ' ' << footprint_m;
+        };
+        judge(5, 0.0f);
+        constexpr std::array kFootprints_m{0.06f, 0.125f, 0.5f, 2.0f};
+        for (int query = 0; query < 4; ++query) judge(query, kFootprints_m[query]);
+        for (const float footprint_m : {0.04f, 0.1f, 0.2f, 1.5f}) judge(4, footprint_m);
+    }
+}
+
+// Waves of a metre that no grid holds are hidden, and stay so.
+TEST(Masks, ASlickTakesNoLongerWavesThanItsOwn) {
+    Scene scene = young_sea({{.length_m = 1e3, .width_m = 1e3, .ripples = 0.0}});
+    scene.waves.cascades = {{64.0, 64}};
+    scene.effects.breaking_from_m = 1.0;
+    Scene plain = scene;
+    plain.waves.masks.clear();
+    const std::vector<Query> queries{unfiltered(products(SlopeVarianceAtRest))};
+    const auto hidden = [&](const Frame<double>& frame) {
+        const glm::dvec3 at = sample(frame, 0, {{3.0, 4.0}}).vectors(SlopeVarianceAtRest)[0];
+        return at.x + at.y;
+    };
+    const auto frame = frame_of<double>(scene, queries);
+    const double all = hidden(frame_of<double>(plain, queries)), slick = frame.sea().slick().mss();
+    EXPECT_GT(all, 1.1 * slick);
+    EXPECT_NEAR(hidden(frame), all - slick, 1e-6);
+}
+
+// Cox and Munk 1954: 0.008 + 1.56e-3 U ± 0.004 in slicks.
+TEST(Masks, ASlickHasTheSlopesOfCoxAndMunks) {
+    for (const double wind_mps : {5.0, 10.0, 14.0}) {
+        Scene scene;
+        scene.sea.wind_speed_mps = wind_mps;
+        scene.waves.masks = {{.ripples = 0.0}};
+        const auto prepared = prepare(scene);
+        const DirectionalSpectrum& spectrum = prepared->spectrum;
+        const double all = moments(spectrum, 0.0, 1e9).mss(), slick = all - slick_moments(spectrum, {}).mss();
+        EXPECT_NEAR(slick, 0.008 + 1.56e-3 * wind_mps, 0.004) << wind_mps << " of " << all;
+        RecordProperty("mss_at_" + std::to_string(static_cast<int>(wind_mps)), std::to_string(slick));
+    }
+}
+
+// Living foam and what breaks now: of 60 s of a storm none in a calm, and less where foam has a gain.
+TEST(Masks, ACalmHasNoFoamNorHadIt) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 18.0;
+    scene.sea.fetch_m = 20e3;
+    scene.waves.cascades = {{300.0, 128}, {60.0, 128}};
+    scene.effects.foam_drift = 0.0;
+    const Scene plain = scene;
+    scene.waves.masks = {
+        {.east_m = -400.0, .length_m = 150.0, .width_m = 150.0, .edge_m = 100.0, .waves = 0.0},
+        {.east_m = 400.0, .length_m = 150.0, .width_m = 150.0, .edge_m = 50.0, .foam = 0.25}};
+    const Query query = filtered(foam_products(), 1.0);
+    const auto foam_round = [&](const Scene& of, double east_m) {
+        SeaAtTime<float> sea(std::make_shared<const Sea<float>>(make_plan(of, {query})));
+        sea.set(40.0);
+        const auto rest = random_points<float>(90.0, 1500);
+        ProductArrays<float> values;
+        values.resize(query.products, rest.size());
+        sea.evaluate(0, {.origin_m = {east_m, 0.0}, .count = rest.size(), .rest_m = {rest.data()}},
+                     values.results());
+        return std::pair(mean_of(values.numbers(Coverage), [](float v) { return v; }),
+                         mean_of(values.numbers(Product::Breaking), [](float v) { return v; }));
+    };
+    const auto calm = foam_round(scene, -400.0), less = foam_round(scene, 400.0),
+               full = foam_round(plain, 400.0);
+    EXPECT_LT(calm.first, 1e-6);
+    EXPECT_LT(calm.second, 1e-6);
+    EXPECT_GT(full.second, 0.002);
+    EXPECT_NEAR(less.second / full.second, 0.25, 1e-5);
+    EXPECT_NEAR(less.first / full.first, 0.25, 0.02);
+    EXPECT_EQ(foam_round(scene, 0.0), foam_round(plain, 0.0));
+}
+
+// As high as it is asked for, and the highest round it, also where a lee begins.
+TEST(Masks, AHeroStandsInALeeAsHighAsItIsAskedFor) {
+    for (const double east_m : {0.0, 120.0}) {
+        Scene scene;
+        scene.sea.wind_speed_mps = 14.0;
+        scene.waves.cascades = {{700.0, 256}, {90.0, 128}};
+        scene.waves.second_order = 0.0;
+        scene.waves.masks = {{.edge_m = 70.0, .waves = 0.4}};
+        scene.waves.heroes = {{.frame = 30.0, .east_m = east_m, .height_m = 2.5}};
+        const auto frame =
+            frame_of<double>(scene, {filtered(products(Displacement), 1.0)}, scene.shot.time_s(30.0));
+        std::vector<glm::dvec2> rest{{east_m, 0.0}};
+        for (int i = 0; i < 400; ++i) rest.emplace_back(east_m + (i % 20 - 9.5), i / 20 - 9.5);
+        const std::vector<glm::dvec3> moved = sample(frame, 0, rest).vectors(Displacement);
+        EXPECT_NEAR(moved[0].z, 2.5, 0.05);
+        EXPECT_LT(std::hypot(moved[0].x, moved[0].y), 0.1);
+        for (const glm::dvec3& there : moved) EXPECT_LT(there.z, 2.6);
+    }
+}
+
+// In a sea whose wind has keys, between two of them.
+TEST(Masks, StandInASeaThatChanges) {
+    Scene scene = young_sea();
+    scene.quality.level = QualityLevel::Final;
+    scene.waves.second_order = 0.0;
+    scene.keyed = {{"sea.wind_speed_mps", {{{1, 4.0}, {100, 8.0}}, CameraInterpolation::Linear}}};
+    const auto moved = [&](const Scene& of) {
+        Frame<float> frame(
+            std::make_shared<const SeaOverTime<float>>(make_plan(of, {unfiltered(products(Displacement))})));
+        frame.set(2.0);
+        return sample(frame, 0, {{3.0f, 4.0f}, {700.0f, 0.0f}}).vectors(Displacement);
+    };
+    const auto before = moved(scene);
+    scene.waves.masks = {{.edge_m = 60.0, .waves = 0.5}};
+    const auto after = moved(scene);
+    EXPECT_EQ(after[0], 0.5f * before[0]);
+    EXPECT_EQ(after[1], before[1]);
+    EXPECT_NE(before[0], glm::vec3(0.0f));
+}
+
+TEST(Masks, AreWarnedOfWhereTheirEdgesCutWavesAndRefusedWhereTheyCannotBe) {
+    Scene scene;
+    scene.waves.masks = {{.edge_m = 5.0, .waves = 0.5}};
+    const auto warned = [&] {
+        std::string all;
+        for (const std::string& warning : sea_warnings(*prepare(scene))) all += warning + '\n';
+        return all;
+    };
+    EXPECT_NE(warned().find("waves.masks[0].edge_m = 5"), std::string::npos) << warned();
+    scene.waves.masks[0].edge_m = 200.0;
+    EXPECT_EQ(warned().find("waves.masks"), std::string::npos) << warned();
+    scene.waves.masks[0].waves = 4.0;
+    EXPECT_NE(warned().find("waves.masks[0].waves = 4: the surface folds"), std::string::npos) << warned();
+    scene.waves.masks[0].waves = 0.5;
+    scene.waves.heroes = {{.height_m = 1.0}};
+    EXPECT_EQ(warned().find("waves.heroes"), std::string::npos) << warned();
+    scene.waves.heroes[0].height_m = 5.0;
+    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: no such sea"), std::string::npos) << warned();
+    scene.waves.masks[0].waves = 0.05;
+    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: stands where waves.masks leave less"),
+              std::string::npos)
+        << warned();
+    scene.waves.masks[0].waves = 0.5;
+    scene.waves.heroes.clear();
+    scene.waves.masks[0].ripples = 0.0;
+    EXPECT_TRUE(validate(scene).empty());
+    scene.waves.model = WaveModel::Trochoid;
+    ASSERT_EQ(validate(scene).size(), 1u);
+    EXPECT_EQ(validate(scene).front().key, "waves.masks[0].ripples");
+    scene.waves.model = WaveModel::Fft;
+    scene.effects.breaking_from_m = 0.2;
+    ASSERT_EQ(validate(scene).size(), 1u);
+    EXPECT_EQ(validate(scene).front().accepted, "1, or effects.breaking_from_m of 0.25 or more");
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -116,6 +116,8 @@ class FoamHistory<T>::Locator {
         FoamAxis x, y;
     };
 
+    glm::dvec2 rest_m(std::size_t point) const { return points_.origin_m + glm::dvec2(points_.rest_m[point]); }
+
     Locator(const FoamHistory& history, const Points<T>& points, int query)
         : points_(points), foam_(history.foam_), kernels_(history.kernels_) {
         const auto& asked = history.sea_->plan().queries.at(static_cast<std::size_t>(query)).query;
@@ -218,6 +220,14 @@ std::size_t FoamHistory<T>::HashOf::operator()(const Place& place) const {
     return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
+// The deviate, below 0, beyond which so small a share of a normal distribution lies.
+static double deviate_of_share(double share) {
+    double y = 0.0;
+    for (double step = 8.0; step > 1e-6; step *= 0.5)
+        if (0.5 * std::erfc(-(y - step) / std::sqrt(2.0)) >= share) y -= step;
+    return y;
+}
+
 template <class T>
 FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     : sea_(std::move(sea)), kernels_(foam_kernels()) {
@@ -230,6 +240,8 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
     mean_bubbles_ =
         static_cast<float>(sea_->left_coverage() / all.foam_s * foam_.bubbles_weight_s(0.0, foam_.window_s));
+    if (sea_->left_coverage() > 0.0)
+        breaking_deviate_ = deviate_of_share(sea_->left_coverage() / (sea_->foam_left_per_s() * all.foam_s));
 }
 
 template <class T>
@@ -324,6 +336,12 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
         std::fill(of.begin(), of.end(), sums.mean_of_first);
     for (const std::span<float> of : {aged, std::span<float>(next_age)})
         std::fill(of.begin(), of.end(), sums.mean_of_second);
+    if (const auto& masks = sea_->plan().masks)  // beyond all tiles too
+        for (std::size_t i = 0; i < foam.size(); ++i) {
+            const MaskGains<double> gains = masks->at(locate.rest_m(first + i));
+            const auto gain = static_cast<float>(gains.foam * masked_breaking(gains.waves, breaking_deviate_));
+            for (float* const mean : {&foam[i], &next[i], &aged[i], &next_age[i]}) *mean *= gain;
+        }
     locate(first, foam.size(), part, [&](int which, const Place& place, std::size_t begin, std::size_t end) {
         const auto found = tiles_.find(place);
         if (found != tiles_.end()) found->second->was_read(round_, time_s_);

@@ -89,6 +89,8 @@ class FoamHistory {
     float mean() const { return mean_; }
     float mean_times_age_s() const { return mean_ * mean_age_s_; }
     float mean_bubbles() const { return mean_bubbles_; }
+    // Of the share of the sea that breaks, for masks (masked_breaking()); of a sea that changes that of its first key.
+    double breaking_deviate() const { return breaking_deviate_; }
 
     // Adds to what breaks now what earlier breaking has left. Tiles that were read at the time before and haven't been
     // made for this one are made first, all at once. On all threads of the calling arena, one call at a time.
@@ -148,6 +150,7 @@ class FoamHistory {
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
     float mean_bubbles_ = 0.0f;
+    double breaking_deviate_ = 0.0;
     double time_s_ = 0.0;
     std::int64_t first_ = 0, last_ = -1;  // the intervals that count now
     struct IntervalWeight {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "core/base/constants.h"
@@ -43,8 +44,15 @@ MasksPlan::Gains MasksPlan::gains_in(glm::dvec2 min_m, glm::dvec2 max_m) const {
 }
 
 double MasksPlan::largest() const {
-    constexpr double kAll_m = std::numeric_limits<double>::max();
-    return gains_in(glm::dvec2(-kAll_m), glm::dvec2(kAll_m)).largest;
+    double largest = 1.0;
+    for (const Mask& mask : masks) {  // with all that may overlap it
+        double together = std::max(mask.waves, 1.0);
+        for (const Mask& other : masks)
+            if (&other != &mask && glm::distance(other.middle_m, mask.middle_m) < other.reach_m + mask.reach_m)
+                together *= std::max(other.waves, 1.0);
+        largest = std::max(largest, together);
+    }
+    return largest;
 }
 
 MaskGains<double> MasksPlan::at(glm::dvec2 place_m) const {

@@ -43,6 +43,14 @@ inline MaskGains<T> with_mask(MaskGains<T> all, T x, T y, T along_x, T along_y, 
                         all.foam * (T(1) + (foam - T(1)) * at.share));
 }
 
+// Of the sea's breaking, what breaks where waves are m times as high: Φ(y/m) over Φ(y) by Mills' ratio, y < 0 being the deviate of the
+// sea's share that breaks. Within a tenth for y below −2 and m below 1.5.
+template <class T>
+inline T masked_breaking(T m, T y) {
+    const T gain = maximum(m, T(1e-3));
+    return gain * exponential(minimum(T(0.5) * y * y * (T(1) - T(1) / (gain * gain)), T(8)));
+}
+
 // Where the waves are m times as high: derivatives of m f, of which f and its derivatives are given.
 template <class T>
 inline T masked_slope(T slope, T value, T gain, T gain_rate) {

@@ -48,6 +48,7 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
     if (const std::optional<MasksPlan> masks = plan_masks(scene)) {
         extent.height_m *= masks->largest();
         extent.reach_m *= masks->largest();
+        for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();
     }
     return extent;
 }

@@ -235,16 +235,19 @@ std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const SpectralMoments all = all_of(prepared.spectrum, Choppiness::asked(scene));
     for (std::size_t i = 0; i < scene.waves.masks.size() && !(share_of(all, 1.0) > kMuch); ++i) {
-        const double gain = scene.waves.masks[i].waves, share = gain > 1.0 ? share_of(all, gain) : 0.0;
+        const WaveMask& mask = scene.waves.masks[i];
+        // Others may overlap it.
+        const double others = plan->at({mask.east_m, mask.north_m}).waves / mask.waves;
+        const double gain = mask.waves * others, share = mask.waves > 1.0 ? share_of(all, gain) : 0.0;
         if (!(share > kMuch)) continue;
         double less = 1.0, more = gain;
         for (int step = 0; step < 40; ++step) {
             const double middle = 0.5 * (less + more);
             (share_of(all, middle) > kMuch ? more : less) = middle;
         }
-        warnings.push_back("waves.masks[" + std::to_string(i) + "].waves = " + number_text(gain) +
+        warnings.push_back("waves.masks[" + std::to_string(i) + "].waves = " + number_text(mask.waves) +
                            ": the surface folds over itself on " + percent_text(share) +
-                           " % of that place; " + number_text(std::floor(100.0 * less) / 100.0) +
+                           " % of that place; " + number_text(std::floor(100.0 * less / others) / 100.0) +
                            " leaves 5 %");
     }
     for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {

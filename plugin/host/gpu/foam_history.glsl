@@ -34,11 +34,16 @@ vec3 foam_left(vec2 rest_m, float footprint) {
     int level = 0;
     for (; level < kFoamLevels && cells >= 2.0; ++level) cells *= 0.5;
     float t = level < kFoamLevels ? max(cells - 1.0, 0.0) : 0.0;
+    vec3 mean = sea.xyw;
+    if (kMasks > 0) {  // beyond all tiles
+        MaskGains gains = masks_at(rest_m);
+        mean *= gains.foam * masked_breaking(gains.waves, texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).z);
+    }
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 2; ++k) {
         float share = k == 0 ? 1.0 - t : t;
         if (!(share > 0.0)) continue;
-        vec3 foam = sea.xyw;
+        vec3 foam = mean;
         // Where a tile isn't there yet, coarser ones may be.
         for (int i = level + k; i < kFoamLevels; ++i)
             if (foam_of_level(i, rest_m, foam)) break;

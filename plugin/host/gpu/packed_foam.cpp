@@ -19,7 +19,8 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
       mean_times_age_s_(history.mean_times_age_s()),
       cells_per_m_(static_cast<float>(1.0 / history.plan().cell_m)),
       past_m_(static_cast<float>(history.plan().past_m)),
-      breaking_m_(static_cast<float>(history.plan().breaking_m)) {
+      breaking_m_(static_cast<float>(history.plan().breaking_m)),
+      breaking_deviate_(static_cast<float>(history.breaking_deviate())) {
     std::vector<FoamNodes> tiles = history.nodes();
     std::erase_if(tiles, [&](const FoamNodes& tile) {
         const glm::dvec2 at = glm::dvec2(tile.place.x, tile.place.y) -
@@ -84,7 +85,7 @@ std::vector<glm::vec4> PackedFoam::level_texels(glm::dvec2 origin_m) const {
         texels.emplace_back(glm::vec2(box.size), static_cast<float>(box.row), 0.0f);
     }
     texels.emplace_back(mean_, mean_times_age_s_, cells_per_m_, mean_bubbles_);
-    texels.emplace_back(past_m_, breaking_m_, 0.0f, 0.0f);
+    texels.emplace_back(past_m_, breaking_m_, breaking_deviate_, 0.0f);
     return texels;
 }
 

@@ -57,7 +57,7 @@ class PackedFoam {
     std::vector<float> pages_{-1.0f};
     glm::ivec2 pages_size_{1};
     float mean_ = 0.0f, mean_times_age_s_ = 0.0f, cells_per_m_ = 1.0f, mean_bubbles_ = -1.0f;
-    float past_m_ = 0.0f, breaking_m_ = 0.0f;
+    float past_m_ = 0.0f, breaking_m_ = 0.0f, breaking_deviate_ = 0.0f;
 };
 
 // The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which are

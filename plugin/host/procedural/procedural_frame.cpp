@@ -235,9 +235,10 @@ SurfaceBounds ShotFrame::everywhere() const {
 
 const SurfaceTiles& ShotFrame::tiles() const {
     const std::lock_guard<std::mutex> lock(lock_);
+    const auto& masks = of_->sea->plan().masks;
     if (!tiles_)
         tiles_ = std::make_unique<const SurfaceTiles>(*query_, of_->finest_cell_m(), half_open_s_,
-                                                      of_->ray_cache_bytes);
+                                                      of_->ray_cache_bytes, masks ? &*masks : nullptr);
     return *tiles_;
 }
 

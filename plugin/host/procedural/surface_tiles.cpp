@@ -62,8 +62,9 @@ const Tile* TileStore::keep(const TilePlace& place, std::unique_ptr<const Tile> 
 }
 
 SurfaceTiles::SurfaceTiles(const PreparedQuery<float>& query, double finest_cell_m, double half_open_s,
-                           std::size_t most_bytes)
+                           std::size_t most_bytes, const MasksPlan* masks)
     : query_(&query),
+      masks_(masks),
       finest_cell_m_(finest_cell_m),
       half_open_s_(half_open_s),
       most_bytes_(most_bytes),
@@ -108,13 +109,20 @@ double SurfaceTiles::sampled_deviation_m(int level, bool& is_flat) const {
     std::vector<glm::vec2> rest_m;
     std::vector<float> cell_m;
     const bool moves = half_open_s_ > 0.0;
+    // East of all masks, which change a part of the sea alone; where waves are higher so are their differences.
+    double east_m = 0.0, gain = 1.0;
+    if (masks_) {
+        for (const MasksPlan::Mask& mask : masks_->masks)
+            east_m = std::max(east_m, mask.middle_m.x + 2.0 * mask.reach_m);
+        gain = masks_->largest();
+    }
     double largest_m = 0.0;
     is_flat = true;
     for (int place = 0; place < kPlaces; ++place) {
         // Spread evenly over tens of kilometres, by multiples of two irrational numbers.
         const auto spread = [&](double by) { return 65536.0 * (place * by - std::floor(place * by)); };
         const glm::dvec2 origin_m =
-            step_m * glm::floor(glm::dvec2(spread(0.754877666), spread(0.569840291)) / step_m);
+            step_m * glm::floor(glm::dvec2(east_m + spread(0.754877666), spread(0.569840291)) / step_m);
         rest_m.clear();
         cell_m.clear();
         for (int i = 0; i < kCells; ++i) {
@@ -141,7 +149,7 @@ double SurfaceTiles::sampled_deviation_m(int level, bool& is_flat) const {
             is_flat = is_flat && position[i] == glm::vec3(rest_m[i], 0.0f);
         }
     }
-    return kAboveLargest * largest_m;
+    return kAboveLargest * gain * largest_m;
 }
 
 std::shared_ptr<TileStore> SurfaceTiles::store() const {

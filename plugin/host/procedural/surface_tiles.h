@@ -60,8 +60,9 @@ class SurfaceTiles {
   public:
     // Of a query with positions, and with velocities if the shutter is open for half_open_s to either side of the frame's time.
     // It must outlive this. finest_cell_m: finer ones show no more. most_bytes: of the tiles that are kept.
+    // masks: the sea's, null: none.
     SurfaceTiles(const PreparedQuery<float>& query, double finest_cell_m, double half_open_s,
-                 std::size_t most_bytes);
+                 std::size_t most_bytes, const MasksPlan* masks);
 
     // From this level on the sea is its plane at rest.
     int flat_level() const { return first_level_ + static_cast<int>(deviations_m_.size()); }
@@ -87,6 +88,7 @@ class SurfaceTiles {
     std::unique_ptr<Tile> made(const TilePlace& place) const;
 
     const PreparedQuery<float>* query_;
+    const MasksPlan* masks_;
     double finest_cell_m_, half_open_s_;
     std::size_t most_bytes_;
     int first_level_ = 0;

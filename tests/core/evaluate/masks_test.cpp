@@ -269,8 +269,8 @@ TEST(Masks, ACalmHasNoFoamNorHadIt) {
     scene.waves.masks = {
         {.east_m = -400.0, .length_m = 150.0, .width_m = 150.0, .edge_m = 100.0, .waves = 0.0},
         {.east_m = 400.0, .length_m = 150.0, .width_m = 150.0, .edge_m = 50.0, .foam = 0.25}};
-    const Query query = filtered(foam_products(), 1.0);
-    const auto foam_round = [&](const Scene& of, double east_m) {
+    const auto foam_round = [&](const Scene& of, double east_m, double pixel_m = 1.0) {
+        const Query query = filtered(foam_products(), pixel_m);
         SeaAtTime<float> sea(std::make_shared<const Sea<float>>(make_plan(of, {query})));
         sea.set(40.0);
         const auto rest = random_points<float>(90.0, 1500);
@@ -289,6 +289,27 @@ TEST(Masks, ACalmHasNoFoamNorHadIt) {
     EXPECT_NEAR(less.second / full.second, 0.25, 1e-5);
     EXPECT_NEAR(less.first / full.first, 0.25, 0.02);
     EXPECT_EQ(foam_round(scene, 0.0), foam_round(plain, 0.0));
+    // Beyond the tiles of foam, where it is the sea's mean.
+    const auto far = foam_round(plain, 400.0, 512.0).first;
+    EXPECT_GT(far, 0.002);
+    EXPECT_LT(foam_round(scene, -400.0, 512.0).first, 1e-6);
+    EXPECT_NEAR(foam_round(scene, 400.0, 512.0).first / far, 0.25, 1e-3);
+}
+
+TEST(Masks, BreakAsMuchOfTheSeaAsItsWavesAreHigher) {
+    const auto share = [](double y) { return 0.5 * std::erfc(-y / std::sqrt(2.0)); };
+    for (const double y : {-3.0, -2.5, -2.0})
+        for (const double m : {0.5, 0.8, 1.0, 1.2, 1.5})
+            EXPECT_NEAR(masked_breaking(m, y) / (share(y / m) / share(y)), 1.0, 0.15) << y << " " << m;
+    EXPECT_EQ(masked_breaking(0.0, -2.0), 0.0);
+}
+
+TEST(Masks, AreAsHighTogetherAsThoseThatOverlap) {
+    Scene scene;
+    scene.waves.masks = {{.length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 2.0},
+                         {.east_m = 80.0, .length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 1.5},
+                         {.east_m = 5000.0, .length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 2.5}};
+    EXPECT_EQ(plan_masks(scene)->largest(), 3.0);
 }
 
 // As high as it is asked for, and the highest round it, also where a lee begins.

@@ -116,7 +116,9 @@ class FoamHistory<T>::Locator {
         FoamAxis x, y;
     };
 
-    glm::dvec2 rest_m(std::size_t point) const { return points_.origin_m + glm::dvec2(points_.rest_m[point]); }
+    glm::dvec2 rest_m(std::size_t point) const {
+        return points_.origin_m + glm::dvec2(points_.rest_m[point]);
+    }
 
     Locator(const FoamHistory& history, const Points<T>& points, int query)
         : points_(points), foam_(history.foam_), kernels_(history.kernels_) {
@@ -339,7 +341,8 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
     if (const auto& masks = sea_->plan().masks)  // beyond all tiles too
         for (std::size_t i = 0; i < foam.size(); ++i) {
             const MaskGains<double> gains = masks->at(locate.rest_m(first + i));
-            const auto gain = static_cast<float>(gains.foam * masked_breaking(gains.waves, breaking_deviate_));
+            const auto gain =
+                static_cast<float>(gains.foam * masked_breaking(gains.waves, breaking_deviate_));
             for (float* const mean : {&foam[i], &next[i], &aged[i], &next_age[i]}) *mean *= gain;
         }
     locate(first, foam.size(), part, [&](int which, const Place& place, std::size_t begin, std::size_t end) {

@@ -68,7 +68,8 @@ void water_at(const BoundsByLevel<float>& bounds, const PreparedQuery<float>& qu
 }
 
 struct Ocean::State {
-    explicit State(const Plan& plan) : frame(std::make_shared<const SeaOverTime<float>>(plan)), bounds(frame, 0) {}
+    explicit State(const Plan& plan)
+        : frame(std::make_shared<const SeaOverTime<float>>(plan)), bounds(frame, 0) {}
 
     Frame<float> frame;
     BoundsByLevel<float> bounds;

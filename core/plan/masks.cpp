@@ -48,7 +48,8 @@ double MasksPlan::largest() const {
     for (const Mask& mask : masks) {  // with all that may overlap it
         double together = std::max(mask.waves, 1.0);
         for (const Mask& other : masks)
-            if (&other != &mask && glm::distance(other.middle_m, mask.middle_m) < other.reach_m + mask.reach_m)
+            if (&other != &mask &&
+                glm::distance(other.middle_m, mask.middle_m) < other.reach_m + mask.reach_m)
                 together *= std::max(other.waves, 1.0);
         largest = std::max(largest, together);
     }

@@ -168,14 +168,15 @@ void allow_keys(Key& key) {
         const auto keyed = std::find_if(scene.keyed.begin(), scene.keyed.end(), is_it);
         return keyed != scene.keyed.end() ? KeyValue(keyed->keys) : get(scene);
     };
-    key.set = [is_it, path = key.path, is_angle = key.is_angle, set = std::move(key.set)](Scene& scene,
-                                                                                          const KeyValue& value) {
+    key.set = [is_it, path = key.path, is_angle = key.is_angle, set = std::move(key.set)](
+                  Scene& scene, const KeyValue& value) {
         const auto* number = std::get_if<NumberKeys>(&value);
         if (number && number->keys.empty()) return false;
         // What stands for all of them where there is to be one: the largest, of angles, which have none, the first.
         const auto standing = [&] {
             const auto is_less = [](const auto& a, const auto& b) { return a.value < b.value; };
-            return is_angle ? number->keys.front().value : std::ranges::max_element(number->keys, is_less)->value;
+            return is_angle ? number->keys.front().value
+                            : std::ranges::max_element(number->keys, is_less)->value;
         };
         if (!set(scene, number ? KeyValue(standing()) : value)) return false;
         std::erase_if(scene.keyed, is_it);

@@ -56,9 +56,10 @@ Scene scene_at(const Scene& scene, double frame) {
 namespace {
 
 [[noreturn]] void refuse(const KeyedNumber& number) {
-    throw std::invalid_argument(number.path +
-                                " has keys, and this shows one moment; accepted: a number, or the scene of a frame (in Python "
-                                "scene.at(frame), in C++ scene_at())");
+    throw std::invalid_argument(
+        number.path +
+        " has keys, and this shows one moment; accepted: a number, or the scene of a frame (in Python "
+        "scene.at(frame), in C++ scene_at())");
 }
 
 }  // namespace

@@ -554,8 +554,8 @@ void check_keyed(SceneChecker& check, const Scene& scene) {
     check_keyed_sea(check, scene);
     for (const KeyedNumber& number : without_still_keys(scene).keyed)
         if (number.path == "sea.wind_direction_deg" && scene.waves.model == WaveModel::Trochoid)
-            check.refuse({number.path, value_text(key_of(number.path), number.keys), "changes, and a train keeps its direction",
-                          "a number, or waves.model = \"fft\""});
+            check.refuse({number.path, value_text(key_of(number.path), number.keys),
+                          "changes, and a train keeps its direction", "a number, or waves.model = \"fft\""});
     if (scene.shot.loop_s == 0.0) return;
     for (const KeyedNumber& number : scene.keyed)
         check.refuse({number.path, value_text(key_of(number.path), number.keys),

@@ -229,7 +229,8 @@ void LiveSea::compute_frames() {
             const auto start = Clock::now();
             frame->set(*tried_s);
             const auto transformed = Clock::now();
-            if (!slot.packed || &slot.packed->layout()->sea() != &frame->sea())  // a sea that changes is another at each time
+            if (!slot.packed ||
+                &slot.packed->layout()->sea() != &frame->sea())  // a sea that changes is another at each time
                 slot.packed.emplace(frame->shared_sea(), tried->query);
             slot.packed->pack(*frame);
             slot.transforms_ms = milliseconds(start, transformed);

@@ -30,7 +30,8 @@ MemoryNeed live_memory(const Plan& plan) {
     if (plan.from->weather) {  // a sea that changes is another in each frame that waits
         Plan one = plan;
         one.from = plan.from->weather->keys.front().sea;
-        need.add("the sea at the times of frames on their way", 3 * one.sea_bytes(), "give fewer keys, or smaller cascades");
+        need.add("the sea at the times of frames on their way", 3 * one.sea_bytes(),
+                 "give fewer keys, or smaller cascades");
     }
     std::size_t packed = 0;
     for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))

@@ -159,7 +159,8 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
 }
 
 OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std::size_t max_memory_bytes) {
-    OffscreenPlan planned{.scene = scene_at(scene, frame), .frame = frame, .plan = {}, .mesh = {}, .drawn = {}};
+    OffscreenPlan planned{
+        .scene = scene_at(scene, frame), .frame = frame, .plan = {}, .mesh = {}, .drawn = {}};
     if (size.x > 0 && size.y > 0) planned.scene.camera.resolution = size;
     check_size(planned.scene.camera.resolution);
     const MemoryLimit limit = machine::memory_limit_or(max_memory_bytes);

@@ -67,9 +67,12 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, std::max(count, 1), 1, 0, GL_RED, GL_FLOAT, nullptr);
     }
     // A sea that changes has a layout for each time, and the same textures for all of them.
-    const bool has_room = layout_ && std::ranges::equal(layout_->planes(), layout->planes(), [](const auto& a, const auto& b) {
-                              return a.size == b.size && a.channels == b.channels;
-                          }) && layout_->has_living_foam() == layout->has_living_foam();
+    const bool has_room = layout_ &&
+                          std::ranges::equal(layout_->planes(), layout->planes(),
+                                             [](const auto& a, const auto& b) {
+                                                 return a.size == b.size && a.channels == b.channels;
+                                             }) &&
+                          layout_->has_living_foam() == layout->has_living_foam();
     layout_ = layout;
     if (!has_room) {
         planes_.clear();

@@ -486,7 +486,8 @@ class Preview {
         const std::shared_ptr<const LiveBuild> before = frame_ ? frame_->build : nullptr;
         frame_ = sea_.newest();
         const bool is_other = (frame_ && frame_->build != before) || water_content() != water_from_;
-        if (is_other || (frame_ && frame_->packed->layout() != water_of_)) {  // a sea that changes has its own water at each time
+        if (is_other || (frame_ && frame_->packed->layout() !=
+                                       water_of_)) {  // a sea that changes has its own water at each time
             take_water();
             renderer_.set_water(water_);
             if (is_other) meter();

@@ -44,7 +44,8 @@ struct ShotSea {
     double finest_ray_m = 0.0;               // finer footprints of rays count as that
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const SeaOverTime<float>> sea;
-    std::optional<Whitecaps> without_past;  // as if no foam were persistent; none where none is. Of the first key of a sea that changes
+    std::optional<Whitecaps>
+        without_past;  // as if no foam were persistent; none where none is. Of the first key of a sea that changes
     const Query& query() const { return sea->plan().queries.front().query; }
     // The cell below which nothing more is resolved [m], > 0.
     double finest_cell_m() const;

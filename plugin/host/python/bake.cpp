@@ -173,7 +173,8 @@ void define_run(py::module_& module, const std::string& name,
 }
 
 void add_bake_report(py::module_& module) {
-    py::class_<RunReport> report(module, "BakeReport", py::module_local(), "What a bake did, or render_files().");
+    py::class_<RunReport> report(module, "BakeReport", py::module_local(),
+                                 "What a bake did, or render_files().");
     const auto add_path = [&](const char* name, std::filesystem::path RunReport::*path, const char* doc) {
         report.def_property_readonly(
             name, [path](const RunReport& self) { return (self.*path).empty() ? Out() : Out(self.*path); },
@@ -219,7 +220,8 @@ std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::o
 }
 
 void add_verify(py::module_& module) {
-    py::class_<Finding>(module, "Finding", py::module_local(), "What verify() found: a file that isn't as it was written.")
+    py::class_<Finding>(module, "Finding", py::module_local(),
+                        "What verify() found: a file that isn't as it was written.")
         .def_readonly("path", &Finding::path, "Below the folder, with /.")
         .def_property_readonly(
             "flaw", [](const Finding& self) { return word_of(self.flaw); },

@@ -127,9 +127,10 @@ void add_entry_class(py::module_& module, const Key& key) {
         names.append(inner.name);
         if (!inner.is_required) defaults.append(to_python(inner, inner.fallback));
     }
-    const py::object made = py::module_::import("collections")
-                                .attr("namedtuple")(key.entry_name, names, py::arg("module") = module.attr("__name__"),
-                                                    py::arg("defaults") = defaults);
+    const py::object made =
+        py::module_::import("collections")
+            .attr("namedtuple")(key.entry_name, names, py::arg("module") = module.attr("__name__"),
+                                py::arg("defaults") = defaults);
     made.attr("__doc__") = "An entry of " + key.path + ".";
     for (const Key& inner : key.entry_keys) made.attr(inner.name.c_str()).attr("__doc__") = doc_of(inner);
     module.attr(key.entry_name.c_str()) = entry_class(key) = made;
@@ -316,7 +317,8 @@ void add_scene(py::module_& module) {
             "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },
             py::arg("memo"))
         .def("__str__", [](const Scene& self) { return canonical(self); });
-    py::class_<TableOfScene> base(module, "Table", py::module_local(), "A table of a scene: its keys are the attributes.");
+    py::class_<TableOfScene> base(module, "Table", py::module_local(),
+                                  "A table of a scene: its keys are the attributes.");
     base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }),
              py::arg("scene"));
     for (const KeyTable& table : key_tables()) {

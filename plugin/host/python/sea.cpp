@@ -212,13 +212,14 @@ void add_sea(py::module_& module) {
            "whitecap_threshold and dense_foam are those of the first key.")
         .def(
             "significant_height_at",
-            [](const PythonSea& self, double t_s) { return self.sea->significant_height_m(t_s); }, py::arg("t"),
-            "significant_height_m at a time [s], of a sea that changes between its keys.")
+            [](const PythonSea& self, double t_s) { return self.sea->significant_height_m(t_s); },
+            py::arg("t"), "significant_height_m at a time [s], of a sea that changes between its keys.")
         .def_property_readonly(
             "mss", [](const PythonSea& self) { return self.sea->first()->total().mss(); },
             "Mean square slope of the whole spectrum, capillary tail included.")
         .def_property_readonly(
-            "whitecap_threshold", [](const PythonSea& self) { return self.sea->first()->whitecap_threshold(); },
+            "whitecap_threshold",
+            [](const PythonSea& self) { return self.sea->first()->whitecap_threshold(); },
             "The Jacobian below which there is foam, without gusts, which move it from place to place; -inf: there "
             "never is.")
         .def_property_readonly(

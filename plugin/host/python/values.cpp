@@ -19,7 +19,6 @@ namespace {
 
 namespace py = pybind11;
 
-
 // Tuples, because a list would be a copy whose append() is lost.
 struct ToPython {
     const Key& key;

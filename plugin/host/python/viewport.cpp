@@ -249,8 +249,8 @@ class GpuSea {
         py::dict made;
         for (std::size_t p = 0; p < tables->packed.planes().size(); ++p) {
             const SeaLayout::Plane& plane = layout.planes()[p];
-            made[kNames[p]] =
-                view_of(owner, tables->packed.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
+            made[kNames[p]] = view_of(owner, tables->packed.planes()[p].data(),
+                                      {plane.size.y, plane.size.x, plane.channels});
         }
         if (made.empty()) return made;  // no time was set
         const int columns = layout.ellipse_columns();
@@ -276,8 +276,8 @@ class GpuSea {
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
-        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, now_->packed.time_within_loop_s())),
-                              cycles);
+        return py::make_tuple(
+            array_of<std::uint8_t>(layout.tables(origin, now_->packed.time_within_loop_s())), cycles);
     }
 
     GpuGrid grid(const View& view, std::optional<double> cell_px, bool on_earth) const {
@@ -310,7 +310,8 @@ class GpuSea {
     py::dict foam(const Scene& scene, std::array<double, 2> origin_m, const GpuLight& light) const {
         const auto tables = now();
         const Sea<float>& sea = tables->layout().sea();
-        const double active = has_living_foam() ? active_foam(sea.plan().from->scene, sea.residual_coverage()) : 1.0;
+        const double active =
+            has_living_foam() ? active_foam(sea.plan().from->scene, sea.residual_coverage()) : 1.0;
         return dict_of(foam_uniforms(
             foam_pattern(make_foam(scene, light.foam_picture, active), checked_origin(origin_m))));
     }
@@ -492,7 +493,8 @@ void add_gpu_light(py::module_& module) {
 }
 
 void add_gpu_grid(py::module_& module) {
-    py::class_<GpuGrid>(module, "GpuGrid", py::module_local(), "The projected grid of a view, as vertices for GpuSea's shader.")
+    py::class_<GpuGrid>(module, "GpuGrid", py::module_local(),
+                        "The projected grid of a view, as vertices for GpuSea's shader.")
         .def_property_readonly(
             "size", [](const GpuGrid& self) { return py::make_tuple(self.grid->columns, self.grid->rows); },
             "(columns, rows) of cells.")
@@ -575,8 +577,9 @@ void add_viewport(py::module_& module) {
             "for a grid's origin [m].")
         .def("water", &GpuSea::water, py::arg("scene"),
              "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")
-        .def_property_readonly("changes", &GpuSea::changes,
-                               "Whether its scene's sea has keys: then uniforms and all textures change with set().")
+        .def_property_readonly(
+            "changes", &GpuSea::changes,
+            "Whether its scene's sea has keys: then uniforms and all textures change with set().")
         .def_property_readonly(
             "has_living_foam", &GpuSea::has_living_foam,
             "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "

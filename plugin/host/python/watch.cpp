@@ -228,7 +228,8 @@ std::shared_ptr<Watch> shared_watch(const py::object& progress, const py::object
 }
 
 void add_watch(py::module_& module) {
-    py::register_local_exception<Cancelled>(module, "Cancelled").doc() = "Work that was cancelled before its end.";
+    py::register_local_exception<Cancelled>(module, "Cancelled").doc() =
+        "Work that was cancelled before its end.";
     py::class_<Cancel>(
         module, "Cancel", py::module_local(),
         "Ends long work from another thread: pass it as cancel, and set() it when it is enough.")

@@ -306,9 +306,10 @@ TEST(Masks, BreakAsMuchOfTheSeaAsItsWavesAreHigher) {
 
 TEST(Masks, AreAsHighTogetherAsThoseThatOverlap) {
     Scene scene;
-    scene.waves.masks = {{.length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 2.0},
-                         {.east_m = 80.0, .length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 1.5},
-                         {.east_m = 5000.0, .length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 2.5}};
+    scene.waves.masks = {
+        {.length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 2.0},
+        {.east_m = 80.0, .length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 1.5},
+        {.east_m = 5000.0, .length_m = 100.0, .width_m = 100.0, .edge_m = 50.0, .waves = 2.5}};
     EXPECT_EQ(plan_masks(scene)->largest(), 3.0);
 }
 

@@ -337,9 +337,10 @@ TEST(Weather, IsRefusedWhereTheSeaIsOne) {
         const Sea<float> sea(plan);
         FAIL();
     } catch (const std::invalid_argument& error) {
-        EXPECT_EQ(std::string(error.what()),
-                  "sea.wind_speed_mps has keys, and this shows one moment; accepted: a number, or the scene of a frame (in "
-                  "Python scene.at(frame), in C++ scene_at())");
+        EXPECT_EQ(
+            std::string(error.what()),
+            "sea.wind_speed_mps has keys, and this shows one moment; accepted: a number, or the scene of a frame (in "
+            "Python scene.at(frame), in C++ scene_at())");
     }
     const auto problem = [](const std::function<void(Scene&)>& change) {
         Scene scene = rising();

@@ -283,7 +283,9 @@ TEST(PreviewsPicture, OfASeaThatChangesHasTheTablesOfItsTime) {
     const Scene now = scene_at(scene, 5);
     renderer.set_sky(sky, make_water(now, frame.sea().plan().from->spectrum));
     renderer.draw(view_at(now.camera, 5), planned.mesh,
-                  {.lighting = render_options(now).lighting, .foam = make_foam(now, make_foam_picture(now)), .layers = true});
+                  {.lighting = render_options(now).lighting,
+                   .foam = make_foam(now, make_foam_picture(now)),
+                   .layers = true});
     const Difference difference = compare(alone, renderer.read_layers());
     EXPECT_EQ(difference.last_percent, 0.0);
 }

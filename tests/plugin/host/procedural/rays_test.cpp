@@ -391,7 +391,8 @@ constexpr char kCalmAfar[] =
 INSTANTIATE_TEST_SUITE_P(Seas, RaysAgainstMesh,
                          ::testing::Values(Sea{"storm", kStorm, 0.0, {2e6, -7e5}},
                                            Sea{"places", kPlaces, 0.01, {}}, Sea{"shutter", "", 0.02, {}},
-                                           Sea{"trains", kTrains, 0.0, {}}, Sea{"calm_afar", kCalmAfar, 0.0, {}}),
+                                           Sea{"trains", kTrains, 0.0, {}},
+                                           Sea{"calm_afar", kCalmAfar, 0.0, {}}),
                          [](const auto& sea) { return std::string(sea.param.name); });
 
 }  // namespace

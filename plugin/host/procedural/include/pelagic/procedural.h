@@ -136,10 +136,10 @@ typedef struct pelagic_info {
     size_t size;
     int first_frame, last_frame;
     double frames_per_second;
-    double time_scale;           /* seconds of the sea in a second on the screen */
-    double loop_s;               /* after which the sea is the same again; 0: never */
-    double significant_height_m; /* Hs; of a sea that changes, at its first key */
-    double peak_wavelength_m;    /* of a sea that changes, of its keys' mean */
+    double time_scale;                    /* seconds of the sea in a second on the screen */
+    double loop_s;                        /* after which the sea is the same again; 0: never */
+    double significant_height_m;          /* Hs; of a sea that changes, at its first key */
+    double peak_wavelength_m;             /* of a sea that changes, of its keys' mean */
     double finest_cell_m, finest_pixel_m; /* what is asked for finer counts as this */
     size_t
         frame_bytes; /* what a frame holds; beside it bounds keep up to three times as much, rays up to ray_cache_bytes */

@@ -386,7 +386,7 @@ constexpr char kPlaces[] =
     "[[waves.masks]]\neast_m = -10.0\nnorth_m = 4.0\nlength_m = 12.0\nwidth_m = 12.0\nedge_m = 9.0\nwaves = 0.1\n";
 // A calm that begins a kilometre east and is wider than what the tolerance is measured over.
 constexpr char kCalmAfar[] =
-    "[[waves.masks]]\neast_m = 56000.0\nnorth_m = 33000.0\nlength_m = 109000.0\nwidth_m = 109000.0\nedge_m = 500.0\n"
+    "[[waves.masks]]\neast_m = 51000.0\nnorth_m = 33000.0\nlength_m = 99000.0\nwidth_m = 99000.0\nedge_m = 500.0\n"
     "waves = 0.0\n";
 INSTANTIATE_TEST_SUITE_P(Seas, RaysAgainstMesh,
                          ::testing::Values(Sea{"storm", kStorm, 0.0, {2e6, -7e5}},

@@ -188,7 +188,7 @@ class StormCameras(unittest.TestCase):
         self.assertTrue(all(more >= less for less, more in zip(shares, shares[1:])), shares)
         self.assertTrue(all(more > 1.5 * less > 0.0 for less, more in zip(shares[2:], shares[3:])), shares)  # from force 6 on
         self.assertLess(shares[4], 0.05, shares)
-        self.assertGreater(shares[8], 0.7, shares)
+        self.assertGreater(shares[8], 0.6, shares)  # foam's film, which water shows through, isn't counted
 
 
 if __name__ == "__main__":

@@ -23,6 +23,8 @@ struct Work {
     bool was_any = false;                   // in this process, or in those that it was forked from
     bool was_before_fork = false;           // this process is a fork's child
     std::optional<std::thread::id> ending;  // the thread that ends the program, once it does
+    unsigned long main_thread =
+        0;  // not asked for at each call: Python's code may be where the program's end meets a thread
 };
 Work& work() {
     static Work work;
@@ -43,6 +45,14 @@ void end_all_work() {
         const py::gil_scoped_release others_may_run;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+}
+
+bool is_finalizing() {
+#if PY_VERSION_HEX >= 0x030D0000
+    return Py_IsFinalizing() != 0;
+#else
+    return _Py_IsFinalizing() != 0;
+#endif
 }
 
 // What begins work calls it first. TBB's threads don't live on in a forked process, and its lists of them may have been
@@ -160,8 +170,7 @@ Workers& workers() {
 }  // namespace
 
 bool answers_signals() {
-    return py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>() ==
-           PyThread_get_thread_ident();
+    return work().main_thread == PyThread_get_thread_ident();
 }
 
 std::future<void> begin_beside(std::function<void()> task) {
@@ -222,6 +231,9 @@ void beside_others(const std::shared_ptr<Watch>& watch, const std::function<void
 
 std::shared_ptr<Watch> shared_watch(const py::object& progress, const py::object& cancel) {
     return {new Watch(progress, cancel), [](Watch* watch) {
+                // The interpreter ends a thread that asks it for anything by unwinding its stack: this may be a part of that, and
+                // asking again would end the program.
+                if (is_finalizing()) return;
                 const py::gil_scoped_acquire python;
                 delete watch;
             }};
@@ -236,9 +248,12 @@ void add_watch(py::module_& module) {
         .def(py::init<>())
         .def("set", &Cancel::set, "The work ends soon, for good.")
         .def_property_readonly("is_set", &Cancel::is_set, "Whether set() was called.");
+    work().main_thread =
+        py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
     py::module_::import("atexit").attr("register")(py::cpp_function(&end_all_work));
     // A child has this thread alone.
     py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] {
+                                                           work().main_thread = PyThread_get_thread_ident();
                                                            work().running = work().beside = 0;
                                                            work().was_before_fork = work().was_any;
                                                            for (NativeWork* each : work().native)

@@ -24,10 +24,11 @@ OF_SEA = [field for field in MAY_HAVE_KEYS if field.table in ("sea", "waves")]
 
 
 def keys_of_sea_through(frames, values, is_angle):
+    """keys_through() of a number of the sea: MOST_KEYS, but for an angle that turns so often that each half turn needs one."""
     tolerance = SEA_TOLERANCE
     while True:
         keys = keys_through(frames, values, tolerance, is_angle)
-        if not isinstance(keys, dict) or len(keys["keys"]) <= MOST_KEYS:
+        if tolerance > 1.0 or not isinstance(keys, dict) or len(keys["keys"]) <= MOST_KEYS:
             return keys
         tolerance *= 1.5
 
@@ -145,19 +146,11 @@ def put(scene, keys):
     return made
 
 
-def with_first(settings, keys):
-    """The settings at the first keys: the same at each frame."""
+def with_numbers(settings, numbers):
+    """These settings with others of their numbers, {path: number}."""
     settings = list(settings)
-    for path, each in keys.items():
-        settings[PLACE[path]] = each["keys"][0][1]
-    return tuple(settings)
-
-
-def with_numbers(settings, read, keys):
-    """These settings with the numbers of a frame, as read there, in the keys' place."""
-    settings = list(settings)
-    for path in keys:
-        settings[PLACE[path]] = read[PLACE[path]]
+    for path, number in numbers.items():
+        settings[PLACE[path]] = number
     return tuple(settings)
 
 

@@ -338,13 +338,6 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
         std::fill(of.begin(), of.end(), sums.mean_of_first);
     for (const std::span<float> of : {aged, std::span<float>(next_age)})
         std::fill(of.begin(), of.end(), sums.mean_of_second);
-    if (const auto& masks = sea_->plan().masks)  // beyond all tiles too
-        for (std::size_t i = 0; i < foam.size(); ++i) {
-            const MaskGains<double> gains = masks->at(locate.rest_m(first + i));
-            const auto gain =
-                static_cast<float>(gains.foam * masked_breaking(gains.waves, breaking_deviate_));
-            for (float* const mean : {&foam[i], &next[i], &aged[i], &next_age[i]}) *mean *= gain;
-        }
     locate(first, foam.size(), part, [&](int which, const Place& place, std::size_t begin, std::size_t end) {
         const auto found = tiles_.find(place);
         if (found != tiles_.end()) found->second->was_read(round_, time_s_);
@@ -354,6 +347,18 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
                          begin, end, which == 0 ? foam.data() : next.data(),
                          which == 0 ? aged.data() : next_age.data());
     });
+    const auto& masks = sea_->plan().masks;
+    for (std::size_t i = 0; masks && i < foam.size(); ++i) {
+        if (part.level[i] + 1 < FoamPlan::kLevels) continue;
+        // Beyond all tiles masks leave as much of the mean.
+        const MaskGains<double> gains = masks->at(locate.rest_m(first + i));
+        const auto gain = static_cast<float>(gains.foam * masked_breaking(gains.waves, breaking_deviate_));
+        next[i] *= gain;
+        next_age[i] *= gain;
+        if (part.level[i] < FoamPlan::kLevels) continue;
+        foam[i] *= gain;
+        aged[i] *= gain;
+    }
     const bool blends = !Locator::is_on_level(part, foam.size());
     for (std::size_t i = 0; blends && i < foam.size(); ++i) {
         foam[i] += part.t[i] * (next[i] - foam[i]);

@@ -362,7 +362,7 @@ class MapPart final : public OutputPart {
             std::vector<glm::vec3>& level = texels.emplace_back(moments.size());
             const auto n = static_cast<std::size_t>(exr::mip_level_size(n_, n_, static_cast<int>(l)).first);
             const auto gain = [&](std::size_t i) {
-                if (!plan_.masks || output_.cascade) return 1.0f;
+                if (!plan_.masks || !plan_.masks->calms_foam) return 1.0f;
                 const glm::dvec2 texel(static_cast<double>(i % n), static_cast<double>(i / n));
                 return static_cast<float>(
                     plan_.masks

@@ -61,6 +61,9 @@ with checking("keys through values: straight, gentle, with corners, none; of ang
     noise = np.random.default_rng(1).uniform(5.0, 15.0, 400)
     assert len(keyed.keys_of_sea_through(np.arange(400), noise, False)["keys"]) <= keyed.MOST_KEYS
 
+    spun = keyed.keys_of_sea_through(np.arange(1000), np.linspace(0.0, 360.0 * 40, 1000), True)  # more half turns than keys
+    assert keyed.MOST_KEYS < len(spun["keys"]) < 200, len(spun["keys"])
+
 with checking("a wind with keyframes: one sea for all frames, and it is the core's"):
     obj = ocean_of()
     keyframed(obj, "sea.wind_speed_mps", {1: 6.0, 40: 14.0})

@@ -13,7 +13,7 @@ from .query import camera_depth_m, first_ocean
 
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
-          if field.table in ("light", "water") or "clock" in field.key["feeds"]
+          if field.table in ("light", "water", "camera") or "clock" in field.key["feeds"]
           or field.path in ("sea.wind_direction_deg", "sea.wind_speed_mps", "sea.depth_m", "surface.earth_curvature", "shot.loop_s",
                             "effects.whitecaps", "effects.foam_structure", "effects.foam_streaks", "effects.foam_pattern", "effects.foam_pattern_m", "effects.foam_new_albedo", "effects.foam_old_albedo",
                             "effects.foam_new_opaque", "effects.foam_old_opaque")

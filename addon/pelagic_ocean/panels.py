@@ -16,7 +16,7 @@ from .translations import CONTEXT, say
 
 # Title → tables of keys. Water is short, and found above the sea's many rows.
 PANELS = {"Water": (), "Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
-          "Light": ("light",), "Output": ("output", "quality")}
+          "Light": ("light", "camera"), "Output": ("output", "quality")}
 # The artist's few of the water; what else its table has is in a panel below them.
 WATER = ("water.type", "water.chlorophyll_mg_m3", "sea.depth_m", "water.floor_colour", "water.crest_light", "water.bubbles")
 MORE = "More"

@@ -10,7 +10,7 @@ from bpy.props import StringProperty
 from . import compat, ocean
 from .module import pelagic
 from .operators import NeedsOcean
-from .properties import BY_PATH
+from .properties import BY_PATH, OF_CAMERA
 
 THUMBNAILS = Path(__file__).parent / "thumbnails"  # examples/preset-thumbnails.py makes them
 
@@ -38,12 +38,14 @@ def icon_of(name):
 def _with_tables_of(other, scene):
     for table in TABLES:
         setattr(scene, table, getattr(other, table))
+    for path in OF_CAMERA:
+        setattr(scene.camera, BY_PATH[path].name, getattr(other.camera, BY_PATH[path].name))
     return scene
 
 
 def _says(preset):
     """What it looks like, and which settings or tables of settings it changes."""
-    tables = dict.fromkeys(path.split(".")[0] for path in preset["values"] if path in BY_PATH)  # the camera is Blender's
+    tables = dict.fromkeys(path.split(".")[0] for path in preset["values"] if path in BY_PATH)
     return f"{preset['help'][:1].upper()}{preset['help'][1:]}. Sets {', '.join(tables)}"
 
 

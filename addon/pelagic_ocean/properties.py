@@ -2,7 +2,7 @@
 """The settings of an ocean, `Object.pelagic`: a group for each table of a shot file, made from pelagic.keys().
 
 Key sea.wind_speed_mps is obj.pelagic.sea.wind_speed_mps, in the key's own unit. Where a key may be absent, infinite or a word,
-the property use_NAME beside it says whether it has a number. What Blender itself knows (frames, camera) has none.
+the property use_NAME beside it says whether it has a number. What Blender itself knows (frames, the camera but for its exposure) has none.
 """
 
 import math
@@ -21,6 +21,7 @@ VERSION = 6  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps",  # and the camera's: they come from the scene
                 "shot.edition"}  # the newest: all settings have values, and a file keeps those of its time (ocean.migrate)
+OF_CAMERA = {"camera.exposure_ev", "camera.ev100"}  # what Blender's camera hasn't: the add-on exposes the scene's view
 
 # Keys that the core refuses unless another key has one of some values: they are shown, and count, only then.
 ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", ("file",)), "sea.spectrum_time": ("sea.spectrum", ("file",)),
@@ -34,7 +35,8 @@ UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCI
          "s": {"subtype": "TIME_ABSOLUTE", "unit": "TIME"}, "pixels": {"subtype": "PIXEL"}}
 ABBREVIATIONS = {"fft", "jonswap", "tma", "usda", "usdc"}
 SIGNS = {"degrees": "°"}  # shorter in a label
-LABELS = {"light.visibility_km": "Visibility", "effects.sea_minus_air_c": "Sea warmer than air"}  # where a key's name makes none
+LABELS = {"light.visibility_km": "Visibility", "effects.sea_minus_air_c": "Sea warmer than air",
+          "camera.exposure_ev": "Exposure", "camera.ev100": "Light meter"}  # where a key's name makes none
 INTEGER_LIMIT = 2**31 - 1  # of Blender's
 
 
@@ -139,7 +141,7 @@ def _field(key):
 def _has_property(key):
     if key["choices"] and len(key["choices"]) < 2:
         return False  # nothing to choose
-    return key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
+    return key["path"] in OF_CAMERA or key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
 
 
 FIELDS = tuple(_field(key) for key in pelagic.keys() if _has_property(key)) if pelagic else ()

@@ -31,7 +31,7 @@ GERMAN = {
     "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
-    "Visibility": "Sichtweite", "Type": "Wasserart", "Body": "Wasserkörper", "Floor colour": "Farbe des Grundes", "Crest light": "Licht durch Kämme",
+    "Visibility": "Sichtweite", "Camera": "Kamera", "Light meter": "Belichtungsmesser", "Type": "Wasserart", "Body": "Wasserkörper", "Floor colour": "Farbe des Grundes", "Crest light": "Licht durch Kämme",
     "Floor pattern": "Muster des Grundes", "Caustics": "Kaustik", "Depth file": "Tiefenkarte", "Depth size": "Breite der Tiefenkarte",
     "Depth east": "Tiefenkarte, Ost", "Depth north": "Tiefenkarte, Nord",
     "Bubbles": "Blasen", "Whitecaps": "Schaumkronen", "Whitecap law": "Schaumkronengesetz",

@@ -196,6 +196,26 @@ with checking("the exposure is the scene's, whatever the order of work"):
     print("  ", np.round(still, 3), np.round(turning, 3), round(before, 3))
     assert np.ptp(still) < 1e-4 and np.ptp(turning) < 1e-4 and abs(still[0] - before) > 0.05
 
+with checking("stops that an artist or a preset adds brighten the view, a meter's number exposes it, and both may have keyframes"):
+    fresh_file()
+    view, obj = bpy.context.scene.view_settings, add_ocean()
+    bpy.context.view_layer.update()
+    before = view.exposure
+    change(obj, camera__exposure_ev=1.5)
+    assert math.isclose(view.exposure, before + 1.5, abs_tol=1e-3), (view.exposure, before)
+    change(obj, camera__exposure_ev=0.0, camera__use_ev100=True, camera__ev100=15.0)
+    metered = view.exposure
+    change(obj, camera__ev100=13.0)
+    assert math.isclose(view.exposure, metered + 2.0, abs_tol=1e-3), (view.exposure, metered)
+    for frame, stops in ((1, 0.0), (11, -2.0)):
+        obj.pelagic.camera.exposure_ev = stops
+        obj.keyframe_insert("pelagic.camera.exposure_ev", frame=frame)
+    shown = {}
+    for frame in (1, 11):
+        bpy.context.scene.frame_set(frame)
+        shown[frame] = view.exposure
+    assert math.isclose(shown[11] - shown[1], -2.0, abs_tol=1e-3), shown
+
 with checking("the ripples' clock is the sea's, and loops with it"):
     fresh_file()
     bpy_scene = bpy.context.scene

@@ -216,6 +216,35 @@ with checking("stops that an artist or a preset adds brighten the view, a meter'
         shown[frame] = view.exposure
     assert math.isclose(shown[11] - shown[1], -2.0, abs_tol=1e-3), shown
 
+if hasattr(bpy.types.Object, "light_linking"):  # Blender 4.0
+    with checking("lights that an artist links stay linked while the sea plays and its light changes, the sea's own sun among them"):
+        fresh_file()
+        bpy_scene, obj = bpy.context.scene, add_ocean()
+        ship = bpy.data.objects.new("Ship", bpy.data.meshes.new("Ship"))
+        deck = bpy.data.objects.new("Deck lamp", bpy.data.lights.new("Deck lamp", "POINT"))
+        deck.data.energy, deck.location, bpy_scene.camera.location = 1e6, (0.0, -4.0, 6.0), (0.0, -20.0, 5.0)
+        bpy_scene.camera.rotation_euler = (1.3, 0.0, 0.0)
+        aboard, sunless = bpy.data.collections.new("Aboard"), bpy.data.collections.new("All but the sea")
+        for each in (aboard, sunless):
+            each.objects.link(ship)
+        bpy_scene.collection.objects.link(ship), bpy_scene.collection.objects.link(deck)
+
+        def picture():
+            with tempfile.TemporaryDirectory() as folder:
+                return float((cycles_exr(Path(folder) / "picture.exr", (24, 24), 16)[..., :3] @ LUMINANCE).mean())
+
+        lit = picture()
+        deck.light_linking.receiver_collection = aboard
+        light.own_sun(bpy_scene).light_linking.receiver_collection = sunless
+        bpy_scene.frame_set(7)
+        change(obj, light__sun_elevation_deg=50.0, sea__wind_speed_mps=6.0)
+        assert deck.light_linking.receiver_collection == aboard and light.own_sun(bpy_scene).light_linking.receiver_collection == sunless
+        linked = picture()
+        deck.hide_render, light.own_sun(bpy_scene).hide_render = True, True
+        without = picture()
+        print("  ", lit, linked, without)
+        assert lit > 1.2 * linked and math.isclose(linked, without, rel_tol=1e-3), (lit, linked, without)
+
 with checking("the ripples' clock is the sea's, and loops with it"):
     fresh_file()
     bpy_scene = bpy.context.scene

@@ -9,6 +9,7 @@
 
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
+#include "plugin/run/fragments.h"
 #include "plugin/run/seals.h"
 
 namespace pelagic {
@@ -76,7 +77,12 @@ void check_files(const std::filesystem::path& folder, std::span<FileCheck> check
 void check_times(const std::filesystem::path& folder, std::span<FileCheck> checks,
                  const std::filesystem::path& record) {
     std::error_code error;
-    const auto saved = std::filesystem::last_write_time(record, error);
+    auto saved = std::filesystem::last_write_time(record, error);
+    for (const Fragment& fragment : fragments_of(record)) {
+        std::error_code gone;
+        const auto theirs = std::filesystem::last_write_time(fragment.file, gone);
+        if (!gone) saved = std::max(saved, theirs);
+    }
     for (FileCheck& file : checks) {
         const std::filesystem::path path = folder / file.path;
         if (file.is_sealed()) continue;

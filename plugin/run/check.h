@@ -50,8 +50,8 @@ void check_file(const std::filesystem::path& folder, FileCheck& check, CheckProg
 void check_files(const std::filesystem::path& folder, std::span<FileCheck> checks,
                  const BuildWatch& watch = {});
 
-// Looks at sizes and times alone: a file is as it was written if it has its size and is no newer than the record,
-// which is saved after the files that it tells of. Not at pictures.
+// Looks at sizes and times alone: a file is as it was written if it has its size and is no newer than the record and its fragments,
+// which are saved after the files that it tells of. Not at pictures.
 void check_times(const std::filesystem::path& folder, std::span<FileCheck> checks,
                  const std::filesystem::path& record);
 

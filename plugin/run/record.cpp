@@ -32,6 +32,7 @@
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
 #include "plugin/light/light.h"
+#include "plugin/run/fragments.h"
 
 namespace pelagic {
 namespace {
@@ -184,6 +185,45 @@ ShotRecord shot_from_json(const Json& json) {
     return shot;
 }
 
+// Of the shot's part, but for what files of no frame name: a task knows fewer frames than the shot has.
+std::string version_of(Json shot) {
+    shot.erase("files");
+    shot.erase("checksum");
+    return text_of(shot);
+}
+
+// What a record says of the shot.
+void take_shot(Json shot, RecordReading& reading) {
+    if (!shot.is_object() || !shot.contains("checksum")) {
+        reading.problem = "is no record of a bake, or an older version's";
+        return;
+    }
+    try {
+        if (is_as_written("", shot)) reading.shot = shot_from_json(shot);
+    } catch (const Json::exception&) {
+    }
+    if (reading.shot)
+        reading.version = version_of(std::move(shot));
+    else
+        reading.problem = "was altered in what it says about the shot";
+}
+
+// Hands over what a record says of a frame; `number` is its key.
+void take_entry(const std::string& number, const Json& entry, RecordReading& reading,
+                const std::function<void(int, FrameRecord)>& take) {
+    int frame = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), frame);
+    if (error != std::errc() || end != number.data() + number.size()) return;
+    if (!is_as_written(number, entry)) return reading.altered.push_back(frame);
+    FrameRecord record;
+    try {
+        record = from_json(entry);
+    } catch (const Json::exception&) {  // another version's
+        return reading.altered.push_back(frame);
+    }
+    take(frame, std::move(record));
+}
+
 // The bytes of a file for a parser. Ends where a single frame would be larger than any is, so that a file of
 // anything in the record's place fills no memory and takes no time.
 class Bytes final : public std::streambuf {
@@ -243,26 +283,13 @@ RecordReading read_record(const std::filesystem::path& file,
     }
     Bytes bytes(reader, cancel);
     std::string section, number;
-    const auto take_frame = [&](const Json& parsed) {
-        bytes.begin_part();
-        int frame = 0;
-        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), frame);
-        if (error != std::errc() || end != number.data() + number.size()) return;
-        if (!is_as_written(number, parsed)) return reading.altered.push_back(frame);
-        FrameRecord record;
-        try {
-            record = from_json(parsed);
-        } catch (const Json::exception&) {  // another version's
-            return reading.altered.push_back(frame);
-        }
-        take(frame, std::move(record));
-    };
     const auto at_event = [&](int depth, Json::parse_event_t event, const Json& parsed) {
         if (depth > kDeepest) bytes.end();
         if (event == Json::parse_event_t::key && depth == kSection) section = parsed;
         if (event == Json::parse_event_t::key && depth == kFrame) number = parsed;
         if (event != Json::parse_event_t::object_end || depth != kFrame || section != "frames") return true;
-        take_frame(parsed);
+        bytes.begin_part();
+        take_entry(number, parsed, reading, take);
         return false;
     };
     Json shot;
@@ -277,16 +304,62 @@ RecordReading read_record(const std::filesystem::path& file,
         reading.problem = reader.problem().empty() ? "is damaged, or no record of a bake" : reader.problem();
         return reading;
     }
-    if (!shot.is_object() || !shot.contains("checksum")) {
-        reading.problem = "is no record of a bake, or an older version's";
-        return reading;
+    if (shot.is_object()) shot.erase("frames");
+    take_shot(std::move(shot), reading);
+    return reading;
+}
+
+bool is_read_in_part(const std::filesystem::path& file, std::span<const int> frames) {
+    constexpr std::size_t kFew = 16;
+    return frames.size() <= kFew && files::file_size(file).value_or(0) >= kSmallRecord;
+}
+
+RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
+                          const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
+                          const std::atomic<bool>* cancel) {
+    // As write() lays a record out: entries are what begins and ends with four spaces.
+    constexpr std::string_view kFrames = ",\n  \"frames\": {", kBegin = "\n    \"", kEnd = "\n    }";
+    const auto whole = [&] {
+        return read_record(
+            file,
+            [&](int number, FrameRecord frame) {
+                numbers.insert(number);
+                take(number, std::move(frame));
+            },
+            cancel);
+    };
+    constexpr std::uintmax_t kLargest = std::uintmax_t{1}
+                                        << 30;  // [bytes] a million frames: anything may be in its place
+    if (!is_read_in_part(file, frames) || files::file_size(file).value_or(0) > kLargest ||
+        !files::carries(file, "{\n  \"pelagic\": "))
+        return whole();
+    std::string bytes;
+    const std::string problem = files::read_pieces(file, [&](std::string_view piece) {
+        stop_if(cancel);
+        bytes += piece;
+    });
+    const std::string_view text = bytes;
+    const std::size_t begin = text.find(kFrames);
+    if (!problem.empty() || begin == std::string_view::npos || !text.ends_with("\n  }\n}\n")) return whole();
+    RecordReading reading;
+    const auto parsed = [](std::string part) { return Json::parse(part, nullptr, false); };
+    take_shot(parsed(std::string(text.substr(0, begin)) + '}'), reading);
+    if (!reading.shot) return whole();
+    for (std::size_t at = text.find(kBegin, begin); at != std::string_view::npos;) {
+        const std::size_t key = at + kBegin.size(), next = text.find(kBegin, key);
+        int number = 0;
+        const auto [end, error] = std::from_chars(text.data() + key, text.data() + text.size(), number);
+        const auto after = static_cast<std::size_t>(end - text.data());
+        if (error != std::errc() || !text.substr(after).starts_with("\": {")) return whole();
+        numbers.insert(number);
+        if (std::binary_search(frames.begin(), frames.end(), number)) {
+            const std::size_t last = text.find(kEnd, after);
+            const Json entry = parsed(std::string(
+                text.substr(after + 3, last == std::string_view::npos ? 0 : last + kEnd.size() - after - 3)));
+            take_entry(std::to_string(number), entry, reading, take);
+        }
+        at = next;
     }
-    shot.erase("frames");
-    try {
-        if (is_as_written("", shot)) reading.shot = shot_from_json(shot);
-    } catch (const Json::exception&) {
-    }
-    if (!reading.shot) reading.problem = "was altered in what it says about the shot";
     return reading;
 }
 
@@ -368,75 +441,168 @@ void Record::set(const std::string& path, const files::FileState& file) {
     shot_["files"][path] = to_json(FileRecord{.bytes = file.bytes, .checksum = file.checksum});
 }
 
-void Record::refuse_other_choice(const std::filesystem::path& former) const {
-    if (choices_.empty() || written_) return;
-    const auto shot = read_record(former, [](int, const FrameRecord&) {}).shot;
-    if (!shot || shot->chosen.empty() ||
-        std::find(choices_.begin(), choices_.end(), shot->chosen) != choices_.end())
+void Record::refuse_other_choice(const RecordReading& there, const std::filesystem::path& file) const {
+    if (choices_.empty() || !there.shot || there.shot->chosen.empty() ||
+        std::find(choices_.begin(), choices_.end(), there.shot->chosen) != choices_.end())
         return;
-    throw std::invalid_argument("another run into " + line_text(former.parent_path().string()) +
-                                " has begun meanwhile, with other settings (" + line_text(shot->chosen) +
-                                "; here it would be " + choices_.front() +
+    throw std::invalid_argument("another run into " + line_text(file.parent_path().string()) +
+                                " has begun meanwhile, with other settings (" +
+                                line_text(there.shot->chosen) + "; here it would be " + choices_.front() +
                                 "): run the same command again, and it takes those");
 }
 
-void Record::save(const std::filesystem::path& file, const files::LockWatch& waiting,
-                  const std::function<void()>& begin) {
+void Record::begin(const std::filesystem::path& file, const files::LockWatch& waiting,
+                   const std::function<void()>& write_static, bool makes_frames) {
     const files::FolderLock lock(file.parent_path(), waiting);
     unlocked_ = lock.problem();
-    std::vector<int> found;
     // With a lock that holds, once.
     for (bool is_done = false; !is_done;) {
-        const files::FileIdentity former = files::identity_of(file);
-        refuse_other_choice(file);
-        if (begin) begin();
-        const bool is_ours = written_ && former == *written_;
-        const auto made = files::replace_if_same(
-            file, former, [&](const files::ByteSink& sink) { found = write(file, sink); });
-        is_done = made.has_value();
-        is_shared_ = is_shared_ || !is_done || (written_ && !is_ours);
-        if (is_done && is_ours) saved_.clear();  // all of them are in it
-        if (is_done) written_ = made;
+        std::set<int> ignored;
+        const RecordReading there = read_frames(
+            file, {}, [](int, const FrameRecord&) {}, ignored);
+        refuse_other_choice(there, file);
+        if (write_static) write_static();
+        std::map<std::string, Json> files_there, files;
+        if (there.shot)
+            for (const auto& [path, listed] : there.shot->files) files_there[path] = to_json(listed);
+        for (const auto& [path, listed] : shot_["files"].items()) files[path] = listed;
+        is_done =
+            (there.version == version_of(shot_) && files_there == files) || merge(file, false) == Merged::Yes;
     }
-    for (const int frame : found) saved_.erase(frame);
-    for (auto& [frame, record] : unsaved_) saved_[frame] = std::move(record);
+    if (makes_frames) save(file);
+}
+
+void Record::save(const std::filesystem::path& file) {
+    if (id_.empty()) id_ = new_fragment_id();
+    std::set<int> numbers;
+    if (!fragment_.empty())
+        read_record(fragment_, [&](int number, const FrameRecord&) { numbers.insert(number); });
+    for (const auto& [number, frame] : unsaved_) numbers.insert(number);
+    const auto named = numbers.empty() ? fragment_file(file, 0, 0, 0, id_)
+                                       : fragment_file(file, *numbers.begin(), *numbers.rbegin(),
+                                                       static_cast<int>(numbers.size()), id_);
+    files::ensure_folder(named.parent_path());
+    files::write_atomically(named, [&](const files::ByteSink& sink) {
+        write(sink, [&](const Take& take) { read_record(fragment_, take); });
+    });
+    if (named != fragment_) drop_fragment();
+    fragment_ = named;
     unsaved_.clear();
 }
 
-void Record::finish(const std::filesystem::path& file, const files::LockWatch& waiting) {
-    // Longer than a run needs between its last look at the record and its renaming of the next one.
-    constexpr std::chrono::milliseconds kMoment{200};
-    constexpr int kMostTimes = 10;  // two runs that make the same frames of different shots would never agree
-    save(file, waiting);
-    for (int times = 0; is_shared_ && times < kMostTimes; ++times) {
-        std::this_thread::sleep_for(kMoment);
-        if (files::identity_of(file) == *written_ || is_all_in(file)) return;
-        save(file, waiting);
+void Record::finish(const std::filesystem::path& file, const files::LockWatch& waiting,
+                    const std::function<void()>& write_static) {
+    constexpr int kMostTimes = 10;
+    if (unsaved_.empty() && fragments_of(file).empty()) return;
+    for (int times = 0; times < kMostTimes; ++times) {
+        // Else one run after the other would write a long record.
+        const bool is_small = is_alone(file) && files::file_size(file).value_or(0) < kSmallRecord;
+        if (!is_small) {
+            if (!unsaved_.empty()) save(file);
+            if (is_in_record(file)) return drop_fragment();
+            if (!may_be_whole(file)) return;
+        }
+        const files::FolderLock lock(file.parent_path(), waiting);
+        if (!is_small && write_static) write_static();
+        const Merged merged = merge(file, !is_small);
+        if (merged == Merged::Yes) return drop_fragment();
+        if (merged == Merged::NotWhole) return;
     }
+    if (!unsaved_.empty()) save(file);
 }
 
-bool Record::is_all_in(const std::filesystem::path& file) const {
+bool Record::is_alone(const std::filesystem::path& file) const {
+    const std::vector<Fragment> fragments = fragments_of(file);
+    return std::all_of(fragments.begin(), fragments.end(),
+                       [&](const Fragment& fragment) { return fragment.file == fragment_; });
+}
+
+// As where files were lost, and made again.
+bool Record::is_in_record(const std::filesystem::path& file) const {
+    std::map<int, FrameRecord> ours;
+    std::vector<int> numbers;
+    std::set<int> ignored;
+    if (!fragment_.empty())
+        read_record(fragment_, [&](int number, FrameRecord frame) {
+            numbers.push_back(number);
+            ours[number] = std::move(frame);
+        });
+    if (ours.empty()) return true;
+    if (!is_read_in_part(file, numbers)) return false;
     std::size_t found = 0;
-    read_record(file, [&](int number, const FrameRecord& frame) {
-        const auto ours = saved_.find(number);
-        found += ours != saved_.end() && to_json(ours->second) == to_json(frame);
-    });
-    return found == saved_.size();
+    read_frames(
+        file, numbers,
+        [&](int number, const FrameRecord& frame) { found += to_json(ours.at(number)) == to_json(frame); },
+        ignored);
+    return found == ours.size();
 }
 
-// As one JSON object would be printed, frames by rising number, those of `former` merged with ours.
-std::vector<int> Record::write(const std::filesystem::path& former,
-                               const std::function<void(std::string_view)>& sink) const {
+bool Record::may_be_whole(const std::filesystem::path& file) const {
+    std::set<int> numbers;
+    read_frames(
+        file, {}, [](int, const FrameRecord&) {}, numbers);
+    auto frames = static_cast<std::int64_t>(numbers.size());
+    for (const Fragment& fragment : fragments_of(file)) frames += fragment.frames;
+    return frames > std::int64_t{last_frame_} - first_frame_;
+}
+
+void Record::drop_fragment() {
+    std::error_code ignored;
+    if (fragment_.empty()) return;
+    std::filesystem::remove(fragment_, ignored);
+    std::filesystem::remove(fragment_.parent_path(), ignored);  // if it is empty
+    fragment_.clear();
+}
+
+Record::Merged Record::merge(const std::filesystem::path& file, bool must_be_whole) {
+    struct NotWhole {};
+    const files::FileIdentity former = files::identity_of(file);
+    std::vector<Fragment> fragments = fragments_of(file);
+    for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
+    bool has_changed = false;
+    try {
+        const auto made = files::replace_if_same(file, former, [&](const files::ByteSink& sink) {
+            const std::int64_t fresh = write(sink, [&](const Take& take) {
+                has_changed = read_records(file, [&](int number, FrameRecord frame) {
+                                  if (is_stale_) frame.is_stale = is_stale_(number, frame);
+                                  take(number, std::move(frame));
+                              }).has_changed;
+            });
+            if (must_be_whole && (has_changed || fresh <= std::int64_t{last_frame_} - first_frame_))
+                throw NotWhole();
+        });
+        if (!made) return Merged::Changed;
+    } catch (const NotWhole&) {
+        return has_changed ? Merged::Changed : Merged::NotWhole;
+    }
+    unsaved_.clear();
+    // One without frames says that its run is at work.
+    for (const Fragment& fragment : fragments)
+        if ((fragment.frames > 0 || must_be_whole) &&
+            files::identity_of(fragment.file) == fragment.identity) {
+            std::error_code ignored;
+            std::filesystem::remove(fragment.file, ignored);
+            std::filesystem::remove(fragment.file.parent_path(), ignored);
+        }
+    return Merged::Yes;
+}
+
+// As one JSON object would be printed, frames by rising number, those that `former` hands over and ours, which take their place.
+// Returns how many of the shot's frames aren't stale.
+std::int64_t Record::write(const files::ByteSink& sink,
+                           const std::function<void(const Take&)>& former) const {
     constexpr std::size_t kPiece = 1 << 16;  // bytes: a piece is a call of the system
     Json shot = shot_;
     shot["checksum"] = checksum_of("", shot);
     std::string piece = "{" + lines_inside(shot, "") + ",\n  \"frames\": {";
     std::optional<int> last;
+    std::int64_t fresh = 0;
     const auto add = [&](int number, const FrameRecord& frame) {
         if (last && number <= *last) return;  // ours have taken its place, or somebody has mixed them up
         if (number < first_frame_ || number > last_frame_) return;
         if (last) piece += ',';
         last = number;
+        fresh += !frame.is_stale;
         const std::string key = std::to_string(number);
         Json entry = to_json(frame);
         entry["checksum"] = checksum_of(key, entry);
@@ -445,34 +611,17 @@ std::vector<int> Record::write(const std::filesystem::path& former,
         sink(piece);
         piece.clear();
     };
-    // By rising number; of the same frame the one that was set later comes first.
-    auto saved = saved_.begin(), unsaved = unsaved_.begin();
+    auto ours = unsaved_.begin();
     const auto add_ours_up_to = [&](int number) {
-        const auto is_next = [&](const auto& at, const auto& of) {
-            return at != of.end() && at->first <= number;
-        };
-        while (is_next(unsaved, unsaved_) || is_next(saved, saved_)) {
-            auto& next =
-                !is_next(saved, saved_) || (is_next(unsaved, unsaved_) && unsaved->first <= saved->first)
-                    ? unsaved
-                    : saved;
-            add(next->first, next->second);
-            ++next;
-        }
+        for (; ours != unsaved_.end() && ours->first <= number; ++ours) add(ours->first, ours->second);
     };
-    std::vector<int> found;
-    // Where the former one can't be read any further, ours goes on without it.
-    read_record(former, [&](int number, FrameRecord frame) {
+    former([&](int number, FrameRecord frame) {
         add_ours_up_to(number);
-        if (const auto ours = saved_.find(number);
-            ours != saved_.end() && to_json(ours->second) == to_json(frame))
-            found.push_back(number);
-        if (is_stale_) frame.is_stale = is_stale_(number, frame);
         add(number, frame);
     });
     add_ours_up_to(std::numeric_limits<int>::max());
     sink(piece + (last ? "\n  }\n}\n" : "}\n}\n"));
-    return found;
+    return fresh;
 }
 
 }  // namespace pelagic

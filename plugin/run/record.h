@@ -1,6 +1,8 @@
 // The record of a bake, DIR/NAME.json: what was asked, what the spectrum and the literature say, and for each
 // frame that is whole its files and what the sea did. Each file has its size and checksum, and so have each frame's
-// entry and the shot's part: a number that was altered since is noticed.
+// entry and the shot's part: a number that was altered since is noticed. Nothing in it depends on when, where, by whom or in which
+// order frames were made: runs of parts of a shot leave the record that one run leaves. What a run adds lies beside it until then
+// (plugin/run/fragments.h).
 #pragma once
 
 #include <atomic>
@@ -10,12 +12,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "core/base/instruction_set.h"
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
 #include "pelagic/scene.h"
@@ -41,8 +44,8 @@ struct FileRecord {
 
 // Of one frame. What nobody paid for is absent.
 struct FrameRecord {
-    std::string fingerprint;  // of what its statistics were made of
-    std::string instruction_set = pelagic::instruction_set();
+    std::string fingerprint;                  // of what its statistics were made of
+    std::string instruction_set{};            // that it was made with
     std::map<std::string, FileRecord> files;  // by path below DIR, with /
     bool is_stale = false;                    // of another version of the shot than the record's
     double time_s = 0.0;
@@ -64,6 +67,8 @@ struct ShotRecord {
 // What was found in a record.
 struct RecordReading {
     std::optional<ShotRecord> shot;  // absent where that part was altered, or isn't ours
+    std::string
+        version{};  // what that part says, but for the files: alike for all runs of one version of the shot
     // What is wrong with the file as a whole, as the end of a sentence that begins with its name; what could be read
     // before was read.
     std::string problem;
@@ -77,6 +82,18 @@ struct RecordReading {
 // memory. Throws BuildCancelled.
 RecordReading read_record(const std::filesystem::path& file,
                           const std::function<void(int, FrameRecord)>& take,
+                          const std::atomic<bool>* cancel = nullptr);
+
+// A record of fewer bytes is read and written in milliseconds.
+inline constexpr std::uintmax_t kSmallRecord = std::uintmax_t{1} << 18;
+
+// Whether these frames are few and the record isn't small: then read_frames() parses no other.
+bool is_read_in_part(const std::filesystem::path& file, std::span<const int> frames);
+
+// The same of these frames, rising, and the numbers of all that have an entry. In part, other entries aren't looked at for what was
+// altered; else all of them are handed over.
+RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
+                          const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
                           const std::atomic<bool>* cancel = nullptr);
 
 // What a run adds to the record of its shot.
@@ -101,30 +118,40 @@ class Record {
     void set(const std::string& path, const files::FileState& file);
     void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }
 
-    // Writes the record to `file`, with the frames that are there already, of this run and of others, and again where
-    // another run has written it meanwhile. Holds one frame of others at a time, and of ours those that weren't found in the
-    // record since they were saved: memory doesn't grow with the shot. Throws files::FileError, and what `waiting` throws;
-    // then what was set is kept for the next time.
+    // All of these take the record's file, DIR/NAME.json, and throw files::FileError.
     //
-    // The first time it throws std::invalid_argument where the record says that another run has chosen otherwise. `begin`:
-    // what is written, and set, before the record and under its lock; not called where that throws.
-    void save(const std::filesystem::path& file, const files::LockWatch& waiting = {},
-              const std::function<void()>& begin = {});
+    // Makes sure that the record tells of this version of the shot. Where it is of another one, or missing, it is written anew with
+    // all frames that are recorded, those of other versions as stale. Throws std::invalid_argument where it says that another run
+    // has chosen otherwise, and what `waiting` throws. `write_static`: what is written, and set, before the record and under its
+    // lock; not called where that throws. makes_frames: whether the run has a fragment from now on.
+    void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
+               const std::function<void()>& write_static = {}, bool makes_frames = false);
 
-    // The last save() of a run: where other runs write as well, looks whether what was set last is still there some moments
-    // later, and saves it again where another one, whose lock was none, has written over it.
-    void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {});
+    // Writes what was set into the run's fragment. Holds one frame in memory of those that are there already.
+    void save(const std::filesystem::path& file);
+
+    // The last save() of a run. Where the record is small and no other run is at work, or where all the shot's frames are there, its
+    // fragments become a part of the record, which is as one run would have written it. Where locks don't hold nothing is lost, since
+    // two that make a record whole write the same. `write_static`: as of begin(), before a record that is whole.
+    void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {},
+                const std::function<void()>& write_static = {});
 
     // Why other runs aren't kept from writing the record at the same time, in words; empty where they are, as far as
     // the system says.
     const std::string& unlocked() const { return unlocked_; }
 
   private:
-    // Returns those of saved_ that `former` has.
-    std::vector<int> write(const std::filesystem::path& former,
-                           const std::function<void(std::string_view)>& sink) const;
-    void refuse_other_choice(const std::filesystem::path& former) const;
-    bool is_all_in(const std::filesystem::path& file) const;
+    using Take = std::function<void(int, FrameRecord)>;
+    enum class Merged { Yes, Changed, NotWhole };  // Changed: by another run meanwhile
+
+    void refuse_other_choice(const RecordReading& there, const std::filesystem::path& file) const;
+    // Writes the record with its fragments and what was set since, and deletes those. must_be_whole: only with all of the shot's frames.
+    Merged merge(const std::filesystem::path& file, bool must_be_whole);
+    std::int64_t write(const files::ByteSink& sink, const std::function<void(const Take&)>& former) const;
+    bool is_alone(const std::filesystem::path& file) const;
+    bool is_in_record(const std::filesystem::path& file) const;
+    bool may_be_whole(const std::filesystem::path& file) const;
+    void drop_fragment();
 
     nlohmann::ordered_json shot_;
     std::vector<std::string>
@@ -132,10 +159,8 @@ class Record {
     int first_frame_ = 0, last_frame_ = 0;
     std::function<bool(int, const FrameRecord&)> is_stale_;
     std::map<int, FrameRecord> unsaved_;
-    std::map<int, FrameRecord>
-        saved_;  // and not found in the record since: another run may have written over it
-    std::optional<files::FileIdentity> written_;  // the record as save() left it
-    bool is_shared_ = false;                      // another run has written it since
+    std::filesystem::path fragment_{};  // of what was saved; empty: none yet
+    std::string id_{};                  // in its name
     std::string unlocked_;
 };
 

@@ -13,10 +13,12 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/instruction_set.h"
 #include "core/base/text.h"
 #include "plugin/files/files.h"
 #include "plugin/run/check.h"
 #include "plugin/run/foreign.h"
+#include "plugin/run/fragments.h"
 #include "plugin/run/record.h"
 #include "plugin/run/seals.h"
 #include "plugin/run/work.h"
@@ -132,18 +134,19 @@ std::map<int, FrameRecord> sealed_frames(const std::filesystem::path& folder, co
 
 // The frames that files of no frame name: all of the shot, or of a very long one those that are asked for or recorded.
 std::vector<int> named_frames(const Shot& shot, const std::vector<int>& asked,
-                              const std::map<int, FrameRecord>& recorded) {
-    constexpr std::int64_t kMost = 8192;  // a line for each, some 70 bytes
+                              const std::set<int>& recorded) {
+    constexpr std::int64_t kMost = 32768;  // a line for each, some 70 bytes
     if (std::int64_t{shot.last_frame} - shot.first_frame < kMost) return frames_of(shot, {});
     std::set<int> named(asked.begin(), asked.end());
-    for (const auto& [frame, entry] : recorded)
+    for (const int frame : recorded)
         if (is_in(shot, frame)) named.insert(frame);
     return {named.begin(), named.end()};
 }
 
-// Adds the files that were kept to the frame's record, and the mean coverage, the mesh's height and the spray, each from
+// Adds the files that were kept to the frame's record, what made the others, and the mean coverage, the mesh's height and the spray, each from
 // the first output that has it.
 void complete(FrameRecord& record, const FrameJob& job, Parts parts) {
+    if (record.instruction_set.empty()) record.instruction_set = instruction_set();
     record.files.insert(job.kept.files.begin(), job.kept.files.end());
     for (const RunPart& part : parts) {
         const FileRecord& file = record.files.at(part.file(job.frame));
@@ -153,14 +156,15 @@ void complete(FrameRecord& record, const FrameJob& job, Parts parts) {
     }
 }
 
-// The frames that the record holds as they were written; what is wrong with it goes to the report, an altered entry of
-// a frame that isn't asked for to the stale ones. Throws files::FileError where something is in the record's place
+// The frames that the record holds as they were written (of a long record those that are asked for), and the numbers of all; what is
+// wrong with it goes to the report, an altered entry of a frame that isn't asked for to the stale ones. Throws files::FileError where something is in the record's place
 // that isn't one and can't be replaced.
 std::map<int, FrameRecord> recorded_frames(RunReport& report, const Shot& shot, std::span<const int> asked,
-                                           const std::atomic<bool>* cancel) {
+                                           std::set<int>& numbers, const std::atomic<bool>* cancel) {
     std::map<int, FrameRecord> frames;
-    const RecordReading reading = read_record(
-        report.record, [&](int frame, FrameRecord record) { frames[frame] = std::move(record); }, cancel);
+    const RecordsReading reading = read_some(
+        report.record, asked, [&](int frame, FrameRecord record) { frames[frame] = std::move(record); },
+        numbers, cancel);
     if (reading.is_blocked)
         throw files::FileError("the record '" + line_text(report.record.string()) + "' " + reading.problem +
                                    ": move it away or choose another folder",
@@ -168,6 +172,7 @@ std::map<int, FrameRecord> recorded_frames(RunReport& report, const Shot& shot, 
     const std::string name = report.record.filename().string();
     if (!reading.problem.empty() && !reading.is_missing)
         report.damaged.push_back(name + ' ' + reading.problem);
+    report.damaged.insert(report.damaged.end(), reading.damaged.begin(), reading.damaged.end());
     for (const int frame : reading.altered) {
         if (std::binary_search(asked.begin(), asked.end(), frame))
             report.damaged.push_back(name + " was altered in what it says about frame " +
@@ -218,10 +223,11 @@ class Run {
 
     void find() {
         const Shot& shot = work_.shot;
+        std::set<int> numbers;
         const std::map<int, FrameRecord> recorded =
-            work_.has_record ? recorded_frames(report_, shot, frames_, options_.cancel)
+            work_.has_record ? recorded_frames(report_, shot, frames_, numbers, options_.cancel)
                              : sealed_frames(options_.out, shot, parts_, options_.cancel);
-        named_ = named_frames(shot, frames_, recorded);
+        named_ = named_frames(shot, frames_, numbers);
         std::vector<FileCheck> checks = files_to_check(frames_, recorded, parts_);
         if (options_.trust_times)
             check_times(options_.out, checks, report_.record);
@@ -267,13 +273,19 @@ class Run {
             // What was finished stays recorded; if even that can't be done, the first reason is the one to
             // tell.
             try {
-                if (work_.has_record) record_.save(report_.record, waiting_);
+                if (work_.has_record) {
+                    record_.save(report_.record);
+                    record_.finish(report_.record, waiting_);
+                }
             } catch (...) {
             }
             throw;
         }
         if (!work_.has_record) return;
-        record_.finish(report_.record, waiting_);
+        record_.finish(report_.record, waiting_, [this] {
+            named_ = frames_of(work_.shot, {});
+            write_static();
+        });
         report_.unlocked = record_.unlocked();
     }
 
@@ -283,20 +295,22 @@ class Run {
         record_.set_chosen(options_.chosen, options_.chosen_before);
         record_.mark_stale(
             [this](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts_); });
-        const auto write_static = [this] {  // anew where another program was faster in a folder without locks
-            static_files_ = {report_.record.filename().string()};
-            sequence_->write_static(named_, [this](const FileJob& file) {
-                stop_if(options_.cancel);
-                static_files_.push_back(file.path);
-                record_.set(file.path, files::write_if_different(options_.out / file.path, file.content));
-            });
-        };
         for (const FrameJob& job : mended_) {
             FrameRecord mended = job.kept;
             complete(mended, job, parts_);
             record_.set(job.frame, mended);
         }
-        record_.save(report_.record, waiting_, write_static);
+        record_.begin(
+            report_.record, waiting_, [this] { write_static(); }, !jobs_.empty());
+    }
+
+    void write_static() {
+        static_files_ = {report_.record.filename().string()};
+        sequence_->write_static(named_, [this](const FileJob& file) {
+            stop_if(options_.cancel);
+            static_files_.push_back(file.path);
+            record_.set(file.path, files::write_if_different(options_.out / file.path, file.content));
+        });
     }
 
     void compute(const FrameJob& job, RunSlot& slot) {
@@ -325,11 +339,11 @@ class Run {
         if (!work_.has_record) return;
         complete(whole, job, parts_);
         record_.set(job.frame, whole);
-        // The record grows with the shot: writing it takes at most a twentieth of the time. Frames that a
+        // What is recorded grows with the run: writing it takes at most a twentieth of the time. Frames that a
         // killed process had not recorded yet are made again.
         const double now_s = seconds_since(begun_);
         if (now_s - last_save_s_ < 20.0 * save_cost_s_) return;
-        record_.save(report_.record, waiting_);
+        record_.save(report_.record);
         last_save_s_ = seconds_since(begun_);
         save_cost_s_ = last_save_s_ - now_s;
     }

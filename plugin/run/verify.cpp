@@ -10,6 +10,7 @@
 
 #include "core/scene/text.h"
 #include "plugin/run/foreign.h"
+#include "plugin/run/fragments.h"
 #include "plugin/run/record.h"
 #include "plugin/run/run.h"
 
@@ -61,7 +62,7 @@ void read_shot(const fs::path& folder, const std::string& record, const std::ato
             known.files.push_back({.path = path, .recorded = std::move(file)});
     };
     std::vector<int> baked, stale;
-    const RecordReading reading = read_record(
+    const RecordsReading reading = read_records(
         folder / record,
         [&](int frame, FrameRecord entry) {
             baked.push_back(frame);
@@ -79,9 +80,14 @@ void read_shot(const fs::path& folder, const std::string& record, const std::ato
     known.paths.insert(record);
     ++found.shots;
     if (!reading.problem.empty()) tell(Flaw::Damaged, reading.problem);
+    for (const std::string& fragment : reading.damaged) {
+        const std::size_t end = fragment.find(' ');
+        found.findings.push_back({fragment.substr(0, end), Flaw::Damaged, fragment.substr(end + 1)});
+    }
     if (!reading.altered.empty())
         tell(Flaw::Damaged, "was altered in what it says about the frames " + frames_text(reading.altered));
-    if (!reading.problem.empty() || !reading.altered.empty()) known.uncertain.insert(name);
+    if (!reading.problem.empty() || !reading.altered.empty() || !reading.damaged.empty())
+        known.uncertain.insert(name);
     if (!stale.empty()) tell(Flaw::Stale, "has frames of another version of the shot: " + frames_text(stale));
     if (!reading.shot && baked.empty() && !reading.is_blocked) known.unread.insert(record);
     if (!reading.shot) return;

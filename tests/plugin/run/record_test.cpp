@@ -39,7 +39,7 @@ TEST(Record, HasEveryKeyAsAValue) {
         std::filesystem::temp_directory_path() / ("pelagic-record-" + std::to_string(getpid()) + ".json");
     Record record;
     record.describe(plan_bake(scene), SpectralMoments{}, 0.0, 0.0);
-    record.save(file);
+    record.begin(file);
     std::ifstream stream(file);
     const auto settings = nlohmann::json::parse(stream).at("settings");
     std::filesystem::remove(file);
@@ -69,7 +69,7 @@ TEST(Record, SaysOfACascadesChoppinessWhatTheShotSays) {
         std::filesystem::temp_directory_path() / ("pelagic-cascades-" + std::to_string(getpid()) + ".json");
     Record record;
     record.describe(plan_bake(scene), SpectralMoments{}, 0.0, 0.0);
-    record.save(file);
+    record.begin(file);
     std::ifstream stream(file);
     const auto shot = nlohmann::json::parse(stream);
     std::filesystem::remove(file);
@@ -90,7 +90,7 @@ TEST(Record, SaysThatTheThresholdIsWithoutGusts) {
             std::filesystem::temp_directory_path() / ("pelagic-gusts-" + std::to_string(getpid()) + ".json");
         Record record;
         record.describe(plan_bake(scene), SpectralMoments{}, 0.5, 0.0);
-        record.save(file);
+        record.begin(file);
         std::ifstream stream(file);
         const auto shot = nlohmann::json::parse(stream);
         std::filesystem::remove(file);

@@ -1,6 +1,7 @@
 // How the program ends where its surroundings fail: full or closed outputs, readers that leave, limits, no threads.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -106,7 +107,7 @@ TEST_F(Endings, ThreadsThatTheSystemRefusesAreSaid) {
 }
 
 // Four tasks of one shot in one folder, whose locks keep nobody out, as on a file system that locks for each machine alone: the
-// record has the frames of all of them.
+// record has the frames of all of them, and is the one that a single run leaves.
 TEST_F(Endings, TasksWhoseLocksDontLockLoseNoFrame) {
     write_file(folder() / "task.toml",
                text_of({.name = "task", .frames = 200, .mesh = false, .maps = "\"displacement\""}));
@@ -117,6 +118,39 @@ TEST_F(Endings, TasksWhoseLocksDontLockLoseNoFrame) {
     const Ended ended = shell(tasks + "wait");
     const Ended verified = shell("$P verify out");
     EXPECT_EQ(verified.status, 0) << ended.err << verified.out;
+    EXPECT_EQ(shell("$P bake task.toml --out one && diff -r one out").status, 0);
+}
+
+// A frame of a shot of ten thousand that are there costs what it costs in an empty folder: neither is their record read through for
+// it, nor written anew.
+TEST_F(Endings, AFrameOfALongRecordCostsAFrame) {
+    constexpr int kFrames = 10000;
+    constexpr double kMost = 1.6;  // 1.02 alone on a machine, 8 where the record is read and written
+    write_file(folder() / "long.toml", text_of({.name = "long", .frames = kFrames}));
+    ASSERT_EQ(shell("$P bake long.toml --out out --frames 1-2").status, 0);
+    const fs::path file = folder() / "out" / "long.json";
+    std::string record = files_below(folder() / "out").at("long.json");
+    const std::size_t begin = record.find("\n    \"2\": {"), end = record.rfind("\n  }\n}\n");
+    ASSERT_TRUE(begin < end && end != std::string::npos);
+    const std::string entry = record.substr(begin + 9, end - begin - 9), rest = record.substr(end);
+    record.resize(end);
+    for (int frame = 3; frame <= kFrames; ++frame)
+        if (frame != 5000) record += ",\n    \"" + std::to_string(frame) + "\"" + entry;
+    write_file(file, record + rest);
+    fs::remove_all(folder() / "out" / "mesh");
+    double least_s[2] = {1e9, 1e9};
+    for (int times = 0; times < 5; ++times)
+        for (const bool is_long : {false, true}) {
+            fs::remove_all(folder() / "short");
+            const std::string out = is_long ? "out" : "short";
+            const Ended ended = shell("$P bake long.toml --out " + out + " --frames 5000");
+            ASSERT_EQ(ended.status, 0) << ended.err;
+            EXPECT_EQ(files_below(folder() / out).count("mesh/long.5000.usda"), 1u) << files_below(folder() / out).rbegin()->first;
+            least_s[is_long] = std::min(least_s[is_long], ended.seconds);
+            fs::remove_all(folder() / out / "mesh");
+            fs::remove_all(folder() / out / "record");
+        }
+    EXPECT_LT(least_s[1], kMost * least_s[0]);
 }
 
 // A frame costs what it costs in a shot of ten, in time and in bytes, however long its shot is and however its camera moves.

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "plugin/run/run.h"
@@ -13,7 +14,9 @@ std::vector<int> parse_frames(const std::string& text, const Shot& shot) {
     const auto refuse = [&](const std::string& why) {
         throw std::invalid_argument("frames \"" + text + "\": " + why + "; accepted: a frame like " +
                                     std::to_string(shot.first_frame) + ", a range like " + range +
-                                    ", or every fifth of it like " + range + "x5, within the shot's " +
+                                    ", every fifth of it like " + range +
+                                    "x5, or several of these with commas between, within the "
+                                    "shot's " +
                                     range);
     };
     const char* at = text.data();
@@ -25,27 +28,30 @@ std::vector<int> parse_frames(const std::string& text, const Shot& shot) {
         at = after;
         return value;
     };
-    const auto first = number();
-    if (!first) refuse("that is not a frame");
-    int last = *first, step = 1;
-    if (at != end && *at == '-') {
-        ++at;
-        const auto given = number();
-        if (!given) refuse("nothing that is a frame follows the -");
-        last = *given;
+    std::set<int> frames;
+    for (bool is_first = true; is_first || at != end; is_first = false) {
+        if (!is_first && *at++ != ',') refuse("\"" + std::string(at - 1, end) + "\" is left over");
+        const auto first = number();
+        if (!first) refuse(is_first ? "that is not a frame" : "no frame follows the comma");
+        int last = *first, step = 1;
+        if (at != end && *at == '-') {
+            ++at;
+            const auto given = number();
+            if (!given) refuse("nothing that is a frame follows the -");
+            last = *given;
+        }
+        if (at != end && *at == 'x') {
+            ++at;
+            const auto given = number();
+            if (!given || *given < 1) refuse("the step after the x must be a whole number from 1 up");
+            step = *given;
+        }
+        if (last < *first) refuse("it runs backwards");
+        if (*first < shot.first_frame || last > shot.last_frame) refuse("that is outside the shot");
+        for (long frame = *first; frame <= last; frame += step)
+            frames.insert(frames.end(), static_cast<int>(frame));
     }
-    if (at != end && *at == 'x') {
-        ++at;
-        const auto given = number();
-        if (!given || *given < 1) refuse("the step after the x must be a whole number from 1 up");
-        step = *given;
-    }
-    if (at != end) refuse("\"" + std::string(at, end) + "\" is left over");
-    if (last < *first) refuse("it runs backwards");
-    if (*first < shot.first_frame || last > shot.last_frame) refuse("that is outside the shot");
-    std::vector<int> frames;
-    for (long frame = *first; frame <= last; frame += step) frames.push_back(static_cast<int>(frame));
-    return frames;
+    return {frames.begin(), frames.end()};
 }
 
 std::string frames_text(const std::vector<int>& frames) {

@@ -487,13 +487,20 @@ void Record::save(const std::filesystem::path& file) {
     });
     if (named != fragment_) drop_fragment();
     fragment_ = named;
+    saved_ = numbers.size();
     unsaved_.clear();
 }
 
 void Record::finish(const std::filesystem::path& file, const files::LockWatch& waiting,
                     const std::function<void()>& write_static) {
-    constexpr int kMostTimes = 10;
     if (unsaved_.empty() && fragments_of(file).empty()) return;
+    take_in(file, waiting, write_static);
+    if (saved_ == 0) drop_fragment();
+}
+
+void Record::take_in(const std::filesystem::path& file, const files::LockWatch& waiting,
+                     const std::function<void()>& write_static) {
+    constexpr int kMostTimes = 10;
     for (int times = 0; times < kMostTimes; ++times) {
         // Else one run after the other would write a long record.
         const bool is_small = is_alone(file) && files::file_size(file).value_or(0) < kSmallRecord;
@@ -527,8 +534,7 @@ bool Record::is_in_record(const std::filesystem::path& file) const {
             numbers.push_back(number);
             ours[number] = std::move(frame);
         });
-    if (ours.empty()) return true;
-    if (!is_read_in_part(file, numbers)) return false;
+    if (ours.empty() || !is_read_in_part(file, numbers)) return false;
     std::size_t found = 0;
     read_frames(
         file, numbers,

@@ -148,6 +148,8 @@ class Record {
     // Writes the record with its fragments and what was set since, and deletes those. must_be_whole: only with all of the shot's frames.
     Merged merge(const std::filesystem::path& file, bool must_be_whole);
     std::int64_t write(const files::ByteSink& sink, const std::function<void(const Take&)>& former) const;
+    void take_in(const std::filesystem::path& file, const files::LockWatch& waiting,
+                 const std::function<void()>& write_static);
     bool is_alone(const std::filesystem::path& file) const;
     bool is_in_record(const std::filesystem::path& file) const;
     bool may_be_whole(const std::filesystem::path& file) const;
@@ -160,6 +162,7 @@ class Record {
     std::function<bool(int, const FrameRecord&)> is_stale_;
     std::map<int, FrameRecord> unsaved_;
     std::filesystem::path fragment_{};  // of what was saved; empty: none yet
+    std::size_t saved_ = 0;             // frames in it
     std::string id_{};                  // in its name
     std::string unlocked_;
 };

@@ -87,8 +87,8 @@ RunReport run(const RunWork& work, const RunOptions& options);
 // made.
 std::string time_text(const RunReport& report);
 
-// "--frames": "1-48", "7", "1-48x5" (every fifth), with negative numbers as in "-3--1": any part of the
-// shot's range. Throws std::invalid_argument saying what is accepted.
+// "--frames": "1-48", "7", "1-48x5" (every fifth), "1,5,10-20x5", with negative numbers as in "-3--1": any part of the shot's
+// range, in any order; rising. Throws std::invalid_argument saying what is accepted.
 std::vector<int> parse_frames(const std::string& text, const Shot& shot);
 
 // "1-6, 9", of rising frames.

@@ -50,7 +50,7 @@ const char* const kOut =
     "The folder for the files; created if it is missing.\n"
     "Default: a folder in the working folder, named after the shot";
 const char* const kFrames =
-    "Which of the shot's frames: 1-48, 7, or 1-48x5 for every fifth.\n"
+    "Which of the shot's frames: 1-48, 7, 1-48x5 for every fifth, or 1,5,10-20x5.\n"
     "Default: all of them";
 const char* const kThreads =
     "How many threads, 1 to 256; the files don't depend on it.\n"

@@ -369,7 +369,7 @@ void add_bake(py::module_& module) {
         "Bakes a scene into files, as `pelagic bake` does, and the same bits. Files that are whole "
         "already are kept. Other threads run meanwhile.\n\n"
         "out: the folder, made where it is missing; by default ./NAME. frames: a frame, a list, a text like "
-        "\"1-48x5\", or None for the whole shot.\n"
+        "\"1-48x5\" or \"1,5,10-20x5\", or None for the whole shot.\n"
         "progress: called as progress(stage, frame, done, kept, total, share) from any thread: \"planning\", "
         "\"checking\" (share: of the files, those that were read), \"building\" (share: of the sea), \"frames\" (share: of the "
         "earlier times that the foam of the frame at hand comes from, while it goes through many, otherwise 0) or "

@@ -231,7 +231,10 @@ TEST(ParseFrames, TakesFramesRangesAndSteps) {
     EXPECT_EQ(parse_frames("1-4", shot), (std::vector<int>{1, 2, 3, 4}));
     EXPECT_EQ(parse_frames("1-12x5", shot), (std::vector<int>{1, 6, 11}));
     EXPECT_EQ(parse_frames("-3--1", shot), (std::vector<int>{-3, -2, -1}));
-    for (const char* wrong : {"", "a", "5-1", "1-21", "-4", "1-4x0", "1-4x", "1-4x2y", "1,2", "99999999999"})
+    EXPECT_EQ(parse_frames("9,1,4-8x2,-3--1,9,3-5", shot),
+              (std::vector<int>{-3, -2, -1, 1, 3, 4, 5, 6, 8, 9}));
+    for (const char* wrong : {"", "a", "5-1", "1-21", "-4", "1-4x0", "1-4x", "1-4x2y", "1,", ",1", "1,,2",
+                              "1,2y", "1,21", "99999999999"})
         EXPECT_THROW(parse_frames(wrong, shot), std::invalid_argument) << wrong;
 }
 

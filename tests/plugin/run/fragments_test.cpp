@@ -144,6 +144,23 @@ TEST_F(Fragments, OfAKilledRunAreReadAndTakenIn) {
     EXPECT_FALSE(fs::exists(folder_ / "record"));
 }
 
+// One that was killed before its first frame has said that it is at work, and no more.
+TEST_F(Fragments, OfARunThatMadeNothingAreGoneOnceTheShotIsWhole) {
+    const std::string expected = text_of_one(3);
+    begun(3)->begin(record(), {}, {}, true);
+    const auto whole = begun(3);
+    whole->begin(record(), {}, {}, true);
+    for (const int frame : {1, 2, 3}) whole->set(frame, frame_record(frame));
+    whole->finish(record());
+    begun(3)->begin(record(), {}, {}, true);
+    EXPECT_EQ(fragments_of(record()).size(), 1u);
+    const auto next = begun(3);
+    next->begin(record());
+    next->finish(record());
+    EXPECT_EQ(text(), expected);
+    EXPECT_FALSE(fs::exists(folder_ / "record"));
+}
+
 // What a run of another version of the shot has left isn't this one's, with a plan and without.
 TEST_F(Fragments, OfAnotherVersionAreStale) {
     const std::string expected = text_of_one(4);

@@ -145,7 +145,8 @@ TEST_F(Endings, AFrameOfALongRecordCostsAFrame) {
             const std::string out = is_long ? "out" : "short";
             const Ended ended = shell("$P bake long.toml --out " + out + " --frames 5000");
             ASSERT_EQ(ended.status, 0) << ended.err;
-            EXPECT_EQ(files_below(folder() / out).count("mesh/long.5000.usda"), 1u) << files_below(folder() / out).rbegin()->first;
+            EXPECT_EQ(files_below(folder() / out).count("mesh/long.5000.usda"), 1u)
+                << files_below(folder() / out).rbegin()->first;
             least_s[is_long] = std::min(least_s[is_long], ended.seconds);
             fs::remove_all(folder() / out / "mesh");
             fs::remove_all(folder() / out / "record");

@@ -29,7 +29,10 @@ constexpr ProductSet kProducts =
     products(Product::Position, Product::Displacement, Product::Normal, Product::Velocity,
              Product::SlopeVariance, Product::Coverage, Product::Breaking, Product::FoamAge);
 
-// finest_cell_m: becomes what was asked for, or what the shot's camera needs.
+// What a frame of a sea holds at most where its host doesn't say how fine it is to be.
+constexpr std::size_t kUnasked_bytes = std::size_t{256} << 20;
+
+// finest_cell_m: becomes what was asked for, or what the shot's camera needs and kUnasked_bytes hold.
 Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
     auto prepared = prepare(scene);
     double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
@@ -43,12 +46,17 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
         if (!(cell_m > 0.0)) cell_m = needs.finest_cell_m;
         if (!(pixel_m > 0.0)) pixel_m = needs.finest_pixel_m;
     }
-    finest_cell_m = cell_m;
-    Query query = view_query(*prepared, {.products = kProducts,
-                                         .finest_cell_m = cell_m,
-                                         .finest_pixel_m = std::min(cell_m, pixel_m),
-                                         .points = Chunk<float>::kPoints});
-    return make_plan(std::move(prepared), {query}, {.double_precision = false});
+    const bool is_asked = options.finest_cell_m > 0.0;
+    for (;; cell_m *= 2.0, pixel_m *= 2.0) {
+        finest_cell_m = cell_m;
+        const Query query = view_query(*prepared, {.products = kProducts,
+                                                   .finest_cell_m = cell_m,
+                                                   .finest_pixel_m = std::min(cell_m, pixel_m),
+                                                   .points = Chunk<float>::kPoints});
+        Plan plan = make_plan(prepared, {query}, {.double_precision = false});
+        constexpr double kCoarsest_m = 1.0;  // a sea of trains takes the same at any
+        if (is_asked || plan.frame_bytes() <= kUnasked_bytes || cell_m > kCoarsest_m) return plan;
+    }
 }
 
 // Of n samples, side by side so that the compiler takes vectors.

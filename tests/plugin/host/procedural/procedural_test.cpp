@@ -76,6 +76,23 @@ Answers ask(const FrameHandle& frame, const std::vector<glm::vec2>& rests,
     return answers;
 }
 
+// Who says nothing gets a frame that a host can afford, however fine the shot's camera sees the sea; who asks for more gets it.
+TEST(Procedural, AFrameThatNobodyAskedToBeFineIsBounded) {
+    pelagic_info info = PELAGIC_INIT(pelagic_info);
+    for (const std::string& shot : std::vector<std::string>{"", "[sea]\nwind_speed_mps = 25\n",
+                                                            "[waves]\nmodel = \"trochoid\"\n", kShot}) {
+        const SeaHandle sea = open_text(shot);
+        ASSERT_EQ(pelagic_get_info(sea.get(), &info, nullptr), PELAGIC_OK);
+        EXPECT_LE(info.frame_bytes, std::size_t{256} << 20) << shot;
+    }
+    pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+    options.finest_cell_m = 0.004;
+    const SeaHandle fine = open_text("", &options);
+    ASSERT_EQ(pelagic_get_info(fine.get(), &info, nullptr), PELAGIC_OK);
+    EXPECT_LE(info.finest_cell_m, 0.004);
+    EXPECT_GT(info.frame_bytes, std::size_t{256} << 20);
+}
+
 TEST(Procedural, PointsAreTheQuerys) {
     const SeaHandle sea = open_text(kShot);
     const FrameHandle frame = frame_of(sea, 2.0, 2.5);

@@ -115,7 +115,8 @@ typedef struct pelagic_source {
 typedef struct pelagic_open_options {
     size_t size;
     /* No finer cells and pixels will be asked for; those that are count as this. 0: as fine as the shot's own camera sees the
-     * sea with cells of 2 pixels. What a frame holds and takes rises with them. Pixels are no coarser than cells. */
+     * sea with cells of 2 pixels, or coarser where a frame of that would hold more than 256 MiB (pelagic_get_info() says what it is).
+     * What a frame holds and takes rises with them. Pixels are no coarser than cells. */
     double finest_cell_m, finest_pixel_m;
     int threads; /* at most so many, and no more than the machine has; 0: all */
     /* Called while the sea is built, 0 … 1, one call at a time, from any thread; not 0 ends pelagic_open() with PELAGIC_CANCELLED.

@@ -85,7 +85,7 @@ class RendererOf final : public Impl {
             // With others the first pass is for what isn't blurred.
             const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
             sampling_ = passes == 1 ? SamplesOfPass{}
-                        : is_own    ? SamplesOfPass{n, glm::dvec2(n / 2)}
+                        : is_own ? SamplesOfPass{n, glm::dvec2(n / 2) + place_in_cell(n, glm::ivec2(n / 2))}
                                     : SamplesOfPass{n, glm::dvec2(0.5 * (n - 1)), true};
             pass_ = all[pass];
             parts_ = parts;
@@ -279,7 +279,7 @@ class RendererOf final : public Impl {
             clip_[i].y -= shift.y * clip_[i].w;
         }
         stop_if(watch.cancel);
-        raster_.set(clip_, mesh_.triangles, raster_size(), sampling_.is_by_pixel);
+        raster_.set(clip_, mesh_.triangles, raster_size(), has_places());
         stop_if(watch.cancel);
         waterline_.reset();
         if (may_be_below_)
@@ -314,12 +314,22 @@ class RendererOf final : public Impl {
         sea_.find_crests(mesh_.points.origin_m, rest_, std::move(width_m), cell_axis_m_, crest_);
     }
 
+    // Whether samples lie anywhere but in the middles of the rasteriser's pixels.
+    bool has_places() const {
+        return sampling_.is_by_pixel || (sampling_.stride == 1 && options_.samples > 1);
+    }
+    PixelPlace place_of_sample(glm::ivec2 sample) const {
+        const glm::dvec2 place = 256.0 * place_in_cell(options_.samples, sample % options_.samples);
+        return {.x = static_cast<std::int16_t>(std::lround(place.x)),
+                .y = static_cast<std::int16_t>(std::lround(place.y))};
+    }
+
     // Which triangle each sample of the rows shows.
     void draw(int first_row, int rows) {
         const auto width = static_cast<std::size_t>(raster_size().x);
         batch_.triangles.resize(width * rows);
         batch_.radiance.assign(width * rows, SeaRadiance{});
-        batch_.places.resize(sampling_.is_by_pixel ? width * rows : 0);
+        batch_.places.resize(has_places() ? width * rows : 0);
         const int first_band = first_row / Rasteriser::kBandRows;
         const int bands = (rows + Rasteriser::kBandRows - 1) / Rasteriser::kBandRows;
         tbb::parallel_for(0, bands, [&](int band) {
@@ -329,9 +339,11 @@ class RendererOf final : public Impl {
                                                            : std::span(batch_.places).subspan(begin, size);
             for (std::size_t i = 0; i < places.size(); ++i) {
                 const std::size_t at = begin + i;
-                places[i] =
-                    place_of(pass_, parts_, options_.samples, frame_,
-                             {static_cast<int>(at % width), first_row + static_cast<int>(at / width)});
+                const glm::ivec2 pixel(static_cast<int>(at % width),
+                                       first_row + static_cast<int>(at / width));
+                places[i] = sampling_.is_by_pixel
+                                ? place_of(pass_, parts_, options_.samples, frame_, pixel)
+                                : place_of_sample(pixel);
             }
             raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });

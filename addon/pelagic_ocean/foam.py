@@ -9,6 +9,7 @@ from .facets import along_wind
 
 PICTURE = "Foam Picture"  # the node of an artist's pattern
 
+COLOR = (0.94, 1.0, 1.0)  # of what it reflects: foam.glsl
 OPACITY = 0.4  # the share of its area that foam hides, the mean over its lifetime: foam.glsl
 # Measured over squares of 400 m, in three versions of Blender: of what isn't lace in foam_pattern(), mean and variance; of the distance
 # to the nearest of a Voronoi texture's points, in cells, mean and deviation; and the whole's distribution's logit as A z + B z³.

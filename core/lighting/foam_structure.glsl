@@ -358,7 +358,7 @@ float foam_tone(FoamPattern pattern, vec2 rest_m, float footprint_m) {
 // roughness has it (kFoamSlopeVariance), no steeper.
 const float kLumpRelief = 0.09f;  // a lump's height over its breadth
 const float kSteepestRelief = 0.6f;
-const float kLumpTone = 0.3f;  // hollows between lumps see less of the sky, and lumps more
+const float kLumpTone = 0.2f;  // hollows between lumps see less of the sky, and lumps more
 
 // x: the slope, rising towards the sun (a unit vector or none); y: the height in deviations of what a pixel resolves of it, and 0
 // where it resolves nothing.
@@ -367,7 +367,7 @@ vec2 foam_lumps(FoamPattern pattern, vec2 rest_m, float footprint_m, vec2 to_sun
     float slope = 0.0f;
     float height = 0.0f;
     float all = 0.0f;
-    for (int k = 4; k < 10; ++k) {  // 2 … 1/16 m
+    for (int k = 5; k < 10; ++k) {  // 1 … 1/16 m
         float size_m = float(kFoamCell_m) / float(1 << k);
         float through = foam_weight(size_m, footprint_m);
         if (!(through > 0.0f)) return vec2(slope, height * inversesqrt(max(all, 1.0f)));

@@ -1,6 +1,7 @@
 // The pattern of foam (foam_structure.glsl), for points relative to an origin in double.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -20,6 +21,7 @@ struct FoamLook {
     double structure = 0.0;                    // 0: smooth coverage … 1: lace
     double streaks = 0.0;                      // 0 … 1, along the wind
     double wind_direction_deg = 0.0;           // blowing towards, counter-clockwise from +x
+    std::uint64_t seed = 0;                    // each sea has its pattern elsewhere
     // Of foam where waves break, and of what they leave: the share of its area that it hides (the mean over a law's foam is
     // Koepke's 0.4), and what that reflects.
     float fresh_opacity = 0.4f, old_opacity = 0.4f;

@@ -475,6 +475,7 @@ FoamLook make_foam(const Scene& scene, std::shared_ptr<const FoamImage> picture,
                   .structure = effects.foam_structure,
                   .streaks = foam_streaks(scene),
                   .wind_direction_deg = scene.sea.wind_direction_deg,
+                  .seed = scene.shot.seed,
                   .fresh_albedo = static_cast<float>(effects.foam_new_albedo),
                   .old_albedo = static_cast<float>(effects.foam_old_albedo)};
     constexpr double kMean = 0.4;  // of all ages: Koepke 1984

@@ -276,7 +276,7 @@ TEST(FoamStructure, HasWideRowsThatBend) {
 TEST(FoamStructure, StaysWithTheWater) {
     std::mt19937 random(9);
     std::uniform_real_distribution<double> near_m(-30.0, 30.0);
-    const FoamLook look{.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0};
+    const FoamLook look{.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0, .seed = 3};
     for (const glm::dvec2 centre : {glm::dvec2(0.0), glm::dvec2(1e6, -1e6), glm::dvec2(-2e7, 3e7)}) {
         std::vector<float> seen;
         for (int i = 0; i < 500; ++i) {
@@ -301,6 +301,30 @@ TEST(FoamStructure, StaysWithTheWater) {
         const double mean = sum / count;
         EXPECT_NEAR(squares / count - mean * mean, 0.9, 0.35);
     }
+}
+
+// Seas of other seeds have other foam where cameras stand, and as much of it: no shot's is that of one bare patch.
+TEST(FoamStructure, IsElsewhereInEachSea) {
+    std::vector<double> first;
+    double likeness = 0.0, mean = 0.0;
+    constexpr int kSeeds = 40, kPlaces = 200;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+        std::mt19937 random(4);
+        std::uniform_real_distribution<float> near_m(-10.0f, 10.0f);
+        const auto pattern =
+            glsl(foam_pattern({.structure = 1.0, .seed = static_cast<std::uint64_t>(seed)}, {}));
+        for (int i = 0; i < kPlaces; ++i) {
+            const glm::vec2 at(near_m(random), near_m(random));
+            const double shown = static_cast<double>(shading.foam_noise(pattern, at, 0.1f, 2.0f).shown);
+            if (seed == 1)
+                first.push_back(shown);
+            else
+                likeness += first[static_cast<std::size_t>(i)] * shown;
+            mean += shown;
+        }
+    }
+    EXPECT_NEAR(mean / (kSeeds * kPlaces), 0.0, 0.1);
+    EXPECT_NEAR(likeness / ((kSeeds - 1) * kPlaces), 0.0, 0.1);
 }
 
 // The largest cells have numbers that begin again after 65536 of them, also where the origin of the sea's places is: no seam is

@@ -150,6 +150,7 @@ class RendererOf final : public Impl {
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
         picture.layers.assign(pixels, SeaRadiance{});
         picture.sea.resize(pixels);
+        picture.skyline.clear();
         picture.alpha.assign(options_.alpha ? pixels : 0, 0.0f);
         for (const PictureLayerRow& row : kPictureLayers)
             picture.data[index(row.layer)].resize(
@@ -556,10 +557,13 @@ class RendererOf final : public Impl {
         const auto sample_width = static_cast<std::size_t>(raster_size().x);
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         const float share = 1.0f / static_cast<float>(options_.samples * options_.samples);
+        const bool has_skyline = has_places() && !sampling_.is_by_pixel && !options_.alpha;
+        std::vector<std::vector<SkylinePixel>> skyline(rows / n);
         tbb::parallel_for(0, rows / n, [&](int row) {
             const std::size_t to = width * (first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
+                glm::vec3 of_sky(0.0f);
                 int of_sea = 0;
                 float of_spray = 0.0f;  // before the sky
                 for (int y = 0; y < n; ++y)
@@ -571,7 +575,10 @@ class RendererOf final : public Impl {
                         sum.sea += sample.sea;
                         sum.foam += sample.foam;
                         sum.air += sample.air;
-                        of_sea += is_sea(at);
+                        if (is_sea(at))
+                            ++of_sea;
+                        else
+                            of_sky += radiance_of(sample);
                         if (!batch_.spray.empty()) of_spray += batch_.spray[at];
                     }
                 SeaRadiance& pixel = picture.layers[to + x];
@@ -581,8 +588,14 @@ class RendererOf final : public Impl {
                 pixel.foam += sum.foam * share;
                 pixel.air += sum.air * share;
                 if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(of_sea) + of_spray) * share;
+                if (has_skyline && of_sea > 0 && of_sea < n * n)
+                    skyline[row].push_back({.pixel = to + x,
+                                            .sky = 1.0f - static_cast<float>(of_sea) * share,
+                                            .light = of_sky * share});
             }
         });
+        for (const std::vector<SkylinePixel>& of_row : skyline)
+            picture.skyline.insert(picture.skyline.end(), of_row.begin(), of_row.end());
     }
 
     // What the middle of each pixel shows, beside its light.

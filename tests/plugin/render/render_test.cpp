@@ -360,6 +360,22 @@ TEST(Render, SamplesOfAPixelStandAtHeightsOfTheirOwn) {
         light += glm::dvec3(radiance_of(averaged.layers[i]));
     }
     EXPECT_GT(shares.size(), 2u);
+    // Pixels that show both sea and sky know how much of each, as long as there is a sky.
+    EXPECT_TRUE(averaged.skyline.empty());
+    options = {.lighting = options.lighting, .samples = 2};
+    const Picture with_sky = picture_of(scene, options);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < averaged.alpha.size(); ++i) {
+        if (averaged.alpha[i] == 0.0f || averaged.alpha[i] == 1.0f) continue;
+        ASSERT_LT(next, with_sky.skyline.size());
+        const SkylinePixel& both = with_sky.skyline[next++];
+        ASSERT_EQ(both.pixel, i);
+        EXPECT_EQ(both.sky, 1.0f - averaged.alpha[i]);
+        EXPECT_NEAR(both.light.y + radiance_of(averaged.layers[i]).y, radiance_of(with_sky.layers[i]).y,
+                    1e-5f * radiance_of(with_sky.layers[i]).y);
+    }
+    EXPECT_GT(next, 20u);
+    EXPECT_EQ(next, with_sky.skyline.size());
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c] / light_of_fine[c], 1.0, 0.02);  // of finer footprints
 }
 

@@ -42,7 +42,8 @@ View view_of(const Camera& camera, const PicturePass& pass);
 // or column, so that an edge that is nearly level, as a horizon is, takes n² steps from one pixel to the next, and not n
 // (a rotated grid; Shirley 1991's n-rooks, in order). In whole 1/256, as the rasteriser has them.
 inline glm::dvec2 place_in_cell(int n, glm::ivec2 cell) {
-    return glm::round(256.0 * ((glm::dvec2(n - 1 - cell.y, cell.x) + 0.5) / static_cast<double>(n) - 0.5)) / 256.0;
+    return glm::round(256.0 * ((glm::dvec2(n - 1 - cell.y, cell.x) + 0.5) / static_cast<double>(n) - 0.5)) /
+           256.0;
 }
 
 // Whether the pixel takes the pass, one of the frame's, and where in itself; samples: as many a side. Each pixel takes one

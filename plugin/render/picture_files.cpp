@@ -275,12 +275,14 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             lights[x] = balance * (light / (alpha > 0.0f ? alpha : 1.0f));
         }
         show(lights);
-        const auto from = std::lower_bound(picture.skyline.begin(), picture.skyline.end(), width * row,
-                                           [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
+        const auto from =
+            std::lower_bound(picture.skyline.begin(), picture.skyline.end(), width * row,
+                             [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
         for (auto both = from; both != picture.skyline.end() && both->pixel < width * (row + 1); ++both) {
             const glm::vec3 light = radiance_of(picture.layers[both->pixel]),
                             glare = glaring.empty() ? glm::vec3(0.0f) : glaring[both->pixel] - light;
-            std::array parts{(light - both->light) / (1.0f - both->sky) + glare, both->light / both->sky + glare};
+            std::array parts{(light - both->light) / (1.0f - both->sky) + glare,
+                             both->light / both->sky + glare};
             for (glm::vec3& part : parts) part = balance * glm::max(part, 0.0f);
             show(parts);
             lights[both->pixel - width * row] = glm::mix(parts[0], parts[1], both->sky);

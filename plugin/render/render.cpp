@@ -86,7 +86,7 @@ class RendererOf final : public Impl {
             const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
             sampling_ = passes == 1 ? SamplesOfPass{}
                         : is_own ? SamplesOfPass{n, glm::dvec2(n / 2) + place_in_cell(n, glm::ivec2(n / 2))}
-                                    : SamplesOfPass{n, glm::dvec2(0.5 * (n - 1)), true};
+                                 : SamplesOfPass{n, glm::dvec2(0.5 * (n - 1)), true};
             pass_ = all[pass];
             parts_ = parts;
             frame_ = frame;
@@ -342,9 +342,8 @@ class RendererOf final : public Impl {
                 const std::size_t at = begin + i;
                 const glm::ivec2 pixel(static_cast<int>(at % width),
                                        first_row + static_cast<int>(at / width));
-                places[i] = sampling_.is_by_pixel
-                                ? place_of(pass_, parts_, options_.samples, frame_, pixel)
-                                : place_of_sample(pixel);
+                places[i] = sampling_.is_by_pixel ? place_of(pass_, parts_, options_.samples, frame_, pixel)
+                                                  : place_of_sample(pixel);
             }
             raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });

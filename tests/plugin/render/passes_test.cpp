@@ -67,7 +67,8 @@ TEST(Passes, SamplesShareNoRowAndNoColumn) {
         const auto [all, parts] = passes(n > 1 ? n : 2);
         std::set<int> heights;
         for (std::size_t i = 1; i < all.size(); ++i)
-            if (const PixelPlace place = place_of(all[i], parts, n > 1 ? n : 2, kFrame, {17, 3}); place.is_taken())
+            if (const PixelPlace place = place_of(all[i], parts, n > 1 ? n : 2, kFrame, {17, 3});
+                place.is_taken())
                 heights.insert(place.y);
         EXPECT_EQ(heights.size(), static_cast<std::size_t>(n > 1 ? n * n : 4));
     }

@@ -310,8 +310,9 @@ TEST(PictureFiles, SkylinesAreMeansOfWhatIsShown) {
                              .shown_by = "cut"};
     const auto png = [&](float light) {
         picture.layers[0] = {.sun = {}, .sky = glm::vec3(light), .sea = {}, .foam = {}};
-        return encode_png({.scene = scene, .options = options, .sky = sky, .made_of = "", .exposure = 1.0f, .colours = cut},
-                          picture, 1);
+        return encode_png(
+            {.scene = scene, .options = options, .sky = sky, .made_of = "", .exposure = 1.0f, .colours = cut},
+            picture, 1);
     };
     const std::string white = png(1.0f), mean = png(0.1f + 0.9f * 0.25f);
     EXPECT_EQ(png(0.075f + 2.5f), white);

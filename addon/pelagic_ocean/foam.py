@@ -9,6 +9,7 @@ from .facets import along_wind
 
 PICTURE = "Foam Picture"  # the node of an artist's pattern
 
+COLOR = (0.94, 1.0, 1.0)  # of what it reflects: foam.glsl
 OPACITY = 0.4  # the share of its area that foam hides, the mean over its lifetime: foam.glsl
 # Measured over squares of 400 m, in three versions of Blender: of what isn't lace in foam_pattern(), mean and variance; of the distance
 # to the nearest of a Voronoi texture's points, in cells, mean and deviation; and the whole's distribution's logit as A z + B z³.
@@ -84,7 +85,7 @@ def foam_pattern(tree, place, age_s, streaks):
         weight = sum((part * (1.0 - tree.math("ABSOLUTE", finer - float(j))).at_least(0.0) for j, part in enumerate((0.6, 0.42), 1)),
                      (1.0 - tree.math("ABSOLUTE", finer)).at_least(0.0))
         holes, squares = (cells - HOLES) * weight + holes, weight * weight + squares
-    lace = LACE * (1.0 - 0.46 * (age_s / -1.2).exp())
+    lace = LACE * (1.0 - 0.8 * (age_s / -1.2).exp())
     patches = 2.0 * noise(0.3, 3.0, place * drawn_out(3.7)) + 0.7 * noise(6.0, 4.0)
     shown = patches - PATCHES + lace / HOLES_DEVIATION * holes / squares.sqrt()
     return shown / (PATCHES_VARIANCE + lace * lace).sqrt()

@@ -7,7 +7,7 @@ import bpy
 
 from . import compat, depths, diving, upwelling
 from .facets import add_facets, transformed
-from .foam import OPACITY, PICTURE, add_foam
+from .foam import COLOR, OPACITY, PICTURE, add_foam
 from .light import extinction_per_m, packed_image
 from .module import pelagic
 from .nodes import Tree
@@ -38,8 +38,8 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
         _set(material, "Foam Structure", scene.effects.foam_structure)
         _set(material, "Foam Streaks", min(scene.effects.foam_streaks * min(max(scene.sea.wind_speed_mps / 10.0 - 0.5, 0.0), 2.0), 1.0))  # make_foam()
-        _set(material, "Foam Color", (scene.effects.foam_new_albedo,) * 3 + (1.0,))
-        _set(material, "Residual Foam Color", (scene.effects.foam_old_albedo,) * 3 + (1.0,))
+        _set(material, "Foam Color", _foam_colour(scene.effects.foam_new_albedo))
+        _set(material, "Residual Foam Color", _foam_colour(scene.effects.foam_old_albedo))
         if material[MARK] >= 6 and (scene.water.body or f"{MARK} {THIN}" in material):
             _set(material, THIN, 0.0 if scene.water.body else 2.0)  # a body's crests are upwelling.py's
         _show_picture(material, scene)
@@ -55,6 +55,10 @@ def update_material(obj, scene, significant_height_m=None, dense_foam=None):
             for name, part in zip(("Active Foam Density", "Residual Foam Density"), dense_foam):
                 _set(material, name, part)
     return material
+
+
+def _foam_colour(albedo):
+    return *(albedo * part for part in COLOR), 1.0
 
 
 def _show_picture(material, scene):

@@ -353,7 +353,7 @@ SeaTerms sea_from_below(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam 
     if (kWhitecaps) {
         vec3 above = (light.sun_irradiance + light.sky_irradiance) / kPi;
         vec3 below = water_between(-distance_m * to_eye, vec3(0.0f, 0.0f, -1.0f), 0.0f, -1.0f, 1.0f, light).light;
-        terms.foam = seen.opacity * (kFoamLetsThrough * (1.0f - seen.white) * above + seen.white * below);
+        terms.foam = seen.opacity * kFoamColour * (kFoamLetsThrough * (1.0f - seen.white) * above + seen.white * below);
         float bubbles = bubbles_below(light.water, body);
         if (bubbles > 0.0f) {
             // Those between the surface and the eye.

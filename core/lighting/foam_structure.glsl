@@ -215,8 +215,9 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     float old = age_s / (age_s + 3.0f);
     float young = exp(-age_s / 1.2f);
     float streaks = min(pattern.look.y * (0.1f + 0.85f * old), 0.65f);
-    float bubbles = 0.11f;
-    float lace = (0.6f - 0.3f * young) * (1.0f - kFoamGrain - bubbles - streaks);
+    // What breaks is thick: its edges are torn, and holes come with age.
+    float bubbles = 0.11f - 0.07f * young;
+    float lace = (0.6f - 0.5f * young) * (1.0f - kFoamGrain - bubbles - streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
     FoamNoise noise = FoamNoise(0.0f, 0.0f);
@@ -263,9 +264,9 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
             noise.variance += of_bubbles[k] * fine * fine;
         }
     }
-    // Patches down to the roller's own roughness.
+    // Patches down to the roller's own ragged edge.
     ivec4 halvings = ivec4(3, 5, 6, 8);  // 4, 1, 1/2 and 1/8 m
-    vec4 parts = clouds * vec4(0.35f, 0.3f, 0.2f, 0.15f);
+    vec4 parts = clouds * mix(vec4(0.35f, 0.3f, 0.2f, 0.15f), vec4(0.25f, 0.43f, 0.22f, 0.1f), young);
     for (int k = 0; k < 4; ++k) {
         float size_m = float(kFoamCell_m) / float(1 << halvings[k]);
         float part = parts[k];
@@ -352,11 +353,35 @@ float foam_tone(FoamPattern pattern, vec2 rest_m, float footprint_m) {
     return fade * (2.0f * normal_below(sum * inversesqrt((1.0f - t) * (1.0f - t) + t * t)) - 1.0f);
 }
 
-// Foam's relief: this high for a deviation of its finest bubbles, and as much of a lump's breadth, since lumps of all sizes are as
-// steep. Its facets are as steep as their own roughness has it (kFoamSlopeVariance), no steeper.
-const float kFoamRelief_m = 0.02f;
-const float kLumpRelief = 0.45f;
+// The relief of what breaks: lumps of all sizes on one another, each octave as steep as the others, so that it is shaded softly and a
+// nearer view shows finer lumps. It is no part of what foam hides: thick foam has it without a hole. Its facets are as steep as their own
+// roughness has it (kFoamSlopeVariance), no steeper.
+const float kLumpRelief = 0.09f;  // a lump's height over its breadth
 const float kSteepestRelief = 0.6f;
+const float kLumpTone = 0.2f;  // hollows between lumps see less of the sky, and lumps more
+
+// x: the slope, rising towards the sun (a unit vector or none); y: the height in deviations of what a pixel resolves of it, and 0
+// where it resolves nothing.
+vec2 foam_lumps(FoamPattern pattern, vec2 rest_m, float footprint_m, vec2 to_sun) {
+    PatternPlace here = pattern_place(pattern, rest_m);
+    float slope = 0.0f;
+    float height = 0.0f;
+    float all = 0.0f;
+    for (int k = 5; k < 10; ++k) {  // 1 … 1/16 m
+        float size_m = float(kFoamCell_m) / float(1 << k);
+        float through = foam_weight(size_m, footprint_m);
+        if (!(through > 0.0f)) return vec2(slope, height * inversesqrt(max(all, 1.0f)));
+        PatternPlace ahead = pattern_place(pattern, rest_m + 0.25f * size_m * to_sun);
+        bool turned = k % 2 == 1;
+        uint layer = uint(110 + k);
+        float at = foam_clouds(foam_cell(vec2(here.cell.x, here.cell.z), vec2(here.rest.x, here.rest.z), k, vec2(0.0f), turned), layer);
+        float then = foam_clouds(foam_cell(vec2(ahead.cell.x, ahead.cell.z), vec2(ahead.rest.x, ahead.rest.z), k, vec2(0.0f), turned), layer);
+        slope += through * (4.0f * kLumpRelief) * (then - at);
+        height += through * at;
+        all += through * through;
+    }
+    return vec2(slope, height * inversesqrt(max(all, 1.0f)));
+}
 
 // pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;
 // age_s: since the rest broke, on average. sun: its direction, in the axes of rest_m.
@@ -375,14 +400,17 @@ SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverag
     white *= 1.0f + clamp(0.95f / max(white, 1.0e-3f) - 1.0f, 0.0f, kTone * strength) * foam_tone(pattern, rest_m, footprint_m);
     if (!(noise.variance > 0.0f)) return SeenFoam(c * mean, white, 0.0f);
     noise = FoamNoise(strength * noise.shown, strength * strength * noise.variance);
+    float relief = exp(-since_s / 1.2f);
+    vec2 lumps = vec2(0.0f);
+    if (relief * c > 1.0e-3f) {
+        lumps = foam_lumps(pattern, rest_m, footprint_m, vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f));
+        white *= 1.0f + clamp(0.95f / max(white, 1.0e-3f) - 1.0f, 0.0f, kLumpTone * relief * strength) *
+                            (2.0f * normal_below(lumps.y) - 1.0f);
+    }
     SeenFoam seen = foam_in(noise, c * mean, white, foam_thin(since_s));
     // Where pixels are too large for lumps their slopes are lost. Foam is as high as bubbles are thrown up: what is old lies flat.
-    float relief = exp(-since_s / 1.2f) * (1.0f - smoothstep(0.3f, 1.2f, footprint_m));
     if (relief * seen.opacity > 1.0e-3f) {
-        float step_m = max(footprint_m, 0.02f);
-        vec2 to_sun = vec2(sun.x, sun.y) / max(sqrt(sun.x * sun.x + sun.y * sun.y), 1.0e-6f);
-        FoamNoise ahead = foam_noise(pattern, rest_m + step_m * to_sun, footprint_m, since_s);
-        float slope = relief * (kFoamRelief_m + kLumpRelief * step_m) * (strength * ahead.shown - noise.shown) / step_m;
+        float slope = strength * relief * lumps.x;
         seen.slope = kSteepestRelief * slope / sqrt(kSteepestRelief * kSteepestRelief + slope * slope);
     }
     return seen;

@@ -133,7 +133,7 @@ SeaAlbedo albedo(const WaterBody& body) {
                                                         dark, shading.no_crest_nor_bubbles())
                                 : shading.water_radiance(up, dark, sky, body.reflectance);
     return {.water = water,
-            .foam = glm::mix(water, vec3(shading.kWhiteFoam), shading.kFoamOpacity),
+            .foam = glm::mix(water, shading.kWhiteFoam * shading.kFoamColour, shading.kFoamOpacity),
             .water_index = shading.kWaterIndex};
 }
 

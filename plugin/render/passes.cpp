@@ -84,11 +84,14 @@ PixelPlace place_of(const PicturePass& pass, int parts, int samples, int frame, 
     const std::uint32_t turn = below(philox({x, y, f, ~0u}, kKey)[0], all);
     const std::uint32_t cell =
         (stratum * static_cast<std::uint32_t>(jump_of(static_cast<int>(all), 0.618)) + turn) % all;
-    const auto middle = [&](std::uint32_t column) {
-        return static_cast<std::int16_t>(std::lround(256.0 * (column + 0.5) / samples) - 128);
+    const glm::ivec2 at(cell % static_cast<std::uint32_t>(samples),
+                        cell / static_cast<std::uint32_t>(samples));
+    const glm::dvec2 place =
+        256.0 * (glm::dvec2(at) + 0.5 + place_in_cell(samples, at)) / static_cast<double>(samples) - 128.0;
+    const auto rounded = [](double at_256) {
+        return static_cast<std::int16_t>(std::min(std::lround(at_256), 127l));
     };
-    return {.x = middle(cell % static_cast<std::uint32_t>(samples)),
-            .y = middle(cell / static_cast<std::uint32_t>(samples))};
+    return {.x = rounded(place.x), .y = rounded(place.y)};
 }
 
 }  // namespace pelagic

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <vector>
 
@@ -37,8 +38,16 @@ PicturePasses passes_of(const Camera& camera, int frame, const RenderOptions& op
 // What a pass sees.
 View view_of(const Camera& camera, const PicturePass& pass);
 
+// Where in its cell a pixel's sample lies, from the middle, in cells: −½ … ½. Of a pixel's n × n cells no two samples stand in one row
+// or column, so that an edge that is nearly level, as a horizon is, takes n² steps from one pixel to the next, and not n
+// (a rotated grid; Shirley 1991's n-rooks, in order). In whole 1/256, as the rasteriser has them.
+inline glm::dvec2 place_in_cell(int n, glm::ivec2 cell) {
+    return glm::round(256.0 * ((glm::dvec2(n - 1 - cell.y, cell.x) + 0.5) / static_cast<double>(n) - 0.5)) /
+           256.0;
+}
+
 // Whether the pixel takes the pass, one of the frame's, and where in itself; samples: as many a side. Each pixel takes one
-// pass of every stratum, and its places are the middles of samples × samples cells.
+// pass of every stratum, and its places are those in samples × samples cells.
 PixelPlace place_of(const PicturePass& pass, int parts, int samples, int frame, glm::ivec2 pixel);
 
 }  // namespace pelagic

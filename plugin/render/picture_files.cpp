@@ -257,6 +257,14 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
     const Camera& camera = context.scene.camera;
     const glm::mat3 balance = white_balance(camera.white_balance_k);
     const std::vector<glm::vec3> glaring = glaring_light(camera, picture, frame);
+    // Makes light what a display shows of it.
+    const auto show = [&](std::span<glm::vec3> lights) {
+        for (glm::vec3& light : lights)
+            light = context.colours.show ? light * context.exposure : display_colour(light, context.exposure);
+        if (context.colours.show) context.colours.show(lights);
+    };
+    // A pixel of the skyline is the mean of what is shown of its sea and of its sky. A bright sky is several times as bright as white:
+    // of their mean light a tenth of it in a pixel would be shown white, and an edge have steps for all its samples.
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         std::vector<glm::vec3> lights(width);
@@ -266,15 +274,23 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             const glm::vec3 light = glaring.empty() ? radiance_of(picture.layers[i]) : glaring[i];
             lights[x] = balance * (light / (alpha > 0.0f ? alpha : 1.0f));
         }
-        if (context.colours.show) {
-            for (glm::vec3& light : lights) light *= context.exposure;
-            context.colours.show(lights);
+        show(lights);
+        const auto from =
+            std::lower_bound(picture.skyline.begin(), picture.skyline.end(), width * row,
+                             [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
+        for (auto both = from; both != picture.skyline.end() && both->pixel < width * (row + 1); ++both) {
+            const glm::vec3 light = radiance_of(picture.layers[both->pixel]),
+                            glare = glaring.empty() ? glm::vec3(0.0f) : glaring[both->pixel] - light;
+            std::array parts{(light - both->light) / (1.0f - both->sky) + glare,
+                             both->light / both->sky + glare};
+            for (glm::vec3& part : parts) part = balance * glm::max(part, 0.0f);
+            show(parts);
+            lights[both->pixel - width * row] = glm::mix(parts[0], parts[1], both->sky);
         }
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = width * row + x;
             const glm::ivec2 pixel(static_cast<int>(x), row);
-            const auto shown = context.colours.show ? dithered_bytes(lights[x], pixel)
-                                                    : display_bytes(lights[x], context.exposure, pixel);
+            const auto shown = dithered_bytes(lights[x], pixel);
             std::copy(shown.begin(), shown.end(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
             if (has_alpha)

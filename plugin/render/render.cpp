@@ -85,8 +85,8 @@ class RendererOf final : public Impl {
             // With others the first pass is for what isn't blurred.
             const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
             sampling_ = passes == 1 ? SamplesOfPass{}
-                        : is_own    ? SamplesOfPass{n, glm::dvec2(n / 2)}
-                                    : SamplesOfPass{n, glm::dvec2(0.5 * (n - 1)), true};
+                        : is_own ? SamplesOfPass{n, glm::dvec2(n / 2) + place_in_cell(n, glm::ivec2(n / 2))}
+                                 : SamplesOfPass{n, glm::dvec2(0.5 * (n - 1)), true};
             pass_ = all[pass];
             parts_ = parts;
             frame_ = frame;
@@ -150,6 +150,7 @@ class RendererOf final : public Impl {
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
         picture.layers.assign(pixels, SeaRadiance{});
         picture.sea.resize(pixels);
+        picture.skyline.clear();
         picture.alpha.assign(options_.alpha ? pixels : 0, 0.0f);
         for (const PictureLayerRow& row : kPictureLayers)
             picture.data[index(row.layer)].resize(
@@ -279,7 +280,7 @@ class RendererOf final : public Impl {
             clip_[i].y -= shift.y * clip_[i].w;
         }
         stop_if(watch.cancel);
-        raster_.set(clip_, mesh_.triangles, raster_size(), sampling_.is_by_pixel);
+        raster_.set(clip_, mesh_.triangles, raster_size(), has_places());
         stop_if(watch.cancel);
         waterline_.reset();
         if (may_be_below_)
@@ -314,12 +315,22 @@ class RendererOf final : public Impl {
         sea_.find_crests(mesh_.points.origin_m, rest_, std::move(width_m), cell_axis_m_, crest_);
     }
 
+    // Whether samples lie anywhere but in the middles of the rasteriser's pixels.
+    bool has_places() const {
+        return sampling_.is_by_pixel || (sampling_.stride == 1 && options_.samples > 1);
+    }
+    PixelPlace place_of_sample(glm::ivec2 sample) const {
+        const glm::dvec2 place = 256.0 * place_in_cell(options_.samples, sample % options_.samples);
+        return {.x = static_cast<std::int16_t>(std::lround(place.x)),
+                .y = static_cast<std::int16_t>(std::lround(place.y))};
+    }
+
     // Which triangle each sample of the rows shows.
     void draw(int first_row, int rows) {
         const auto width = static_cast<std::size_t>(raster_size().x);
         batch_.triangles.resize(width * rows);
         batch_.radiance.assign(width * rows, SeaRadiance{});
-        batch_.places.resize(sampling_.is_by_pixel ? width * rows : 0);
+        batch_.places.resize(has_places() ? width * rows : 0);
         const int first_band = first_row / Rasteriser::kBandRows;
         const int bands = (rows + Rasteriser::kBandRows - 1) / Rasteriser::kBandRows;
         tbb::parallel_for(0, bands, [&](int band) {
@@ -329,9 +340,10 @@ class RendererOf final : public Impl {
                                                            : std::span(batch_.places).subspan(begin, size);
             for (std::size_t i = 0; i < places.size(); ++i) {
                 const std::size_t at = begin + i;
-                places[i] =
-                    place_of(pass_, parts_, options_.samples, frame_,
-                             {static_cast<int>(at % width), first_row + static_cast<int>(at / width)});
+                const glm::ivec2 pixel(static_cast<int>(at % width),
+                                       first_row + static_cast<int>(at / width));
+                places[i] = sampling_.is_by_pixel ? place_of(pass_, parts_, options_.samples, frame_, pixel)
+                                                  : place_of_sample(pixel);
             }
             raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });
@@ -544,10 +556,13 @@ class RendererOf final : public Impl {
         const auto sample_width = static_cast<std::size_t>(raster_size().x);
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         const float share = 1.0f / static_cast<float>(options_.samples * options_.samples);
+        const bool has_skyline = has_places() && !sampling_.is_by_pixel && !options_.alpha;
+        std::vector<std::vector<SkylinePixel>> skyline(rows / n);
         tbb::parallel_for(0, rows / n, [&](int row) {
             const std::size_t to = width * (first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
+                glm::vec3 of_sky(0.0f);
                 int of_sea = 0;
                 float of_spray = 0.0f;  // before the sky
                 for (int y = 0; y < n; ++y)
@@ -559,7 +574,10 @@ class RendererOf final : public Impl {
                         sum.sea += sample.sea;
                         sum.foam += sample.foam;
                         sum.air += sample.air;
-                        of_sea += is_sea(at);
+                        if (is_sea(at))
+                            ++of_sea;
+                        else
+                            of_sky += radiance_of(sample);
                         if (!batch_.spray.empty()) of_spray += batch_.spray[at];
                     }
                 SeaRadiance& pixel = picture.layers[to + x];
@@ -569,8 +587,14 @@ class RendererOf final : public Impl {
                 pixel.foam += sum.foam * share;
                 pixel.air += sum.air * share;
                 if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(of_sea) + of_spray) * share;
+                if (has_skyline && of_sea > 0 && of_sea < n * n)
+                    skyline[row].push_back({.pixel = to + x,
+                                            .sky = 1.0f - static_cast<float>(of_sea) * share,
+                                            .light = of_sky * share});
             }
         });
+        for (const std::vector<SkylinePixel>& of_row : skyline)
+            picture.skyline.insert(picture.skyline.end(), of_row.begin(), of_row.end());
     }
 
     // What the middle of each pixel shows, beside its light.

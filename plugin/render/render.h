@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -36,6 +37,13 @@ namespace pelagic {
 // front glass (waterline.h).
 inline constexpr double kNear_m = 0.05;
 
+// A pixel that shows both sea and sky.
+struct SkylinePixel {
+    std::size_t pixel = 0;
+    float sky = 0.0f;       // its share
+    glm::vec3 light{0.0f};  // of that part, and of the sea's: both add up to the picture's
+};
+
 // One frame, HDR, rows from the top, x fastest; in the sky's units. The layers add up to the picture:
 // `sky` is the sky that the sea reflects and, beside the sea, the sky itself with the sun's disc.
 struct Picture {
@@ -47,6 +55,8 @@ struct Picture {
     // pixel at the frame's own time, since a mean of depths or of normals is none that is there.
     std::vector<float> alpha{};
     std::array<std::vector<float>, kPictureLayerCount> data{};
+    // In rising order, of pictures that aren't blurred and have their sky.
+    std::vector<SkylinePixel> skyline{};
 };
 
 // The layers' sum.

@@ -190,6 +190,62 @@ TEST(FoamStructure, HasHeapsAndHollows) {
     EXPECT_GT(high, 1.1f * kWhite);
 }
 
+// What breaks has a relief of its own, as thick as it is: slopes to the sun and from it, as much light as without, near alone, and old foam has none.
+TEST(FoamStructure, HasARelief) {
+    constexpr int kPlaces = 20000;
+    const auto pattern = pattern_of(1.0, 0.5);
+    for (const float footprint_m : {0.01f, 0.1f, 2.0f}) {
+        std::mt19937 random(6);
+        std::uniform_real_distribution<float> place(-2000.0f, 2000.0f);
+        double slope = 0.0, square = 0.0, light = 0.0, old = 0.0;
+        for (int i = 0; i < kPlaces; ++i) {
+            const glm::vec2 rest_m(place(random), place(random));
+            const auto seen = [&](float breaking, float age_s) {
+                return shading.seen_foam(pattern, rest_m, glm::vec3(footprint_m, 0.0f, 0.0f), 1.0f, breaking,
+                                         age_s, kSun);
+            };
+            const auto fresh = seen(1.0f, 0.0f);
+            slope += static_cast<double>(fresh.slope) / kPlaces;
+            square += static_cast<double>(fresh.slope * fresh.slope) / kPlaces;
+            light += static_cast<double>(fresh.opacity * fresh.white) / kPlaces;
+            old = std::max(old, static_cast<double>(std::abs(seen(0.0f, 9.0f).slope)));
+        }
+        EXPECT_NEAR(slope, 0.0, 0.01) << footprint_m;
+        EXPECT_NEAR(light, 0.4 * 0.55, 0.01 * 0.4 * 0.55) << footprint_m;
+        if (footprint_m < 1.0f)
+            EXPECT_TRUE(square > 0.1 * 0.1 && square < 0.35 * 0.35)
+                << footprint_m << ": " << std::sqrt(square);
+        else
+            EXPECT_EQ(square, 0.0);
+        EXPECT_LT(old, 0.002) << footprint_m;
+    }
+}
+
+// What breaks is white water with torn edges, what it leaves is lace: where as much is covered it changes less over a hand's breadth,
+// though it has no film.
+TEST(FoamStructure, IsThickWhereItBreaks) {
+    const auto change = [&](float breaking) {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> place(-400.0f, 400.0f);
+        const auto pattern =
+            glsl(foam_pattern({.structure = 1.0, .fresh_opacity = 0.8f, .old_opacity = 0.8f}, {}));
+        double sum = 0.0;
+        for (int i = 0; i < 4000; ++i) {
+            const glm::vec2 at(place(random), place(random));
+            const auto opacity_at = [&](glm::vec2 rest_m) {
+                return shading
+                    .seen_foam(pattern, rest_m, glm::vec3(0.02f, 0.0f, 0.0f), 0.6f, breaking, 3.0f, kSun)
+                    .opacity;
+            };
+            sum += static_cast<double>(std::abs(opacity_at(at + glm::vec2(0.1f, 0.0f)) - opacity_at(at)));
+        }
+        return sum;
+    };
+    const double fresh = change(0.6f), old = change(0.0f);
+    std::printf("    over 10 cm fresh foam changes by %.2f of what old does\n", fresh / old);
+    EXPECT_LT(fresh, old);
+}
+
 // Old foam lies in streaks along the wind: along it the pattern of a footprint of metres changes less than across it.
 // Where a pixel is too large for heaps foam has patches of several tones, as much light as without, and no step from one octave to the next.
 TEST(FoamStructure, HasTonesFarOff) {

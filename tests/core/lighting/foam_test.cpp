@@ -59,7 +59,7 @@ TEST(Foam, SingleIsDouble) {
         const double expected = foam(normalize(dvec3(v)), normalize(dvec3(l)), dvec3(s));
         const vec3 found =
             optics.foam_radiance(v, l, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), 1.0f, 0.0f);
-        ASSERT_NEAR(found.x, expected, 1e-4 * expected) << i;
+        ASSERT_NEAR(found.y, expected, 1e-4 * expected) << i;
     }
 }
 
@@ -83,7 +83,7 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
                     const vec3 l(dvec3(q * std::cos(a), q * std::sin(a), z));
                     const vec3 found = optics.foam_radiance(v, l, frame, vec3(1.0f), float(kFoamRadius),
                                                             vec3(0.0f), 1.0f, 0.0f);
-                    sum += static_cast<double>(found.x) /
+                    sum += static_cast<double>(found.y) /
                            (oracle::kPi * kFoamRadius * kFoamRadius);  // per solid angle of the sun
                 }
             sum *= 2.0 * oracle::kPi / (kSteps * kSteps);
@@ -98,7 +98,8 @@ TEST(Foam, IsKoepkesAndShowsTheWater) {
     EXPECT_NEAR(optics.kFoamOpacity * optics.kWhiteFoam, 0.22f, 1e-6f);
     const SeaAlbedo black = sea_albedo({.reflectance = vec3(0.0f)}),
                     blue = sea_albedo({.reflectance = vec3(0.0f, 0.01f, 0.05f)});
-    EXPECT_NEAR(black.foam.x, 0.22f, 1e-6f);
+    EXPECT_NEAR(black.foam.y, 0.22f, 1e-6f);
+    EXPECT_NEAR(black.foam.x / black.foam.y, 0.94f, 1e-6f);  // its water takes some of the red
     EXPECT_NEAR(blue.foam.z, 0.22f + 0.6f * blue.water.z, 1e-6f);
     EXPECT_GT(blue.water.z, 0.01f);
 }

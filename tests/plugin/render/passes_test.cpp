@@ -50,6 +50,30 @@ TEST(Passes, APixelTakesOneOfEachStratumAndHasOneInEachOfItsParts) {
     }
 }
 
+// Each sample of a pixel has a height and a column of its own, as blurred ones do.
+TEST(Passes, SamplesShareNoRowAndNoColumn) {
+    for (const int n : {1, 2, 3, 4, 16}) {
+        std::set<long> rows, columns;
+        for (int i = 0; i < n * n; ++i) {
+            const glm::ivec2 cell(i % n, i / n);
+            const glm::dvec2 place = glm::dvec2(cell) + 0.5 + place_in_cell(n, cell);
+            EXPECT_EQ(glm::ivec2(place), cell);
+            columns.insert(std::lround(n * place.x - 0.5));
+            rows.insert(std::lround(n * place.y - 0.5));
+        }
+        EXPECT_EQ(rows.size(), static_cast<std::size_t>(n * n));
+        EXPECT_EQ(columns.size(), static_cast<std::size_t>(n * n));
+        if (n > 4) continue;
+        const auto [all, parts] = passes(n > 1 ? n : 2);
+        std::set<int> heights;
+        for (std::size_t i = 1; i < all.size(); ++i)
+            if (const PixelPlace place = place_of(all[i], parts, n > 1 ? n : 2, kFrame, {17, 3});
+                place.is_taken())
+                heights.insert(place.y);
+        EXPECT_EQ(heights.size(), static_cast<std::size_t>(n > 1 ? n * n : 4));
+    }
+}
+
 // Whether a pixel takes a pass says nothing about its neighbours, nor about the next frame: no ghosts.
 TEST(Passes, NeighboursAndFramesAreIndependent) {
     const auto [all, parts] = passes(4);

@@ -296,6 +296,32 @@ TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
     EXPECT_EQ(png(1.0f), foam);
 }
 
+// Where a pixel shows sea and a sky brighter than white, it is the mean of what is shown of them; of their mean light it would be white.
+TEST(PictureFiles, SkylinesAreMeansOfWhatIsShown) {
+    Picture picture{.resolution = {1, 1}, .layers = std::vector<SeaRadiance>(1), .sea = {}};
+    Scene scene;
+    scene.camera.white_balance_k = 6500.0;  // as they are
+    const RenderOptions options;
+    const Sky sky = some_sky(0.0f);
+    const PictureColours cut{.show =
+                                 [](std::span<glm::vec3> lights) {
+                                     for (glm::vec3& light : lights) light = glm::min(light, 1.0f);
+                                 },
+                             .shown_by = "cut"};
+    const auto png = [&](float light) {
+        picture.layers[0] = {.sun = {}, .sky = glm::vec3(light), .sea = {}, .foam = {}};
+        return encode_png(
+            {.scene = scene, .options = options, .sky = sky, .made_of = "", .exposure = 1.0f, .colours = cut},
+            picture, 1);
+    };
+    const std::string white = png(1.0f), mean = png(0.1f + 0.9f * 0.25f);
+    EXPECT_EQ(png(0.075f + 2.5f), white);
+    picture.skyline = {{.pixel = 0, .sky = 0.25f, .light = glm::vec3(2.5f)}};
+    EXPECT_EQ(png(0.075f + 2.5f), mean);
+    scene.camera.glare = 0.1;  // of one pixel nothing goes elsewhere but out of the picture
+    EXPECT_NE(png(0.075f + 2.5f), white);
+}
+
 // A studio's display transform gets exposed light, and its values are those of the PNG; the EXR's primaries say what it holds.
 TEST(PictureFiles, HaveTheColoursThatAreAskedFor) {
     const glm::ivec2 resolution(2, 1);

@@ -6,6 +6,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 #include <numeric>
+#include <set>
 
 #include <algorithm>
 #include <atomic>
@@ -330,29 +331,52 @@ TEST(Render, StaysFiniteAtTheSurfaceAndUnderIt) {
         }
 }
 
-// N × N samples are the pixels of an N times larger picture with cells as large as before. Sums of N² singles
-// in another order.
-TEST(Render, SamplesAreAveraged) {
+// N × N samples show what N² × N² would in N² of their places, each in a row and a column of its own, on cells as large as before: an edge
+// that is nearly level, as a horizon is, steps from pixel to pixel by 1/N² of the light, and not by 1/N. Their light is as much.
+TEST(Render, SamplesOfAPixelStandAtHeightsOfTheirOwn) {
     Scene scene = small_scene();
     RenderOptions options{.lighting = render_options(scene).lighting, .samples = 2};
+    options.alpha = true;
     const Picture averaged = picture_of(scene, options);
     Scene larger = scene;
-    larger.camera.resolution *= 2;
-    larger.surface.cell_px *= 2.0;
+    larger.camera.resolution *= 4;
+    larger.surface.cell_px *= 4.0;
     options.samples = 1;
     const Picture fine = picture_of(larger, options);
-    const int width = scene.camera.resolution.x;
-    for (int y = 0; y < scene.camera.resolution.y; ++y)
-        for (int x = 0; x < width; ++x) {
-            glm::dvec3 mean(0.0);
-            for (int j = 0; j < 2; ++j)
-                for (int i = 0; i < 2; ++i)
-                    mean +=
-                        0.25 * glm::dvec3(radiance_of(
-                                   fine.layers[static_cast<std::size_t>(2 * y + j) * 2 * width + 2 * x + i]));
-            const glm::dvec3 got(radiance_of(averaged.layers[static_cast<std::size_t>(y) * width + x]));
-            for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], mean[c], 1e-6 * mean[c]);
+    const auto width = static_cast<std::size_t>(scene.camera.resolution.x);
+    glm::dvec3 light(0.0), light_of_fine(0.0);
+    std::set<float> shares;
+    for (std::size_t i = 0; i < averaged.layers.size(); ++i) {
+        const std::size_t x = i % width, y = i / width;
+        float sea = 0.0f;
+        for (const auto& [right, down] : {std::pair{1, 0}, {3, 1}, {0, 2}, {2, 3}}) {
+            const std::size_t at = (4 * y + static_cast<std::size_t>(down)) * 4 * width + 4 * x +
+                                   static_cast<std::size_t>(right);
+            sea += 0.25f * fine.alpha[at];
+            light_of_fine += 0.25 * glm::dvec3(radiance_of(fine.layers[at]));
         }
+        ASSERT_EQ(averaged.alpha[i], sea) << x << ' ' << y;
+        shares.insert(sea);
+        light += glm::dvec3(radiance_of(averaged.layers[i]));
+    }
+    EXPECT_GT(shares.size(), 2u);
+    // Pixels that show both sea and sky know how much of each, as long as there is a sky.
+    EXPECT_TRUE(averaged.skyline.empty());
+    options = {.lighting = options.lighting, .samples = 2};
+    const Picture with_sky = picture_of(scene, options);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < averaged.alpha.size(); ++i) {
+        if (averaged.alpha[i] == 0.0f || averaged.alpha[i] == 1.0f) continue;
+        ASSERT_LT(next, with_sky.skyline.size());
+        const SkylinePixel& both = with_sky.skyline[next++];
+        ASSERT_EQ(both.pixel, i);
+        EXPECT_EQ(both.sky, 1.0f - averaged.alpha[i]);
+        EXPECT_NEAR(both.light.y + radiance_of(averaged.layers[i]).y, radiance_of(with_sky.layers[i]).y,
+                    1e-5f * radiance_of(with_sky.layers[i]).y);
+    }
+    EXPECT_GT(next, 20u);
+    EXPECT_EQ(next, with_sky.skyline.size());
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c] / light_of_fine[c], 1.0, 0.02);  // of finer footprints
 }
 
 // Waves that only the normals have lean to the eye as visible ones do: finer normals on the same mesh show as much light.

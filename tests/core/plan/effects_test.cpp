@@ -19,6 +19,7 @@ Scene with_all() {
     scene.sea.gust_strength = 0.5;
     scene.effects.spray = true;
     scene.waves.masks = {{.waves = 0.5}};
+    scene.waves.vessels = {{}};
     return scene;
 }
 

@@ -395,18 +395,19 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     const bool hides_vessels = has_vessels_ && call.wants_unresolved && hide_vessels(call, work);
     const bool has_gusts = gusts_ && (call.results.given() & gusty_products()).any();
     if (has_gusts) take_gusts(call, first, work);
-    kernels_.derive({.chunk = &chunk,
-                     .breaking = work.apart ? &work.breaking : &chunk,
-                     .results = call.results.from_point(first),
-                     .unresolved = unresolved_,
-                     .unresolved_of = call.wants_unresolved && (call.differ_in_unresolved || work.masked || hides_vessels)
-                                          ? &work.unresolved_of
-                                          : nullptr,
-                     .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
-                     .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
-                     .third_moment = plan.knobs.third_moment,
-                     .rest_normal = call.points.rest_normal ? from_point(call.points.rest_normal, first)
-                                                            : call.points.rest_normal});
+    kernels_.derive(
+        {.chunk = &chunk,
+         .breaking = work.apart ? &work.breaking : &chunk,
+         .results = call.results.from_point(first),
+         .unresolved = unresolved_,
+         .unresolved_of = call.wants_unresolved && (call.differ_in_unresolved || work.masked || hides_vessels)
+                              ? &work.unresolved_of
+                              : nullptr,
+         .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
+         .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
+         .third_moment = plan.knobs.third_moment,
+         .rest_normal =
+             call.points.rest_normal ? from_point(call.points.rest_normal, first) : call.points.rest_normal});
     const auto unresolved = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && unresolved)
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];

@@ -61,8 +61,7 @@ std::string about_wakes(const Plan& plan) {
             about += "; at up to " + rough_text(vessel->speed_mps) + " m/s, in a tile of " +
                      rough_text(vessel->size_m) + " m, remembered for " +
                      rough_text(vessel->block_s * VesselPlan::kBlocks) + " s";
-    return about +
-           "; waves that break on theirs leave no foam";
+    return about + "; waves that break on theirs leave no foam";
 }
 
 std::string about_living_foam(const Plan& plan) {

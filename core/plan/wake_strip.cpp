@@ -17,7 +17,7 @@ constexpr double kOldest_s = 300.0;
 constexpr double kWhite_s = 4.0,
                  kWhite = 0.75;  // what breaks at bow and stern: its e-folding time, and its coverage
 constexpr double kBeaten_s = 90.0, kBeaten = 0.5;  // what the propeller beats in
-constexpr double kDamped = 0.7;                     // of short waves' amplitude, by new turbulence
+constexpr double kDamped = 0.7;                    // of short waves' amplitude, by new turbulence
 
 double rise(double x) {
     const double t = std::clamp(x, 0.0, 1.0);
@@ -99,7 +99,8 @@ WakeStrip::Water WakeStrip::at(glm::dvec2 place_m, double footprint_m) const {
     const double stern = rise(behind_m / beam_m_ + 0.5) * band(0.0, half_m) * strength * end;
     const double white = std::exp(-age_s / kWhite_s), beaten = std::exp(-age_s / kBeaten_s);
     // The bow's: from its two sides outwards, broken as it leaves the hull.
-    const double opened_m = 0.5 * beam_m_ * rise(way_m / (0.4 * length_m_)) + 0.1 * way_m;
+    const double ahead = std::max(1.0 - 2.0 * way_m / length_m_, 0.0);
+    const double opened_m = 0.5 * beam_m_ * (1.0 - ahead * ahead) + 0.1 * way_m;
     const double bow_age_s = age_s + std::max(0.5 * length_m_ - way_m, 0.0) / length_m_;
     const double bow = kWhite * std::exp(-bow_age_s / kWhite_s) * strength *
                        rise(way_m / (0.15 * length_m_)) * band(opened_m, 0.08 * beam_m_ + 0.04 * way_m);

@@ -195,9 +195,8 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
         const int c = static_cast<int>(plan.sea_cascades() + v);
         squares_[v].resize(plan.cascades[c].grids.size());
         if (plan.hides_slopes())
-            tbb::parallel_for(std::size_t(0), squares_[v].size(), [&](std::size_t g) {
-                squares_[v][g] = squares_of(c, static_cast<int>(g));
-            });
+            tbb::parallel_for(std::size_t(0), squares_[v].size(),
+                              [&](std::size_t g) { squares_[v][g] = squares_of(c, static_cast<int>(g)); });
     }
     is_set_ = true;
 }
@@ -209,11 +208,27 @@ std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
     if (!x || !y || n < kBlocks) return {};  // waves as long as blocks
     std::vector<glm::vec3> sums(static_cast<std::size_t>(kBlocks) * kBlocks, glm::vec3(0.0f));
     std::vector<int> counts(sums.size());
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-            const std::size_t from = static_cast<std::size_t>(j) * line_stride<T>(n) + static_cast<std::size_t>(i),
-                              to = static_cast<std::size_t>(j * kBlocks / n * kBlocks + i * kBlocks / n);
-            const glm::vec2 slope(x[from], y[from]);
+    // At nodes, of which a spline's have its coefficients; of fine grids at as many as tell blocks' means.
+    const bool is_spline = sea_->plan().cascades[cascade].grids[grid].sampling == Sampling::Spline;
+    T quintic[6], cubic[4];
+    bspline_weights<6>(T(0), quintic);
+    bspline_weights<4>(T(0), cubic);
+    const T one = T(1);
+    const int spline_taps = sea_->plan().knobs.spline_taps, taps = is_spline ? spline_taps - 1 : 1,
+              before = taps / 2;
+    const T* weights = !is_spline ? &one : spline_taps == 6 ? quintic : cubic;
+    const int step = std::max(1, n / (8 * kBlocks));
+    for (int j = 0; j < n; j += step)
+        for (int i = 0; i < n; i += step) {
+            glm::vec<2, T> slope(T(0));
+            for (int q = 0; q < taps; ++q)
+                for (int p = 0; p < taps; ++p) {
+                    const std::size_t from =
+                        static_cast<std::size_t>((j + q - before + n) % n) * line_stride<T>(n) +
+                        static_cast<std::size_t>((i + p - before + n) % n);
+                    slope += weights[q] * weights[p] * glm::vec<2, T>(x[from], y[from]);
+                }
+            const auto to = static_cast<std::size_t>(j * kBlocks / n * kBlocks + i * kBlocks / n);
             sums[to] += glm::vec3(slope.x * slope.x, slope.x * slope.y, slope.y * slope.y);
             ++counts[to];
         }
@@ -227,7 +242,8 @@ glm::dvec3 Frame<T>::hidden_slopes(int cascade, int grid, glm::dvec2 place_m) co
     const auto finest = std::ranges::find_if(of, [](const auto& squares) { return !squares.empty(); });
     if (finest == of.end()) return glm::dvec3(0.0);
     const std::vector<glm::vec3>* shown = grid < 0 ? nullptr : &of[static_cast<std::size_t>(grid)];
-    const glm::dvec2 at = place_m * (kBlocks / sea_->plan().cascades[cascade].size_m) - 0.5, whole = glm::floor(at);
+    const glm::dvec2 at = place_m * (kBlocks / sea_->plan().cascades[cascade].size_m) - 0.5,
+                     whole = glm::floor(at);
     const auto inside = [](double block) {
         return static_cast<std::size_t>(block - std::floor(block / kBlocks) * kBlocks) % kBlocks;
     };

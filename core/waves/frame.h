@@ -123,7 +123,8 @@ class Frame {
     std::vector<std::vector<GridState>> grids_;  // by cascade
     std::optional<SecondOrderWaves<T>> second_order_;
     std::vector<VesselWaves> vessels_;
-    std::vector<std::vector<std::vector<glm::vec3>>> squares_;  // by vessel and grid; the first grid's are the finest's
+    std::vector<std::vector<std::vector<glm::vec3>>>
+        squares_;  // by vessel and grid; the first grid's are the finest's
     std::vector<WakeStrip> strips_;
     std::vector<Block> blocks_;  // largest first, so that the threads end together
     std::vector<Rows> rows_;

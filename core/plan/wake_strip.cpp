@@ -16,7 +16,7 @@ constexpr int kMostPoints = 160;
 constexpr double kOldest_s = 300.0;
 constexpr double kWhite_s = 4.0,
                  kWhite = 0.75;  // what breaks at bow and stern: its e-folding time, and its coverage
-constexpr double kBeaten_s = 90.0, kBeaten = 0.5;  // what the propeller beats in
+constexpr double kBeaten_s = 90.0, kBeaten = 0.6;  // what the propeller beats in
 constexpr double kDamped = 0.7;                    // of short waves' amplitude, by new turbulence
 
 double rise(double x) {

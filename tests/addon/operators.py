@@ -180,7 +180,7 @@ with checking("a calm place stands at the cursor"):
 with checking("a moving object leaves a wake along its path, in the sea's own axes; one that stands still leaves none"):
     fresh_file()
     scene = bpy.context.scene
-    sea = add_ocean(light=False)
+    sea = add_ocean()
     sea.location, sea.rotation_euler = (5.0, 2.0, 0.0), (0.0, 0.0, 0.5)
     boat = scene.objects["Cube"]
     boat.scale = 6.0, 2.0, 1.0

@@ -154,6 +154,7 @@ std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const
 
 void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
+    constexpr double kOfVessels = 0.7;         // whose shortest waves are next to nothing
     constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
@@ -195,7 +196,7 @@ void add_grids(Plan& plan, int cascade_index) {
         const double oversampling =
             at.is_of_light ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
                                                 plan.knobs.spline_taps, plan.knobs.light_oversampling)
-                           : plan.knobs.oversampling;
+                           : plan.knobs.oversampling * (cascade.vessel ? kOfVessels : 1.0);
         grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
         // So fine that the tile's offsets are whole nodes.
@@ -524,10 +525,12 @@ bool CascadePlan::moves() const {
                        [](const Grid& grid) { return (grid.fields & velocity_fields()).any(); });
 }
 
-bool Plan::hides_slopes() const {
-    return std::ranges::any_of(queries, [](const PlannedQuery& planned) {
-        return (planned.query.products & unresolved_products()).any();
-    });
+bool Plan::hides_slopes(int cascade) const {
+    std::set<int> shown;
+    for (const PlannedQuery& planned : queries)
+        if ((planned.query.products & unresolved_products()).any())
+            for (const int level : planned.pixel_levels) shown.insert(cascades[cascade].grid_of_level[level]);
+    return shown.size() > 1;
 }
 
 std::size_t Plan::sea_cascades() const {

@@ -137,7 +137,8 @@ struct Plan {
 
     // Whether modes have horizontal displacements, or a displacement gradient that decides about breaking.
     bool has_gradients() const;
-    bool hides_slopes() const;         // whether somebody asks for those that pixels hide
+    bool hides_slopes(int cascade)
+        const;  // whether somebody asks for those that pixels hide, and some show less than others
     std::size_t sea_cascades() const;  // those before vessels'
     std::size_t vessel_bytes() const;  // of each Frame
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPointsALength = 2.0;  // of the path
 constexpr int kMostPoints = 160;
+constexpr std::size_t kBoxSteps = 8;
 constexpr double kOldest_s = 300.0;
 constexpr double kWhite_s = 4.0,
                  kWhite = 0.75;  // what breaks at bow and stern: its e-folding time, and its coverage
@@ -49,14 +50,20 @@ WakeStrip::WakeStrip(const VesselPlan& plan, double time_s)
                            time_s - t_s, strength(t_s)});
     }
     oldest_s_ = std::max(points_.back().age_s, step_s);
-    low_m_ = high_m_ = points_.front().place_m;
-    for (const Point& point : points_) {
-        low_m_ = glm::min(low_m_, point.place_m);
-        high_m_ = glm::max(high_m_, point.place_m);
-    }
     const double reach_m = 2.0 * half_width_m(points_.back().way_m) + plan.beam_m;
-    low_m_ -= reach_m;
-    high_m_ += reach_m;
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+        const glm::dvec2 a = points_[i].place_m, b = points_[i + 1].place_m;
+        const glm::dvec2 low_m = glm::min(a, b) - reach_m, high_m = glm::max(a, b) + reach_m;
+        if (i % kBoxSteps == 0) boxes_.push_back({low_m, high_m});
+        Box& box = boxes_.back();
+        box = {glm::min(box.low_m, low_m), glm::max(box.high_m, high_m)};
+        low_m_ = i == 0 ? box.low_m : glm::min(low_m_, box.low_m);
+        high_m_ = i == 0 ? box.high_m : glm::max(high_m_, box.high_m);
+    }
+}
+
+bool WakeStrip::Box::holds(glm::dvec2 place_m) const {
+    return place_m.x >= low_m.x && place_m.y >= low_m.y && place_m.x <= high_m.x && place_m.y <= high_m.y;
 }
 
 double WakeStrip::half_width_m(double behind_m) const {
@@ -73,6 +80,10 @@ WakeStrip::Water WakeStrip::at(glm::dvec2 place_m, double footprint_m) const {
     double nearest = INFINITY, share = 0.0;
     std::size_t of = 0;
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+        if (i % kBoxSteps == 0 && !boxes_[i / kBoxSteps].holds(place_m)) {
+            i += kBoxSteps - 1;
+            continue;
+        }
         const glm::dvec2 from = points_[i].place_m, along = points_[i + 1].place_m - from,
                          to = place_m - from;
         const double length2 = glm::dot(along, along);

@@ -35,7 +35,13 @@ class WakeStrip {
 
     double length_m_, beam_m_, foam_, oldest_s_;
     std::vector<Point> points_;
-    glm::dvec2 low_m_{0.0}, high_m_{0.0};  // round all of it
+    // Round some successive points and all that they reach, and round all.
+    struct Box {
+        glm::dvec2 low_m{0.0}, high_m{0.0};
+        bool holds(glm::dvec2 place_m) const;
+    };
+    std::vector<Box> boxes_;
+    glm::dvec2 low_m_{0.0}, high_m_{0.0};
 };
 
 }  // namespace pelagic

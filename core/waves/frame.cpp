@@ -25,7 +25,7 @@ namespace {
 constexpr int kBlockColumns = 16;
 constexpr int kBlockRows = 32;
 // Along the side of a vessel's tile, of the means of its slopes.
-constexpr int kBlocks = 64;
+constexpr int kBlocks = 32;
 
 // One FFTW plan per size.
 template <class T>
@@ -194,7 +194,7 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     for (std::size_t v = 0; v < vessels_.size(); ++v) {
         const int c = static_cast<int>(plan.sea_cascades() + v);
         squares_[v].resize(plan.cascades[c].grids.size());
-        if (plan.hides_slopes())
+        if (plan.hides_slopes(c))
             tbb::parallel_for(std::size_t(0), squares_[v].size(),
                               [&](std::size_t g) { squares_[v][g] = squares_of(c, static_cast<int>(g)); });
     }

@@ -182,9 +182,9 @@ with checking("a moving object leaves a wake along its path, in the sea's own ax
     scene = bpy.context.scene
     sea = add_ocean()
     sea.location, sea.rotation_euler = (5.0, 2.0, 0.0), (0.0, 0.0, 0.5)
-    boat = scene.objects["Cube"]
+    bpy.ops.mesh.primitive_cube_add()
+    boat = bpy.context.object
     boat.scale = 6.0, 2.0, 1.0
-    bpy.context.view_layer.objects.active = boat
     assert refused(bpy.ops.pelagic.make_wake, "doesn't move")
     scene.frame_start, scene.frame_end = 1, 121
     for frame, x in ((1, -20.0), (121, 20.0)):

@@ -154,7 +154,8 @@ std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const
 
 void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
-    constexpr double kOfVessels = 0.7;         // whose shortest waves are next to nothing
+    // A vessel's shortest waves are next to nothing.
+    const double of_vessels = std::max(0.7 * plan.knobs.oversampling, std::min(plan.knobs.oversampling, 1.3));
     constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
@@ -194,9 +195,10 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.fields = wanted;
         grid.radius = radius;
         const double oversampling =
-            at.is_of_light ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
-                                                plan.knobs.spline_taps, plan.knobs.light_oversampling)
-                           : plan.knobs.oversampling * (cascade.vessel ? kOfVessels : 1.0);
+            at.is_of_light   ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
+                                                  plan.knobs.spline_taps, plan.knobs.light_oversampling)
+            : cascade.vessel ? of_vessels
+                             : plan.knobs.oversampling;
         grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
         // So fine that the tile's offsets are whole nodes.

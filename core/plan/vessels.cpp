@@ -100,15 +100,15 @@ std::vector<VesselPlan> plan_vessels(const Scene& scene) {
                     std::lerp(plan.path.keys[i].time_s, plan.path.keys[i + 1].time_s, part / double{kParts});
                 plan.speed_mps = std::max(plan.speed_mps, glm::length(plan.path.velocity_mps(time_s)));
             }
-        // Thirty-two of its waves: of those that it drags along, or, where these are long, of those that a hull of its length makes.
-        constexpr double kWaves = 32.0, kLengths = 1.5, kLeastLengths = 4.0, kLeastCells = 2.0;
+        // Forty of its waves: of those that it drags along, or, where these are long, of those that a hull of its length makes.
+        constexpr double kWaves = 40.0, kLengths = 1.5, kLeastLengths = 4.0, kLeastCells = 2.0;
         const double transverse_m = kTwoPi * plan.speed_mps * plan.speed_mps / kGravity;
         plan.size_m = std::max(kWaves * std::min(transverse_m, kLengths * plan.length_m),
                                kLeastLengths * plan.length_m);
         if (!(transverse_m > kLeastCells * plan.size_m / (2.0 * VesselPlan::kRadius)) || !(plan.waves > 0.0))
             continue;
         // Energy is left behind at half the vessel's speed or more.
-        constexpr double kSides = 1.6;
+        constexpr double kSides = 1.5;
         plan.block_s = kSides * plan.size_m / plan.speed_mps / VesselPlan::kBlocks;
         plans.push_back(std::move(plan));
     }

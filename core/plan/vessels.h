@@ -35,8 +35,8 @@ struct VesselPlan {
     double size_m = 0.0;     // the tile's side
     double block_s = 0.0;    // of the lattice of times
 
-    static constexpr int kRadius = 192;    // of modes: the shortest waves are a 192nd of the tile
-    static constexpr int kBlocks = 40;     // that are remembered
+    static constexpr int kRadius = 256;    // of modes: the shortest waves are a 256th of the tile
+    static constexpr int kBlocks = 48;     // that are remembered
     static constexpr int kMostSteps = 8;   // of a block where the vessel turns
     static constexpr double kEdge = 0.06;  // of the side, at each border: where waves fade to none
 

@@ -247,7 +247,7 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
              {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im, &own.turn_re, &own.turn_im,
               &own.cosine, &own.sine, &own.now[0], &own.now[1], &own.now[2], &own.now[3]})
             *buffer = Buffer<float>(most);
-    const double oldest_s = VesselPlan::kBlocks * plan_.block_s, fading_s = 0.12 * oldest_s;
+    const double oldest_s = VesselPlan::kBlocks * plan_.block_s, fading_s = 0.25 * oldest_s;
     for (int mx = first_mx; mx < first_mx + columns; ++mx) {
         const std::size_t first = first_of(mx), count = count_of(mx);
         for (Buffer<float>* sum : {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im})

@@ -6,7 +6,7 @@ import bpy
 from .farm import PELAGIC_OT_check_farm
 from .floating import PELAGIC_OT_float
 from .native import PELAGIC_OT_replace_ocean_modifier
-from .operators import PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
+from .operators import PELAGIC_OT_make_wake, PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
 from .sampling import PELAGIC_OT_sample_heights
 
 
@@ -17,6 +17,7 @@ class PELAGIC_MT_object(bpy.types.Menu):
         layout = self.layout
         layout.operator(PELAGIC_OT_float.bl_idname)
         layout.operator(PELAGIC_OT_float.bl_idname, text="Float No More").enabled = False
+        layout.operator(PELAGIC_OT_make_wake.bl_idname)
         layout.operator_menu_enum(PELAGIC_OT_sample_heights.bl_idname, "into")
         layout.separator()
         layout.operator(PELAGIC_OT_use_mesh.bl_idname)

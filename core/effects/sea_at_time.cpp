@@ -1,5 +1,6 @@
 #include "core/effects/sea_at_time.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -124,12 +125,34 @@ void SeaAtTime<T>::evaluate_by(const Ask& ask, int index, const Points<T>& point
                               .age_s = results.numbers(Product::FoamAge)};
     if (has_past(index)) {
         const std::lock_guard lock(lock_);
-        return tbb::this_task_arena::isolate([&] { history().add(points, index, foam, watch); });
+        tbb::this_task_arena::isolate([&] { history().add(points, index, foam, watch); });
+    } else {
+        for (std::size_t i = 0; i < points.count; ++i) {
+            if (foam.coverage) foam.coverage[i] = foam.breaking[i];
+            if (foam.age_s) foam.age_s[i] = T(0);
+        }
     }
-    for (std::size_t i = 0; i < points.count; ++i) {
-        if (foam.coverage) foam.coverage[i] = foam.breaking[i];
-        if (foam.age_s) foam.age_s[i] = T(0);
-    }
+    if (!query.only_cascade) add_wakes(points, foam);
+}
+
+// The foam of vessels' wakes beside what waves leave. Where it is much, the age is its own.
+template <class T>
+void SeaAtTime<T>::add_wakes(const Points<T>& points, const FoamResults<T>& foam) const {
+    const std::span<const WakeStrip> strips = frame_.strips();
+    if (strips.empty()) return;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            for (const WakeStrip& strip : strips) {
+                const WakeStrip::Water water =
+                    strip.at(points.origin_m + glm::dvec2(points.rest_m[i]),
+                             points.pixel_m ? static_cast<double>(points.pixel_m[i]) : 0.0);
+                if (!(water.foam > 0.0)) continue;
+                const T more = static_cast<T>(water.foam), age_s = static_cast<T>(water.age_s);
+                if (foam.coverage) foam.coverage[i] = T(1) - (T(1) - foam.coverage[i]) * (T(1) - more);
+                // The same whether coverage is asked for or not.
+                if (foam.age_s) foam.age_s[i] += std::min(T(4) * more, T(1)) * (age_s - foam.age_s[i]);
+            }
+    });
 }
 
 template <class T>

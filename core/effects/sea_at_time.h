@@ -66,6 +66,8 @@ class SeaAtTime {
     void evaluate_by(const Ask& ask, int query, const Points<T>& points, const Results<T>& results,
                      const BuildWatch& watch) const;
 
+    void add_wakes(const Points<T>& points, const FoamResults<T>& foam) const;
+
     Frame<T> frame_;
     std::vector<FoamPlace> places_;  // said since the last prepare()
     mutable std::mutex lock_;        // of the history

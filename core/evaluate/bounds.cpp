@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 #include <queue>
 #include <stdexcept>
 
@@ -271,6 +273,7 @@ void FrameBounds<T>::refresh() {
             places.push_back({c, g});
             GridBounds& grid = grids_.emplace_back();
             grid.size_m = plan.cascades[c].size_m;
+            if (plan.cascades[c].vessel) grid.middle_m = frame_->tile_middle_m(c);
             if (plan.cascades[c].has_random_tiling && !planned_->query.only_cascade)
                 grid.tiling_key = tiling_key(plan.from->scene.shot.seed, c);
             const Grid& planned = plan.cascades[c].grids[g];
@@ -378,12 +381,23 @@ DisplacementBounds::Interval FrameBounds<T>::interval_of(const GridBounds& grid,
 template <class T>
 DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vector<double>& cycles,
                                              glm::dvec2 origin_m) const {
-    DisplacementBounds bounds;
+    constexpr DisplacementBounds kNone{{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+    DisplacementBounds bounds, of_vessels = kNone;
     for (const std::vector<int>& of_level : grid_of_level_) {
-        DisplacementBounds sum{{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+        DisplacementBounds sum = kNone, vessels_sum = kNone;
         for (const int g : of_level) {
             const GridBounds& grid = grids_[g];
-            const glm::dvec2 from_m = origin_m + block.min_m, to_m = origin_m + block.max_m;
+            glm::dvec2 from_m = origin_m + block.min_m, to_m = origin_m + block.max_m;
+            bool is_within = true;
+            if (grid.middle_m) {
+                const glm::dvec2 half(0.5 * grid.size_m), low = *grid.middle_m - half,
+                                                          high = *grid.middle_m + half;
+                is_within =
+                    glm::all(glm::greaterThanEqual(from_m, low)) && glm::all(glm::lessThanEqual(to_m, high));
+                if (glm::any(glm::greaterThan(from_m, high)) || glm::any(glm::lessThan(to_m, low))) continue;
+                from_m = glm::max(from_m, low);
+                to_m = glm::min(to_m, high);
+            }
             const auto tiling = grid.tiling_key
                                     ? tiles_of(*grid.tiling_key, from_m / grid.size_m, to_m / grid.size_m)
                                     : BlendedTiles{1, {{{{1.0, 1.0}, glm::dvec2(0.0)}}}};
@@ -405,12 +419,15 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
                 }
                 const double rounding = grid.tiling_key ? 4.0 * kRounding<T> : kRounding<T>;
                 widen(found, rounding * std::max(-whole.lo, whole.hi));
-                Interval& axis = sum.*axes()[f];
+                if (!is_within) include(found, {0.0, 0.0});
+                DisplacementBounds& to = grid.middle_m ? vessels_sum : sum;
+                Interval& axis = to.*axes()[f];
                 axis.lo += found.lo;
                 axis.hi += found.hi;
             }
         }
         include(bounds, sum);
+        include(of_vessels, vessels_sum);
     }
     const Trains<T>& trains = frame_->sea().trains();
     const glm::dvec2 middle = 0.5 * (block.min_m + block.max_m), half = 0.5 * (block.max_m - block.min_m);
@@ -456,6 +473,10 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
         const double rounding = 1.0 + kRounding<T> * static_cast<double>(masks->masks.size());
         for (const auto axis : axes())
             bounds.*axis = times({gains.least / rounding, gains.largest * rounding}, bounds.*axis);
+    }
+    for (const auto axis : axes()) {
+        (bounds.*axis).lo += (of_vessels.*axis).lo;
+        (bounds.*axis).hi += (of_vessels.*axis).hi;
     }
     return bounds;
 }

@@ -82,9 +82,10 @@ class FrameBounds {
     };
     struct GridBounds {
         double size_m = 1.0;
-        int n = 1;                         // cells along an axis
-        std::optional<uint> tiling_key{};  // with random tiling (core/plan/random_tiling.h)
-        std::array<Pyramid, 3> fields;     // height, Dx, Dy
+        int n = 1;                             // cells along an axis
+        std::optional<uint> tiling_key{};      // with random tiling (core/plan/random_tiling.h)
+        std::optional<glm::dvec2> middle_m{};  // of a vessel's: the period round it alone
+        std::array<Pyramid, 3> fields;         // height, Dx, Dy
     };
     using Block = RestRegion;
 

@@ -6,7 +6,8 @@
 namespace pelagic {
 
 template <class T>
-bool MaskChunk<T>::take(const MasksPlan& plan, glm::dvec2 origin_m, const Chunk<T>& chunk) {
+bool MaskChunk<T>::take(const MasksPlan& plan, std::span<const WakeStrip> strips, glm::dvec2 origin_m,
+                        const Chunk<T>& chunk) {
     const std::size_t padded = chunk.padded();
     for (Values* ones : {&waves, &ripples, &foam}) std::fill_n(ones->begin(), padded, T(1));
     for (Values* zeros : {&x, &y}) std::fill_n(zeros->begin(), padded, T(0));
@@ -33,6 +34,14 @@ bool MaskChunk<T>::take(const MasksPlan& plan, glm::dvec2 origin_m, const Chunk<
             has_ripples = has_ripples || at.ripples != T(1);
         }
     }
+    for (const WakeStrip& strip : strips)
+        for (std::size_t i = 0; plan.has_strips && i < chunk.count; ++i) {
+            const T calm = static_cast<T>(
+                strip.at(origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]), kSlick_m).calm);
+            if (!(calm > T(0))) continue;
+            ripples[i] *= T(1) - calm;
+            any = has_ripples = true;
+        }
     return any;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <span>
 
 #include "core/evaluate/chunk.h"
 #include "core/plan/masks.h"
+#include "core/plan/wake_strip.h"
 
 namespace pelagic {
 
@@ -16,7 +18,8 @@ struct MaskChunk {
     bool has_edges = false, has_ripples = false;    // whether that isn't 0 somewhere, or `ripples` not 1
 
     // Whether any of them changes anything there.
-    bool take(const MasksPlan& plan, glm::dvec2 origin_m, const Chunk<T>& chunk);
+    bool take(const MasksPlan& plan, std::span<const WakeStrip> strips, glm::dvec2 origin_m,
+              const Chunk<T>& chunk);
 };
 
 // Multiplies the sums by the gain of waves. `values`: heights and horizontal displacements in the footprints of the derivatives.

@@ -94,6 +94,7 @@ struct PreparedQuery<T>::Work {
     bool apart;  // the displacement gradient of the waves that break is in `breaking`, not in `chunk`
     std::optional<MaskWork> masks{};  // of a sea that has some
     bool masked = false;              // whether they change something at the chunk's points
+    bool of_vessels = false;  // what is added now: vessels' waves, which masks don't change, or the sea
     std::array<TilingPlaces<T>, limits::kCascades> tiling;  // of the chunk's points, by cascade
     TilingReader<T> tiling_reader;
     std::vector<std::vector<std::unique_ptr<RowPlaces<T>>>> places;  // of grids by level; empty: not kept
@@ -158,6 +159,8 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                                      [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
     breaks_ = (wanted & breaking_products()).any();
     has_masks_ = plan.masks && !query.only_cascade;
+    sea_cascades_ = plan.sea_cascades();
+    has_vessels_ = sea_cascades_ < plan.cascades.size() && !query.only_cascade;
     for (const std::vector<int>* levels :
          {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels, &planned_->calm_cells,
           &planned_->calm_pixels})
@@ -233,7 +236,7 @@ template <class T>
 typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m) const {
     Place place{origin_m, {}, {}, {}, {}};
     const Plan& plan = frame_->sea().plan();
-    for (std::size_t c = 0; has_random_tiling_ && c < plan.cascades.size(); ++c)
+    for (std::size_t c = 0; has_random_tiling_ && c < sea_cascades_; ++c)
         place.tiling.emplace_back(tiling_key(plan.from->scene.shot.seed, static_cast<int>(c)),
                                   plan.cascades[c].size_m, origin_m);
     for (const LevelGrids& of : levels_) {
@@ -362,7 +365,7 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     work.apart = breaks_apart(call, work);
     if (has_masks_) {
         if (!work.masks) work.masks.emplace();
-        work.masked = work.masks->gains.take(*plan.masks, call.points.origin_m, chunk);
+        work.masked = work.masks->gains.take(*plan.masks, frame_->strips(), call.points.origin_m, chunk);
     }
     work.needed = call.needed;
     if (call.breaks && !work.apart) work.needed |= displacement_gradient_fields();
@@ -376,31 +379,35 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
         }
         std::fill(work.breaking.turn.begin(), work.breaking.turn.begin() + padded, T(0));
     }
-    if (call.has_levels) {
-        add_levels(call, work);
-    } else {
-        add_only_footprint(call, work);
-    }
+    const auto add = [&](bool of_vessels) {
+        work.of_vessels = of_vessels;
+        call.has_levels ? add_levels(call, work) : add_only_footprint(call, work);
+    };
+    add(false);
     if (work.masked) {
         if (work.masks->gains.has_ripples) calm_ripples(call, work);
         add_values(call, work);
     }
     add_own_footprints(call, first, work);
     if (work.masked) mask_chunks(call, work);
+    if (has_vessels_) add(true);
+    work.of_vessels = false;
+    const bool hides_vessels = has_vessels_ && call.wants_unresolved && hide_vessels(call, work);
     const bool has_gusts = gusts_ && (call.results.given() & gusty_products()).any();
     if (has_gusts) take_gusts(call, first, work);
-    kernels_.derive({.chunk = &chunk,
-                     .breaking = work.apart ? &work.breaking : &chunk,
-                     .results = call.results.from_point(first),
-                     .unresolved = unresolved_,
-                     .unresolved_of = call.wants_unresolved && (call.differ_in_unresolved || work.masked)
-                                          ? &work.unresolved_of
-                                          : nullptr,
-                     .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
-                     .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
-                     .third_moment = plan.knobs.third_moment,
-                     .rest_normal = call.points.rest_normal ? from_point(call.points.rest_normal, first)
-                                                            : call.points.rest_normal});
+    kernels_.derive(
+        {.chunk = &chunk,
+         .breaking = work.apart ? &work.breaking : &chunk,
+         .results = call.results.from_point(first),
+         .unresolved = unresolved_,
+         .unresolved_of = call.wants_unresolved && (call.differ_in_unresolved || work.masked || hides_vessels)
+                              ? &work.unresolved_of
+                              : nullptr,
+         .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
+         .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
+         .third_moment = plan.knobs.third_moment,
+         .rest_normal =
+             call.points.rest_normal ? from_point(call.points.rest_normal, first) : call.points.rest_normal});
     const auto unresolved = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && unresolved)
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
@@ -442,8 +449,9 @@ void PreparedQuery<T>::calm_ripples(const Call& call, Work& work) const {
         if (masks.calm_cells.any_round) round |= cell_fields();
         if (masks.calm_pixels.any_round) round |= ~cell_fields();
         add_round(call, round & fields, cells, pixels, work, masks.calm);
-        if (masks.calm_cells.any_ellipse) add_ellipses(call, cell_fields() & fields, cells, masks.calm);
-        if (masks.calm_pixels.any_ellipse) add_ellipses(call, ~cell_fields() & fields, pixels, masks.calm);
+        if (masks.calm_cells.any_ellipse) add_ellipses(call, cell_fields() & fields, cells, work, masks.calm);
+        if (masks.calm_pixels.any_ellipse)
+            add_ellipses(call, ~cell_fields() & fields, pixels, work, masks.calm);
     } else {
         for (std::size_t l = 0; l < levels_.size(); ++l) {
             FieldSet here;
@@ -479,7 +487,7 @@ void PreparedQuery<T>::add_values(const Call& call, Work& work) const {
         }
         const Seen seen{levels, footprints};
         if (footprints.any_round) add_round(call, values, seen, seen, work, to);
-        if (footprints.any_ellipse) add_ellipses(call, values, seen, to);
+        if (footprints.any_ellipse) add_ellipses(call, values, seen, work, to);
     };
     if ((work.needed & ~cell_fields()).any()) add(planned_->pixel_levels, work.pixels, masks.values);
     if (work.apart) add(planned_->breaking_levels, work.breaking_pixels, masks.breaking_values);
@@ -537,6 +545,40 @@ void PreparedQuery<T>::mask_unresolved(const Call& call, Work& work) const {
     }
 }
 
+// Between levels waves that the finer one shows whole and the coarser one not at all have (1 − t)² of their variance.
+template <class T>
+bool PreparedQuery<T>::hide_vessels(const Call& call, Work& work) const {
+    auto& moments = work.unresolved_of.moments;
+    const Plan& plan = frame_->sea().plan();
+    typename Chunk<T>::Values within;
+    bool any = false;
+    for (std::size_t c = sea_cascades_; c < plan.cascades.size(); ++c) {
+        const auto cascade = static_cast<int>(c);
+        if (!is_within(cascade, call.place.origin_m, work.chunk, within.data())) continue;
+        if (!any && !call.differ_in_unresolved && !work.masked)
+            for (std::size_t m = 0; m < moments.size(); ++m)
+                std::fill_n(moments[m].begin(), work.chunk.padded(), unresolved_[m]);
+        any = true;
+        for (std::size_t i = 0; i < work.chunk.count; ++i) {
+            if (within[i] == T(0)) continue;
+            const LevelBlend<T> blend = call.has_levels ? work.pixels.of[i].blend : LevelBlend<T>{};
+            const glm::dvec2 place_m =
+                call.place.origin_m + glm::dvec2(work.chunk.rest_x[i], work.chunk.rest_y[i]);
+            const auto hidden = [&](std::size_t level) {
+                return frame_->hidden_slopes(
+                    cascade, plan.cascades[c].grid_of_level[planned_->pixel_levels[level]], place_m);
+            };
+            glm::dvec3 sum = hidden(blend.lower);
+            if (const double t = static_cast<double>(blend.t); t > 0.0)
+                sum += t * (2.0 - t) * (hidden(blend.lower + 1) - sum);
+            for (int m = 0; m < 3; ++m)
+                moments[static_cast<std::size_t>(m)][i] +=
+                    static_cast<T>(m == 1 ? sum[m] : std::max(sum[m], 0.0));
+        }
+    }
+    return any;
+}
+
 template <class T>
 void PreparedQuery<T>::take_gusts(const Call& call, std::size_t first, Work& work) const {
     const Chunk<T>& chunk = work.chunk;
@@ -578,7 +620,7 @@ void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
     };
     if (!work.apart) return add(Part::All);
     const bool has_gradients =
-        (work.needed & displacement_gradient_fields()) == displacement_gradient_fields();
+        !work.of_vessels && (work.needed & displacement_gradient_fields()) == displacement_gradient_fields();
     if (has_gradients) {
         add(Part::Alike);
         for (const Field field : kDisplacementGradients)
@@ -596,11 +638,29 @@ void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
 }
 
 template <class T>
+bool PreparedQuery<T>::is_within(int cascade, glm::dvec2 origin_m, const Chunk<T>& chunk, T* within) const {
+    const glm::vec<2, T> from(origin_m - frame_->tile_middle_m(cascade));
+    const T half = static_cast<T>(0.5 * frame_->sea().plan().cascades[cascade].size_m);
+    bool any = false;
+    std::fill_n(within, chunk.padded(), T(0));
+    for (std::size_t i = 0; i < chunk.count; ++i) {
+        const bool is_in =
+            std::abs(from.x + chunk.rest_x[i]) < half && std::abs(from.y + chunk.rest_y[i]) < half;
+        within[i] = is_in ? T(1) : T(0);
+        any = any || is_in;
+    }
+    return any;
+}
+
+template <class T>
 void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Share& share, Work& work,
                                  Chunk<T>& chunk) const {
     if (share.fields.none()) return;
     const std::vector<GridArgs<T>>& grids = levels_[level].grids;
+    typename Chunk<T>::Values cells, pixels;
     for (std::size_t g = 0; g < grids.size(); ++g) {
+        const auto c = static_cast<std::size_t>(levels_[level].cascades[g]);
+        if (work.of_vessels != (c >= sea_cascades_)) continue;
         if (share.part != Part::All && levels_[level].breaks_alike[g] != (share.part == Part::Alike))
             continue;
         GridArgs<T> args = grids[g];
@@ -614,13 +674,22 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
         args.origin_nodes_y = call.place.nodes[level][g].y;
         args.cell_weight = share.cell_weight;
         args.pixel_weight = share.pixel_weight;
+        if (work.of_vessels) {
+            if (!is_within(static_cast<int>(c), call.place.origin_m, chunk, cells.data())) continue;
+            std::copy_n(cells.begin(), chunk.padded(), pixels.begin());
+            for (std::size_t i = 0; i < chunk.count; ++i) {
+                if (share.cell_weight) cells[i] *= share.cell_weight[i];
+                if (share.pixel_weight) pixels[i] *= share.pixel_weight[i];
+            }
+            args.cell_weight = cells.data();
+            args.pixel_weight = pixels.data();
+        }
         if (work.row != 0) args.places = work.places[level][g].get();
         args.row = work.row;
-        if (!has_random_tiling_) {
+        if (!has_random_tiling_ || work.of_vessels) {
             kernels_.add_grid(args, chunk);
             continue;
         }
-        const auto c = static_cast<std::size_t>(levels_[level].cascades[g]);
         add_tiles(grids[g], args, share.fields, call.place.tiling[c], work.tiling[c], work.tiling_reader,
                   chunk, kernels_);
     }
@@ -631,22 +700,23 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 template <class T>
 void PreparedQuery<T>::add_levels(const Call& call, Work& work) const {
     auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, masks,
-           masked, tiling, tiling_reader, places, row] = work;
+           masked, of_vessels, tiling, tiling_reader, places, row] = work;
     const Seen by_cell{planned_->cell_levels, cells}, by_pixel{planned_->pixel_levels, pixels};
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
     add_round(call, round & needed, by_cell, by_pixel, work, chunk);
-    if (cells.any_ellipse) add_ellipses(call, cell_fields() & needed, by_cell, chunk);
-    if (pixels.any_ellipse) add_ellipses(call, ~cell_fields() & needed, by_pixel, chunk);
+    if (cells.any_ellipse) add_ellipses(call, cell_fields() & needed, by_cell, work, chunk);
+    if (pixels.any_ellipse) add_ellipses(call, ~cell_fields() & needed, by_pixel, work, chunk);
     if (apart) {
         breaking_pixels.take_breaking(pixels, frame_->sea().plan().breaking, chunk.count);
         const Seen by_breaking{planned_->breaking_levels, breaking_pixels};
         if (breaking_pixels.any_round)
             add_round(call, displacement_gradient_fields(), by_cell, by_breaking, work, breaking);
         if (breaking_pixels.any_ellipse)
-            add_ellipses(call, displacement_gradient_fields(), by_breaking, breaking);
+            add_ellipses(call, displacement_gradient_fields(), by_breaking, work, breaking);
     }
+    if (work.of_vessels) return;
     if (!call.wants_unresolved || !call.differ_in_unresolved || has_trains_) return;
     const UnresolvedMoments<double> whole = unresolved_moments<double>(statistics_->whole);
     for (auto& moment : unresolved_of.moments)
@@ -698,7 +768,7 @@ UnresolvedMoments<double> PreparedQuery<T>::beside_round(const Footprint<T>& pix
 // Points whose footprints are ellipses: each of a cascade's grids is read at their taps (core/plan/taps.inl), which
 // are gathered to chunks of their own.
 template <class T>
-void PreparedQuery<T>::add_ellipses(const Call& call, FieldSet fields, const Seen& seen,
+void PreparedQuery<T>::add_ellipses(const Call& call, FieldSet fields, const Seen& seen, const Work& work,
                                     Chunk<T>& chunk) const {
     if (fields.none()) return;
     const auto& [levels, footprints] = seen;
@@ -716,7 +786,11 @@ void PreparedQuery<T>::add_ellipses(const Call& call, FieldSet fields, const See
     };
     const Plan& plan = frame_->sea().plan();
     TapChunk<T> taps;
-    for (std::size_t c = 0; c < whole_m_.size(); ++c) {
+    typename Chunk<T>::Values within;
+    for (std::size_t c = work.of_vessels ? sea_cascades_ : 0;
+         c < (work.of_vessels ? whole_m_.size() : sea_cascades_); ++c) {
+        if (work.of_vessels && !is_within(static_cast<int>(c), call.place.origin_m, chunk, within.data()))
+            continue;
         const auto grid_of = [&](std::size_t level) { return plan.cascades[c].grid_of_level[levels[level]]; };
         for (std::size_t level = lowest; level <= highest; ++level) {
             // Levels that let everything through whole share a grid.
@@ -725,10 +799,10 @@ void PreparedQuery<T>::add_ellipses(const Call& call, FieldSet fields, const See
             const std::size_t l = level_of(level);
             const auto g = static_cast<std::size_t>(levels_[l].of_cascade[c]);
             taps.begin(levels_[l].grids[g], call.place.nodes[l][g], fields,
-                       has_random_tiling_ ? &call.place.tiling[c] : nullptr, kernels_);
+                       has_random_tiling_ && !work.of_vessels ? &call.place.tiling[c] : nullptr, kernels_);
             for (std::size_t i = 0; i < chunk.count; ++i) {
                 const Footprint<T>& footprint = footprints.of[i];
-                if (!footprint.is_ellipse) continue;
+                if (!footprint.is_ellipse || (work.of_vessels && within[i] == T(0))) continue;
                 const LevelBlend<T>& at = footprint.blend;
                 T share = grid_of(at.lower) == grid ? T(1) - at.t : T(0);
                 if (at.t > T(0) && grid_of(at.lower + 1) == grid) share += at.t;
@@ -744,7 +818,7 @@ template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
     auto& [chunk, breaking, unresolved_of, cells, pixels, breaking_pixels, gusts, needed, apart, masks,
-           masked, tiling, tiling_reader, places, row] = work;
+           masked, of_vessels, tiling, tiling_reader, places, row] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {

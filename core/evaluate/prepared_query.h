@@ -86,12 +86,17 @@ class PreparedQuery {
                    Chunk<T>& chunk) const;
     // Whether the displacement gradient of the waves that break isn't that of the chunk's normals.
     bool breaks_apart(const Call& call, const Work& work) const;
+    // Adds what pixels hide of vessels' slopes; false: nothing of them is there.
+    bool hide_vessels(const Call& call, Work& work) const;
+    // Which of a chunk's points lie in a vessel's tile, in `within` 1 and else 0; false: none.
+    bool is_within(int cascade, glm::dvec2 origin_m, const Chunk<T>& chunk, T* within) const;
     void add_only_footprint(const Call& call, Work& work) const;
     void add_levels(const Call& call, Work& work) const;
     // Points whose footprints are round: those of `fields` that cells filter, and the others.
     void add_round(const Call& call, FieldSet fields, const Seen& cells, const Seen& pixels, Work& work,
                    Chunk<T>& chunk) const;
-    void add_ellipses(const Call& call, FieldSet fields, const Seen& seen, Chunk<T>& chunk) const;
+    void add_ellipses(const Call& call, FieldSet fields, const Seen& seen, const Work& work,
+                      Chunk<T>& chunk) const;
     void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
     // Calm and rough places (core/plan/masks.h). What a slick leaves of waves, in place of a part of them; heights and displacements as
     // the derivatives' footprints show them; and the gains, of the sums and of what is unresolved.
@@ -111,6 +116,8 @@ class PreparedQuery {
     const PlannedQuery* planned_;
     const QueryStatistics* statistics_;
     const EllipseMoments* ellipses_;
+    std::size_t sea_cascades_ = 0;  // those behind are vessels'
+    bool has_vessels_ = false;
     std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;

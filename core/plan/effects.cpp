@@ -53,6 +53,17 @@ std::string about_masks(const Plan& plan) {
     return about + "; pairs of waves (second order) change as the waves do, not as their square";
 }
 
+std::string about_wakes(const Plan& plan) {
+    std::string about = std::to_string(plan.cascades.size() - plan.sea_cascades()) + " of " +
+                        std::to_string(plan.from->scene.waves.vessels.size()) + " vessels make waves";
+    for (const CascadePlan& cascade : plan.cascades)
+        if (const auto& vessel = cascade.vessel)
+            about += "; at up to " + rough_text(vessel->speed_mps) + " m/s, in a tile of " +
+                     rough_text(vessel->size_m) + " m, remembered for " +
+                     rough_text(vessel->block_s * VesselPlan::kBlocks) + " s";
+    return about + "; waves that break on theirs leave no foam";
+}
+
 std::string about_living_foam(const Plan& plan) {
     if (!plan.foam) return "no output asks for it";
     const FoamPlan& foam = *plan.foam;
@@ -164,10 +175,22 @@ const std::array kEffectTable = std::to_array<EffectRow>({
          [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); }},
     {.effect = Effect::Masks,
      .name = "calm and rough places",
-     .is_asked_for = [](const Scene& scene) { return plan_masks(scene).has_value(); },
+     .is_asked_for =
+         [](const Scene& scene) {
+             const auto plan = plan_masks(scene);
+             return plan && !plan->masks.empty();
+         },
      .why_not = "waves.masks are none, or change nothing",
      .turn_off = [](Scene& scene) { scene.waves.masks.clear(); },
      .about = about_masks},
+    {.effect = Effect::Wakes,
+     .name = "wakes",
+     .is_asked_for = [](const Scene& scene) { return !scene.waves.vessels.empty(); },
+     .why_not = "waves.vessels are none",
+     .turn_off = [](Scene& scene) { scene.waves.vessels.clear(); },
+     .state = {"what vessels' waves were", [](const Plan& plan) { return plan.vessel_bytes(); },
+               "have fewer waves.vessels"},
+     .about = about_wakes},
 });
 
 }  // namespace

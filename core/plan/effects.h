@@ -24,7 +24,8 @@ enum class Effect {
     FoamStructure,
     Spray,
     Gusts,
-    Masks
+    Masks,
+    Wakes
 };
 
 // Members that aren't given: the effect has nothing of the kind.

@@ -193,7 +193,9 @@ std::string explain(const Plan& plan) {
     std::size_t cascade_number = 0;
     for (const CascadePlan& cascade : plan.cascades) {
         page += format("  %zu  %.6g m, resolution %d, ", cascade_number, cascade.size_m, cascade.resolution);
-        if (!scene.waves.cascades.empty())
+        if (cascade.vessel)
+            page += "a vessel's, ";
+        else if (!scene.waves.cascades.empty())
             if (const auto own = scene.waves.cascades[cascade_number].choppiness)
                 page += format("choppiness %g, ", *own);
         ++cascade_number;

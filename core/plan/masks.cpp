@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/plan/effects.h"
 
 namespace pelagic {
 
@@ -27,7 +28,11 @@ std::optional<MasksPlan> plan_masks(const Scene& scene) {
         plan.calms_ripples = plan.calms_ripples || mask.ripples != 1.0;
         plan.calms_foam = plan.calms_foam || mask.foam != 1.0;
     }
-    if (plan.masks.empty()) return std::nullopt;
+    // Where ripples break they aren't calmed.
+    plan.has_strips = !scene.waves.vessels.empty() &&
+                      !(is_on(Effect::Whitecaps, scene) && scene.effects.breaking_from_m < 2.0 * kSlick_m);
+    plan.calms_ripples = plan.calms_ripples || plan.has_strips;
+    if (plan.masks.empty() && !plan.has_strips) return std::nullopt;
     return plan;
 }
 

@@ -34,6 +34,7 @@ struct MasksPlan {
     };
     std::vector<Mask> masks;  // those that change something
     bool changes_waves = false, calms_ripples = false, calms_foam = false;
+    bool has_strips = false;  // of vessels, which calm ripples as well (core/plan/wake_strip.h)
 
     // The least and the largest gain of waves in a rectangle, or beyond.
     struct Gains {

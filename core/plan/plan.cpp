@@ -20,6 +20,7 @@
 #include "core/plan/taps.h"
 #include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
+#include "core/spectrum/dispersion.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 
@@ -109,7 +110,8 @@ FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool
     FieldSet wanted;
     const FieldSet zero = cascade.choppiness > 0.0 ? FieldSet() : horizontal_fields();
     const auto derivatives = [&](const FieldSet& fields) {
-        return blends || plan.masks ? fields | (gradient_fields(fields) & ~plan.dropped) : fields;
+        return blends || plan.masks || cascade.vessel ? fields | (gradient_fields(fields) & ~plan.dropped)
+                                                      : fields;
     };
     for (const PlannedQuery& planned : plan.queries) {
         const auto uses = [&](const std::vector<int>& levels) {
@@ -152,6 +154,8 @@ std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const
 
 void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
+    // A vessel's shortest waves are next to nothing.
+    const double of_vessels = std::max(0.7 * plan.knobs.oversampling, std::min(plan.knobs.oversampling, 1.3));
     constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
@@ -191,9 +195,10 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.fields = wanted;
         grid.radius = radius;
         const double oversampling =
-            at.is_of_light ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
-                                                plan.knobs.spline_taps, plan.knobs.light_oversampling)
-                           : plan.knobs.oversampling;
+            at.is_of_light   ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
+                                                  plan.knobs.spline_taps, plan.knobs.light_oversampling)
+            : cascade.vessel ? of_vessels
+                             : plan.knobs.oversampling;
         grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
         // So fine that the tile's offsets are whole nodes.
@@ -428,6 +433,18 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
             cascade.hero_radius = std::min(static_cast<int>(std::ceil(end)) + 1, cascade.resolution / 2);
             cascade.mode_radius = std::max(cascade.mode_radius, cascade.hero_radius);
         }
+    for (VesselPlan& vessel : plan_vessels(scene)) {
+        CascadePlan cascade;
+        cascade.size_m = vessel.size_m;
+        cascade.resolution = 2 * VesselPlan::kRadius;
+        cascade.choppiness = plan.breaking.choppiness.at(kGravity / std::pow(vessel.speed_mps, 2));
+        cascade.k_upper = std::numeric_limits<double>::infinity();
+        cascade.grid_of_level.assign(plan.levels.size(), -1);
+        cascade.radius_of_level.assign(plan.levels.size(), 0);
+        cascade.vessel = std::move(vessel);
+        plan.cascades.push_back(std::move(cascade));
+        add_grids(plan, static_cast<int>(plan.cascades.size()) - 1);
+    }
     return plan;
 }
 
@@ -445,6 +462,7 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     own.knobs.spline_taps = 4;  // a hundredth of a breaking is enough
     own.trains = plan.trains;   // which there are depends on all that is asked of the sea
     own.gusts.reset();          // the whole sea's own
+    own.cascades.resize(own.sea_cascades());
     return own;
 }
 
@@ -507,6 +525,26 @@ std::vector<int> summed_levels(const Plan& plan, const PlannedQuery& planned) {
 bool CascadePlan::moves() const {
     return std::any_of(grids.begin(), grids.end(),
                        [](const Grid& grid) { return (grid.fields & velocity_fields()).any(); });
+}
+
+bool Plan::hides_slopes(int cascade) const {
+    std::set<int> shown;
+    for (const PlannedQuery& planned : queries)
+        if ((planned.query.products & unresolved_products()).any())
+            for (const int level : planned.pixel_levels) shown.insert(cascades[cascade].grid_of_level[level]);
+    return shown.size() > 1;
+}
+
+std::size_t Plan::sea_cascades() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(cascades, [](const CascadePlan& cascade) { return !cascade.vessel; }));
+}
+
+std::size_t Plan::vessel_bytes() const {
+    std::size_t bytes = 0;
+    for (const CascadePlan& cascade : cascades)
+        if (cascade.vessel) bytes += cascade.vessel->bytes(cascade.amplitude_radius());
+    return bytes;
 }
 
 int CascadePlan::amplitude_radius() const {

@@ -24,6 +24,7 @@
 #include "core/plan/query.h"
 #include "core/plan/second_order.h"
 #include "core/plan/trains.h"
+#include "core/plan/vessels.h"
 #include "core/surface/projected_grid.h"
 #include "pelagic/scene.h"
 
@@ -73,6 +74,9 @@ struct CascadePlan {
 
     // Of the waves that heroes must know, whatever is asked for: a hero is the same in every plan. 0 without heroes.
     int hero_radius = 0;
+
+    // Of a vessel's waves, which are none of the spectrum's, and lie within the tile round its middle alone: behind all cascades of the sea.
+    std::optional<VesselPlan> vessel{};
 
     bool moves() const;  // whether somebody asks for velocities
     // Modes within it have amplitudes: the largest of its grids', of its second order and of heroes; 0 without any.
@@ -133,6 +137,10 @@ struct Plan {
 
     // Whether modes have horizontal displacements, or a displacement gradient that decides about breaking.
     bool has_gradients() const;
+    bool hides_slopes(int cascade)
+        const;  // whether somebody asks for those that pixels hide, and some show less than others
+    std::size_t sea_cascades() const;  // those before vessels'
+    std::size_t vessel_bytes() const;  // of each Frame
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
     std::size_t sea_bytes() const;     // held once, shared

@@ -8,6 +8,7 @@
 
 #include "core/plan/effects.h"
 #include "core/plan/masks.h"
+#include "core/plan/vessels.h"
 #include "core/plan/weather.h"
 #include "core/scene/budget.h"
 #include "core/scene/number_keys.h"
@@ -49,6 +50,10 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
         extent.height_m *= masks->largest();
         extent.reach_m *= masks->largest();
         for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();
+    }
+    for (const VesselPlan& vessel : plan_vessels(scene)) {
+        extent.height_m += vessel.highest_m();
+        extent.reach_m += choppiness.largest() * vessel.highest_m();
     }
     return extent;
 }

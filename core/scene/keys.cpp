@@ -403,6 +403,46 @@ void add_waves(Built& out) {
                  .help = "of what breaks, and so of what it leaves: 0 has no foam of its own",
                  .range = limits::kMaskShare,
                  .soft = SoftRange{0.0, 1.0}})),
+        entries<&Waves::vessels>(
+            {.name = "vessels",
+             .help =
+                 "what makes wakes: hulls that move, whose waves lie on the sea; they themselves aren't drawn",
+             .key_parts = kWaves,
+             .most_entries = limits::kVessels,
+             .are_entries_independent = false,
+             .entry_name = "Vessel"},
+            required<&Vessel::path>(
+                {.name = "path",
+                 .help =
+                     "where its middle is: frame, east and north in metres of each key. Before the first it comes along its "
+                     "first course, after the last it goes on",
+                 .accepted = "a string, \"frame east north, frame east north, …\", of two keys or more"}),
+            row<&Vessel::interpolation>(
+                {.name = "interpolation", .help = "of the path between keys: straight, or smooth"}),
+            row<&Vessel::length_m>({.name = "length_m",
+                                    .help = "of the hull at the water",
+                                    .unit = "m",
+                                    .range = limits::kVesselSize_m,
+                                    .soft = SoftRange{1.0, 400.0, true}}),
+            row<&Vessel::beam_m>({.name = "beam_m",
+                                  .help = "its width",
+                                  .unit = "m",
+                                  .range = limits::kVesselSize_m,
+                                  .soft = SoftRange{0.5, 60.0, true}}),
+            row<&Vessel::draught_m>({.name = "draught_m",
+                                     .help = "its depth in the water",
+                                     .unit = "m",
+                                     .range = limits::kVesselSize_m,
+                                     .soft = SoftRange{0.1, 20.0, true}}),
+            row<&Vessel::waves>(
+                {.name = "waves",
+                 .help = "of its waves' amplitude: theory has too much of slow and of planing hulls",
+                 .range = limits::kVesselWaves,
+                 .soft = SoftRange{0.0, 2.0}}),
+            row<&Vessel::foam>({.name = "foam",
+                                .help = "of the coverage of the foam at its bow and behind its stern",
+                                .range = limits::kMaskShare,
+                                .soft = SoftRange{0.0, 1.0}})),
         row<&Waves::trains>(
             {.name = "trains",
              .help = "with trochoid: how many, one from each bin of a geometric progression of wavelengths",

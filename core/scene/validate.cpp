@@ -11,6 +11,7 @@
 
 #include "core/base/constants.h"
 #include "core/scene/cascade_bands.h"
+#include "core/scene/course.h"
 #include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/lens.h"
@@ -579,6 +580,64 @@ void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) 
     }
 }
 
+// A path that a hull could take, in a sea that has a tile for it.
+void check_vessels(SceneChecker& check, const Scene& scene) {
+    const std::vector<Vessel>& vessels = scene.waves.vessels;
+    for (std::size_t i = 0; i < vessels.size(); ++i) {
+        const auto refuse = [&](const std::string& value, const std::string& problem,
+                                const std::string& accepted) {
+            check.refuse({indexed("waves.vessels", i) + ".path", value, problem, accepted});
+        };
+        const auto keys = course_of(vessels[i].path);
+        if (!keys || keys->size() < 2 || keys->size() > limits::kVesselKeys) {
+            refuse(quoted_text(vessels[i].path),
+                   !keys ? "is no list of keys" : "has too few keys, or too many",
+                   "\"frame east north, frame east north, …\", of 2 … " +
+                       std::to_string(limits::kVesselKeys) + " keys");
+            continue;
+        }
+        for (std::size_t k = 0; k < keys->size(); ++k) {
+            const CourseKey &key = (*keys)[k], &before = (*keys)[k > 0 ? k - 1 : 0];
+            const std::string text =
+                number_text(key.frame) + ' ' + number_text(key.east_m) + ' ' + number_text(key.north_m);
+            const double step_s = scene.shot.time_scale * (key.frame - before.frame) / scene.shot.fps;
+            const double way_m = std::hypot(key.east_m - before.east_m, key.north_m - before.north_m);
+            if (!limits::kFrame.holds(key.frame))
+                refuse(text, "is at a frame outside the range", text_of(limits::kFrame));
+            else if (!limits::kCameraCoordinate_m.holds(key.east_m) ||
+                     !limits::kCameraCoordinate_m.holds(key.north_m))
+                refuse(text, "is no place on the sea", text_of(limits::kCameraCoordinate_m) + " m");
+            else if (k > 0 && !(key.frame > before.frame))
+                refuse(text, "does not come after the key before, of frame " + number_text(before.frame),
+                       "rising frames, each once");
+            else if (k > 0 && !(way_m <= limits::kVesselSpeed_mps * step_s))
+                refuse(text,
+                       "is " + number_text(way_m) + " m from the key before, which the sea's " +
+                           number_text(step_s) + " s are too short for",
+                       "at most " + number_text(limits::kVesselSpeed_mps) + " m/s");
+            else
+                continue;
+            break;
+        }
+    }
+    if (vessels.empty()) return;
+    const auto refuse = [&](const char* key, const std::string& value, const std::string& problem,
+                            const std::string& accepted) {
+        check.refuse({key, value, problem, accepted + ", or no waves.vessels"});
+    };
+    if (scene.shot.time_scale == 0.0)
+        refuse("shot.time_scale", "0", "lets the sea stand still, in which waves.vessels move",
+               "a number above 0");
+    if (scene.shot.loop_s > 0.0)
+        refuse("shot.loop_s", number_text(scene.shot.loop_s), "is a loop, which waves.vessels leave", "0");
+    if (scene.waves.model == WaveModel::Trochoid)
+        refuse("waves.model", choice_text(scene.waves.model),
+               "is a sum of trains, and waves.vessels make theirs on grids", "\"fft\"");
+    if (scene.output.cascade_tiles)
+        refuse("output.cascade_tiles", "true",
+               "asks for tiles, which are alike everywhere, and waves.vessels make places differ", "false");
+}
+
 // What calm and rough places can't do yet.
 void check_masks(SceneChecker& check, const Scene& scene) {
     const Waves& waves = scene.waves;
@@ -707,6 +766,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_budget(check, scene.quality);
     check_tiles(check, scene.output, scene.waves);
     check_masks(check, scene);
+    check_vessels(check, scene);
     check_volumes(check, scene);
     return check.take();
 }

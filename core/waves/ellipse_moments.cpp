@@ -32,6 +32,7 @@ std::vector<Band> bands_of(const Plan& plan, const Query& query) {
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
         if (query.only_cascade && *query.only_cascade != c) continue;
         const CascadePlan& cascade = plan.cascades[c];
+        if (cascade.vessel) continue;  // none of the spectrum's
         const double choppiness2 = cascade.choppiness * cascade.choppiness;
         // Resolutions that the plan chose are fine enough for the finest footprint only, and must not decide about
         // coarser ones' bits: their bands count to the end.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
 #include <initializer_list>
 #include <map>
 #include <stdexcept>
@@ -22,6 +24,8 @@ namespace {
 // precision.
 constexpr int kBlockColumns = 16;
 constexpr int kBlockRows = 32;
+// Along the side of a vessel's tile, of the means of its slopes.
+constexpr int kBlocks = 32;
 
 // One FFTW plan per size.
 template <class T>
@@ -42,7 +46,7 @@ const T* from(const Buffer<T>& buffer, std::size_t at) {
 
 // Whether somebody asks for a horizontal field of a cascade whose displacement runs ahead.
 bool leans(const Plan& plan, int cascade) {
-    return plan.lean_rad > 0.0 &&
+    return plan.lean_rad > 0.0 && !plan.cascades[cascade].vessel &&
            std::any_of(plan.cascades[cascade].grids.begin(), plan.cascades[cascade].grids.end(),
                        [](const Grid& grid) { return (grid.fields & horizontal_fields()).any(); });
 }
@@ -128,6 +132,7 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
             grids.push_back(std::move(made));
         }
         grids_.push_back(std::move(grids));
+        if (planned.vessel) vessels_.emplace_back(cascade, *planned.vessel, plan.from->spectrum.dispersion());
         if (planned.second_order)
             second_order_.emplace(sea_, c, transform_of(transforms, planned.second_order->resolution));
         for (int mx = 0; mx < cascade.radius; mx += kBlockColumns) {
@@ -171,12 +176,86 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
         stop_if(cancel);
         executed_lines_ += second_order_->set(time_within_loop_s_);
     }
+    strips_.clear();
+    for (VesselWaves& vessel : vessels_) {
+        vessel.set(t_s, cancel);
+        strips_.emplace_back(vessel.plan(), t_s);
+    }
     executed_lines_ +=
         sum_of_each(blocks_, [&](const Block& block) { return go_on(), transform_columns(block); });
     executed_lines_ += sum_of_each(rows_, [&](const Rows& rows) { return go_on(), transform_rows(rows); });
     executed_transforms_ +=
         std::count_if(rows_.begin(), rows_.end(), [](const Rows& rows) { return rows.first == 0; });
+    const Plan& plan = sea_->plan();
+    for (int c = static_cast<int>(plan.sea_cascades()); c < static_cast<int>(plan.cascades.size()); ++c)
+        for (int g = 0; g < static_cast<int>(plan.cascades[c].grids.size()); ++g)
+            tbb::parallel_for(0, plan.cascades[c].grids[g].resolution, [&](int row) { fade_row(c, g, row); });
+    squares_.assign(vessels_.size(), {});
+    for (std::size_t v = 0; v < vessels_.size(); ++v) {
+        const int c = static_cast<int>(plan.sea_cascades() + v);
+        squares_[v].resize(plan.cascades[c].grids.size());
+        if (plan.hides_slopes(c))
+            tbb::parallel_for(std::size_t(0), squares_[v].size(),
+                              [&](std::size_t g) { squares_[v][g] = squares_of(c, static_cast<int>(g)); });
+    }
     is_set_ = true;
+}
+
+template <class T>
+std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
+    const T *x = samples(cascade, grid, Field::SlopeX), *y = samples(cascade, grid, Field::SlopeY);
+    const int n = sea_->plan().cascades[cascade].grids[grid].resolution;
+    if (!x || !y || n < kBlocks) return {};  // waves as long as blocks
+    std::vector<glm::vec3> sums(static_cast<std::size_t>(kBlocks) * kBlocks, glm::vec3(0.0f));
+    std::vector<int> counts(sums.size());
+    // At nodes, of which a spline's have its coefficients; of fine grids at as many as tell blocks' means.
+    const bool is_spline = sea_->plan().cascades[cascade].grids[grid].sampling == Sampling::Spline;
+    T quintic[6], cubic[4];
+    bspline_weights<6>(T(0), quintic);
+    bspline_weights<4>(T(0), cubic);
+    const T one = T(1);
+    const int spline_taps = sea_->plan().knobs.spline_taps, taps = is_spline ? spline_taps - 1 : 1,
+              before = taps / 2;
+    const T* weights = !is_spline ? &one : spline_taps == 6 ? quintic : cubic;
+    const int step = std::max(1, n / (8 * kBlocks));
+    for (int j = 0; j < n; j += step)
+        for (int i = 0; i < n; i += step) {
+            glm::vec<2, T> slope(T(0));
+            for (int q = 0; q < taps; ++q)
+                for (int p = 0; p < taps; ++p) {
+                    const std::size_t from =
+                        static_cast<std::size_t>((j + q - before + n) % n) * line_stride<T>(n) +
+                        static_cast<std::size_t>((i + p - before + n) % n);
+                    slope += weights[q] * weights[p] * glm::vec<2, T>(x[from], y[from]);
+                }
+            const auto to = static_cast<std::size_t>(j * kBlocks / n * kBlocks + i * kBlocks / n);
+            sums[to] += glm::vec3(slope.x * slope.x, slope.x * slope.y, slope.y * slope.y);
+            ++counts[to];
+        }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= static_cast<float>(counts[i]);
+    return sums;
+}
+
+template <class T>
+glm::dvec3 Frame<T>::hidden_slopes(int cascade, int grid, glm::dvec2 place_m) const {
+    const std::vector<std::vector<glm::vec3>>& of = squares_[vessel_of(cascade)];
+    const auto finest = std::ranges::find_if(of, [](const auto& squares) { return !squares.empty(); });
+    if (finest == of.end()) return glm::dvec3(0.0);
+    const std::vector<glm::vec3>* shown = grid < 0 ? nullptr : &of[static_cast<std::size_t>(grid)];
+    const glm::dvec2 at = place_m * (kBlocks / sea_->plan().cascades[cascade].size_m) - 0.5,
+                     whole = glm::floor(at);
+    const auto inside = [](double block) {
+        return static_cast<std::size_t>(block - std::floor(block / kBlocks) * kBlocks) % kBlocks;
+    };
+    glm::dvec3 sum(0.0);
+    for (const double j : {0.0, 1.0})
+        for (const double i : {0.0, 1.0}) {
+            const std::size_t block = inside(whole.y + j) * kBlocks + inside(whole.x + i);
+            const double weight = (1.0 - std::abs(at.x - whole.x - i)) * (1.0 - std::abs(at.y - whole.y - j));
+            sum += weight * glm::dvec3((*finest)[block] -
+                                       (shown && !shown->empty() ? (*shown)[block] : glm::vec3(0.0f)));
+        }
+    return sum;
 }
 
 template <class T>
@@ -218,6 +297,10 @@ void Frame<T>::advance(const Block& block, Scratch& at) const {
     const std::size_t first = cascade.columns[block.first_mx];
     const Plan& plan = sea_->plan();
     const bool has_rates = plan.cascades[block.cascade].moves() || leans(plan, block.cascade);
+    if (plan.cascades[block.cascade].vessel)
+        return vessels_[vessel_of(block.cascade)].heights(
+            block.first_mx, block.columns, at.waves.re.data(), at.waves.im.data(),
+            has_rates ? at.waves.rate_re.data() : nullptr, has_rates ? at.waves.rate_im.data() : nullptr);
     kernels_.advance({.forward_re = cascade.forward_re.data() + first,
                       .forward_im = cascade.forward_im.data() + first,
                       .backward_re = cascade.backward_re.data() + first,
@@ -408,6 +491,36 @@ long Frame<T>::transform_rows(const Rows& rows) {
 }
 
 template <class T>
+void Frame<T>::fade_row(int cascade, int grid, int row) {
+    const CascadePlan& planned = sea_->plan().cascades[cascade];
+    GridState& state = grids_[cascade][grid];
+    const int n = planned.grids[grid].resolution;
+    const glm::dvec2 middle_m = tile_middle_m(cascade);
+    const auto fade = [&](int node, double middle) {
+        const double turns = static_cast<double>(node) / n - middle / planned.size_m;
+        return tile_fade((turns - std::round(turns)) * planned.size_m, planned.size_m);
+    };
+    const auto line = [&](std::size_t field) {
+        return from(state.planes[field], static_cast<std::size_t>(row) * line_stride<T>(n));
+    };
+    const TileFade y = fade(row, middle_m.y);
+    for (int i = 0; i < n; ++i) {
+        const TileFade x = fade(i, middle_m.x);
+        const T share = static_cast<T>(x.share * y.share);
+        if (share == T(1)) continue;
+        for (const Gradient& gradient : kGradients)  // before what they are derivatives of
+            if (T* to = line(index(gradient.derivative)), *of = line(index(gradient.of)); to && of)
+                to[i] = share * to[i] + of[i] * static_cast<T>(gradient.along_y ? x.share * y.rate_per_m
+                                                                                : x.rate_per_m * y.share);
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (T* values = line(f); values && gradient_fields(FieldSet().set(f)).none()) values[i] *= share;
+    }
+    for (std::size_t f = 0; f < kFieldCount; ++f)
+        if (T* values = line(f))
+            for (std::size_t i = 0; i < kRowSkirt; ++i) values[n + static_cast<int>(i)] = values[i];
+}
+
+template <class T>
 std::size_t Frame<T>::held_bytes() const {
     std::size_t samples = 0;
     for (const std::vector<GridState>& grids : grids_)
@@ -432,6 +545,7 @@ Realisation Frame<T>::realisation(int query, const Footprints& footprints) const
     tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t b) {
         const Block& block = blocks_[b];
         if (asked.only_cascade && *asked.only_cascade != block.cascade) return;
+        if (plan.cascades[block.cascade].vessel) return;
         const Cascade<T>& cascade = sea_->cascades()[block.cascade];
         const double step = kTwoPi / cascade.size_m;
         Scratch& at = scratch();

@@ -5,10 +5,12 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/buffer.h"
 #include "core/plan/grid_layout.h"
+#include "core/plan/wake_strip.h"
 #include "core/scene/limits.h"
 #include "core/waves/kernels.h"
 #include "core/waves/realisation.h"
@@ -16,6 +18,7 @@
 #include "core/waves/sea_over_time.h"
 #include "core/waves/second_order.h"
 #include "core/waves/transform.h"
+#include "core/waves/vessel_waves.h"
 
 namespace pelagic {
 
@@ -51,6 +54,13 @@ class Frame {
         const Buffer<T>& plane = grids_[cascade][grid].planes[index(field)];
         return plane.empty() ? nullptr : plane.data();
     }
+    // Where the tile of a vessel's cascade lies: beyond its half side there are none of its waves.
+    glm::dvec2 tile_middle_m(int cascade) const { return vessels_[vessel_of(cascade)].middle_m(); }
+    // Of a vessel's cascade, the slope variances (xx, xy, yy) round a place in the tile that grid `grid` doesn't show and its finest grid with
+    // slopes does, means over a 32nd of the tile; −1: no grid, which shows none.
+    glm::dvec3 hidden_slopes(int cascade, int grid, glm::dvec2 place_m) const;
+    // The turbulent wakes of vessels, at the frame's time.
+    std::span<const WakeStrip> strips() const { return strips_; }
     // Frees a field's samples after their last use. The frame has no time from then on, and set() throws
     // std::logic_error.
     void release(int cascade, int grid, Field field);
@@ -88,6 +98,9 @@ class Frame {
     struct Scratch;    // of one thread
     struct Scratches;  // of all
 
+    std::size_t vessel_of(int cascade) const {
+        return static_cast<std::size_t>(cascade) - sea_->plan().sea_cascades();
+    }
     Scratch& scratch() const;  // of the calling thread
     void advance(const Block&, Scratch&) const;
     // Adds what pairs of waves add to the heights and their rates, beside those of the waves themselves.
@@ -99,12 +112,20 @@ class Frame {
     // Both return the number of 1-D transforms.
     long transform_columns(const Block&);
     long transform_rows(const Rows&);
+    // The means of a grid's squared slopes over blocks of a vessel's tile.
+    std::vector<glm::vec3> squares_of(int cascade, int grid) const;
+    // Lets a vessel's tile fade to its border: a row of all of a grid's fields.
+    void fade_row(int cascade, int grid, int row);
 
     std::shared_ptr<const Sea<T>> sea_;
     std::shared_ptr<const SeaOverTime<T>> shot_;  // null: the sea is one
     Kernels<T> kernels_;
     std::vector<std::vector<GridState>> grids_;  // by cascade
     std::optional<SecondOrderWaves<T>> second_order_;
+    std::vector<VesselWaves> vessels_;
+    std::vector<std::vector<std::vector<glm::vec3>>>
+        squares_;  // by vessel and grid; the first grid's are the finest's
+    std::vector<WakeStrip> strips_;
     std::vector<Block> blocks_;  // largest first, so that the threads end together
     std::vector<Rows> rows_;
     std::size_t block_modes_ = 0, line_values_ = 0;  // sizes of a scratch's buffers

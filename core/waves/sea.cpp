@@ -105,6 +105,7 @@ Cascade<T> blended(const Cascade<T>& first, const Cascade<T>& second, double sha
     };
     if (!first.chop.empty()) cascade.chop = copy(first.chop);
     cascade.cycles_per_s = copy(first.cycles_per_s);
+    if (first.forward_re.empty()) return cascade;  // a vessel's
     constexpr std::array kAmplitudes{&Cascade<T>::forward_re, &Cascade<T>::forward_im,
                                      &Cascade<T>::backward_re, &Cascade<T>::backward_im};
     const std::size_t count = first.modes();
@@ -241,7 +242,8 @@ template <class T>
 class Sea<T>::Progress {
   public:
     Progress(const BuildWatch& watch, const Plan& plan) : watch_(watch) {
-        for (const CascadePlan& cascade : plan.cascades) all_ += lattice_modes(cascade.mode_radius);
+        for (const CascadePlan& cascade : plan.cascades)
+            if (!cascade.vessel) all_ += lattice_modes(cascade.mode_radius);
     }
     void done(std::size_t modes) {
         stop_if(watch_.cancel);
@@ -315,7 +317,7 @@ void Sea<T>::raise_heroes() {
         const glm::dvec2 place_m(hero.east_m, hero.north_m);
         const double time_s = hero_time_s(scene, hero);
         LocalWaves there = local_waves(trains_, place_m, time_s, ends);
-        for (int c = 0; c < static_cast<int>(cascades_.size()); ++c)
+        for (int c = 0; c < static_cast<int>(plan_.sea_cascades()); ++c)
             there += local_waves(cascades_[c], plan_.cascades[c], tiling_key(seed, c), plan_.lean_rad,
                                  dispersion, place_m, time_s, ends);
         around.push_back(there);
@@ -401,6 +403,25 @@ Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress
     const Dispersion& dispersion = plan_.from->spectrum.dispersion();
     const CascadePlan& planned = plan_.cascades[c];
     Cascade<T> cascade = empty_cascade<T>(planned, plan_.has_gradients());
+    if (planned.vessel) {
+        for (Buffer<T>* values :
+             {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
+            *values = {};
+        const ModeKernels<T> modes = mode_kernels<T>();
+        for (int mx = 0; mx < cascade.radius; ++mx)
+            modes.frequencies(
+                {.mx = mx,
+                 .first_my = -half_height(cascade.radius, mx),
+                 .count = cascade.columns[mx + 1] - cascade.columns[mx],
+                 .step = kTwoPi / planned.size_m,
+                 .dispersion = dispersion,
+                 .loop_s = loop_s_,
+                 .choppiness = planned.choppiness,
+                 .cycles_per_s = cascade.cycles_per_s.data() + cascade.columns[mx],
+                 .chop = cascade.chop.empty() ? nullptr : cascade.chop.data() + cascade.columns[mx]});
+        expected_m0_.push_back(0.0);
+        return cascade;
+    }
     const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, pairs_of(c, breaking));
     const CellEnergies energies(*table_, planned.size_m, planned.k_lower, planned.k_upper);
     const ModeKernels<T> kernels = mode_kernels<T>();

@@ -29,6 +29,7 @@ Scene plain_waves(Scene shot) {
     shot.waves.tiling = Tiling::Periodic;
     shot.waves.second_order = shot.waves.lean_deg = 0.0;
     shot.waves.heroes.clear();
+    shot.waves.vessels.clear();
     return shot;
 }
 

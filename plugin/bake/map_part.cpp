@@ -270,7 +270,9 @@ class MapPart final : public OutputPart {
     // Only if the patch is a common period of every cascade that shows in this map, whatever other outputs
     // show; trains have none, nor have copies at random offsets or places of the world.
     bool patch_is_periodic() const {
-        if (plan_.trains || plan_.masks || scene().waves.tiling == Tiling::Random) return false;
+        if (plan_.trains || plan_.masks || plan_.sea_cascades() < plan_.cascades.size() ||
+            scene().waves.tiling == Tiling::Random)
+            return false;
         const std::vector<int> levels = summed_levels(plan_, plan_.queries[output_.query]);
         for (const CascadePlan& cascade : plan_.cascades) {
             const double periods = scene().surface.size_m / cascade.size_m;

@@ -427,6 +427,10 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                                                   {"k_lower_rad_per_m", cascade.k_lower},
                                                   {"k_upper_rad_per_m", number(cascade.k_upper)},
                                                   {"modes", lattice_modes(cascade.amplitude_radius())}});
+        if (cascade.vessel) {
+            row["of"] = "a vessel";
+            continue;
+        }
         const auto& asked = plan.from->scene.waves.cascades;
         if (!asked.empty() && asked[static_cast<std::size_t>(number_of)].choppiness)
             row["choppiness"] = *asked[static_cast<std::size_t>(number_of)].choppiness;

@@ -4,6 +4,8 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+from mathutils import Vector
+
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
@@ -174,6 +176,30 @@ with checking("a calm place stands at the cursor"):
     away = np.hypot(spots[:, 0] - 16.0, spots[:, 1] + 9.0)
     assert np.allclose(after[away < 8.0], 0.5 * heights[away < 8.0], atol=1e-5)
     assert np.array_equal(after[away > 34.0], heights[away > 34.0]) and (away > 34.0).any()
+
+with checking("a moving object leaves a wake along its path, in the sea's own axes; one that stands still leaves none"):
+    fresh_file()
+    scene = bpy.context.scene
+    sea = add_ocean()
+    sea.location, sea.rotation_euler = (5.0, 2.0, 0.0), (0.0, 0.0, 0.5)
+    bpy.ops.mesh.primitive_cube_add()
+    boat = bpy.context.object
+    boat.scale = 6.0, 2.0, 1.0
+    assert refused(bpy.ops.pelagic.make_wake, "doesn't move")
+    scene.frame_start, scene.frame_end = 1, 121
+    for frame, x in ((1, -20.0), (121, 20.0)):
+        boat.location.x = x
+        boat.keyframe_insert("location", frame=frame)
+    before = numbers(sea.data)
+    bpy.ops.pelagic.make_wake()
+    vessel, = sea.pelagic.waves.vessels
+    keys = [[float(word) for word in key.split()] for key in vessel.path.split(",")]
+    for frame, x, y in keys:
+        scene.frame_set(int(frame))
+        assert (sea.matrix_world.inverted() @ boat.matrix_world.translation - Vector((x, y, boat.location.z))).length < 1e-3
+    assert (keys[0][0], keys[-1][0]) == (1, 121) and (vessel.length_m, vessel.beam_m) == (12.0, 4.0)
+    bpy.context.view_layer.update()
+    assert not np.array_equal(numbers(sea.data)[:, 2], before[:, 2])
 
 with checking("a new ocean brings water, sun and sky; a world of the artist's own stays unless the operator is asked"):
     fresh_file()

@@ -179,6 +179,18 @@ class Draw {
             for (char& letter : name) letter = kLetters[index(kLetters.size())];
             return name;
         }
+        if (key.path == "waves.vessels[].path") {  // up to 50 m between keys
+            std::string path;
+            double frame = integer(-60, 20), east_m = uniform(-60.0, 60.0), north_m = uniform(-60.0, 60.0);
+            for (int keys = integer(2, 5); keys > 0; --keys) {
+                path += (path.empty() ? "" : ", ") + std::to_string(frame) + ' ' + std::to_string(east_m) +
+                        ' ' + std::to_string(north_m);
+                frame += uniform(1.0, 100.0);
+                east_m += chance(0.2) ? 0.0 : uniform(-35.0, 35.0);
+                north_m += chance(0.2) ? 0.0 : uniform(-35.0, 35.0);
+            }
+            return path;
+        }
         throw std::logic_error(key.path + " is a text: say in random_scene.cpp what to draw of it");
     }
 
@@ -396,6 +408,9 @@ class Drawing {
         fit_loop();
         fit_cascades();
         fit_trains();
+        if (number("shot.loop_s") > 0.0 || number("shot.time_scale") == 0.0 ||
+            is("waves.model", std::string("trochoid")))
+            leave_out("waves.vessels");
         fit_camera();
         fit_output();
         // Where all of a sea breaks that gains have raised tenfold, its drops take a minute a frame.

@@ -152,6 +152,15 @@ struct WaveMask {
     double foam = 1.0;                         // 0 … 1, times the coverage of what breaks
 };
 
+// What makes a wake (core/waves/vessel_waves.h). A list of keys of where its middle is: "1 0 0, 48 20 5", frame, east and north [m] of each.
+struct Vessel {
+    std::string path = "1 0 0, 48 10 0";
+    CameraInterpolation interpolation = CameraInterpolation::Smooth;  // between keys
+    double length_m = 25.0, beam_m = 7.0, draught_m = 3.0;            // > 0, of the hull in the water
+    double waves = 1.0;  // ≥ 0, times the amplitude of its waves
+    double foam = 1.0;   // 0 … 1, times the coverage of its foam
+};
+
 struct CascadeSize {
     double size_m = 400.0;               // period, > 0
     int resolution = 512;                // even, 16 … 8192
@@ -173,6 +182,7 @@ struct Waves {
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     std::vector<HeroWave> heroes;
     std::vector<WaveMask> masks;  // where they overlap, their gains multiply
+    std::vector<Vessel> vessels;
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
     int trains = 250;  // 1 … 10000

@@ -42,6 +42,9 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Le
         throw std::invalid_argument("query \"" + planned.query.name +
                                     "\" is of a lattice or of one cascade: "
                                     "a picture needs one of points anywhere in the whole sea");
+    if (plan.sea_cascades() < plan.cascades.size())
+        throw std::invalid_argument(
+            "waves.vessels: the OpenGL preview has no wakes yet; pelagic render shows them, or leave them out");
     const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);
     if ((planned.query.products & least) != least)
         throw std::invalid_argument(

@@ -99,6 +99,16 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) { s.waves.masks = {{.ripples = v}}; }},
         {"waves.masks[0].foam", limits::kMaskShare,
          [](Scene& s, double v) { s.waves.masks = {{.foam = v}}; }},
+        {"waves.vessels[0].length_m", limits::kVesselSize_m,
+         [](Scene& s, double v) { s.waves.vessels = {{.length_m = v}}; }},
+        {"waves.vessels[0].beam_m", limits::kVesselSize_m,
+         [](Scene& s, double v) { s.waves.vessels = {{.beam_m = v}}; }},
+        {"waves.vessels[0].draught_m", limits::kVesselSize_m,
+         [](Scene& s, double v) { s.waves.vessels = {{.draught_m = v}}; }},
+        {"waves.vessels[0].foam", limits::kMaskShare,
+         [](Scene& s, double v) { s.waves.vessels = {{.foam = v}}; }},
+        {"waves.vessels[0].waves", limits::kVesselWaves,
+         [](Scene& s, double v) { s.waves.vessels = {{.waves = v}}; }},
         {"waves.shortest_m", limits::kTrain_m,
          [](Scene& s, double v) {
              s.waves.model = WaveModel::Trochoid;

@@ -56,6 +56,7 @@ constexpr auto kSwitches = std::to_array<Switch>({
          scene.effects.spray_gain = 10.0;
      }},
     {"gusts", [](Scene& scene) { scene.sea.gust_strength = 0.4; }},
+    {"wakes", [](Scene& scene) { scene.waves.vessels = {{}}; }},
     {"calm and rough places",
      [](Scene& scene) { scene.waves.masks = {{.waves = 0.5, .ripples = 0.0, .foam = 0.5}}; }},
 });

@@ -181,7 +181,7 @@ class RandomValues {
                 return entries;
             }
             case KeyType::Text:
-                return key.is_picture ? key.fallback : KeyValue(std::string("A-1_b"));
+                return key.is_picture || key.name == "path" ? key.fallback : KeyValue(std::string("A-1_b"));
             case KeyType::DataFile:
             case KeyType::DataTime:
                 break;

@@ -1,0 +1,53 @@
+// Vessels under way (waves.vessels), as the sea meets them: paths in its time, hulls, and the tile of water that their waves are
+// computed on (core/waves/vessel_waves.h).
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "pelagic/scene.h"
+
+namespace pelagic {
+
+// Where a vessel is. Before its first key it comes along its first course at its first speed, after the last it goes on along the last.
+struct VesselPath {
+    struct Key {
+        double time_s = 0.0;
+        glm::dvec2 place_m{0.0}, velocity_mps{0.0};
+    };
+    std::vector<Key> keys;  // at least two, by rising time
+    bool is_smooth = false;
+
+    glm::dvec2 at(double time_s) const;
+    glm::dvec2 velocity_mps(double time_s) const;
+
+  private:
+    template <class Linear, class Cubic>
+    glm::dvec2 on(double time_s, Linear linear, Cubic cubic) const;
+};
+
+struct VesselPlan {
+    VesselPath path;
+    double length_m = 0.0, beam_m = 0.0, draught_m = 0.0;
+    double waves = 1.0;      // times their amplitude
+    double foam = 1.0;       // times its coverage
+    double speed_mps = 0.0;  // its greatest
+    double size_m = 0.0;     // the tile's side
+    double block_s = 0.0;    // of the lattice of times
+
+    static constexpr int kRadius = 256;    // of modes: the shortest waves are a 256th of the tile
+    static constexpr int kBlocks = 48;     // that are remembered
+    static constexpr int kMostSteps = 8;   // of a block where the vessel turns
+    static constexpr double kEdge = 0.06;  // of the side, at each border: where waves fade to none
+
+    // How high its waves are nowhere [m]: of Froude's numbers from 0.15 to 3 they are up to 1.8 U²B/(gL), and 0.9 of the draught.
+    double highest_m() const;
+    // The tile's, at a time: the vessel is ahead of it, with most of the tile behind.
+    glm::dvec2 middle_m(double time_s) const;
+    static std::size_t bytes(int radius);  // of what is remembered of the modes within
+};
+
+// Those that make waves: not what is slower than its tile can show.
+std::vector<VesselPlan> plan_vessels(const Scene& scene);
+
+}  // namespace pelagic

@@ -1,0 +1,47 @@
+// The turbulent wake of a vessel: a strip behind its stern where foam lies and short waves are damped, and the foam of its bow. All of it
+// by eye but for its form: as wide as (1 + x/x₀)^(1/5) at the way x from the stern (what is recalled of Milgram and others 1993;
+// self-propelled bodies are said to have that and 1/4), foam that fades with its age, in a few seconds where it breaks and in a minute and a half what
+// the propeller beat in. A function of the path and the time alone.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "core/plan/vessels.h"
+
+namespace pelagic {
+
+class WakeStrip {
+  public:
+    WakeStrip(const VesselPlan& plan, double time_s);
+
+    struct Water {
+        double foam = 0.0, age_s = 0.0;  // coverage, 0 … 1, and how long ago it broke
+        double calm = 0.0;               // 0 … 1: how much of short waves' amplitude is damped
+    };
+    // Through a pixel of this footprint [m].
+    Water at(glm::dvec2 place_m, double footprint_m) const;
+    // Whether any of it reaches into a rectangle.
+    bool reaches(glm::dvec2 low_m, glm::dvec2 high_m) const;
+
+  private:
+    // From the bow: where, how far along the path, how long ago the vessel's middle was there, and how fast it was, of a speed that
+    // makes foam.
+    struct Point {
+        glm::dvec2 place_m{0.0};
+        double way_m = 0.0, age_s = 0.0, strength = 0.0;
+    };
+    double half_width_m(double behind_m) const;
+
+    double length_m_, beam_m_, foam_, oldest_s_;
+    std::vector<Point> points_;
+    // Round some successive points and all that they reach, and round all.
+    struct Box {
+        glm::dvec2 low_m{0.0}, high_m{0.0};
+        bool holds(glm::dvec2 place_m) const;
+    };
+    std::vector<Box> boxes_;
+    glm::dvec2 low_m_{0.0}, high_m_{0.0};
+};
+
+}  // namespace pelagic

@@ -1,0 +1,331 @@
+#include "core/waves/vessel_waves.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <glm/geometric.hpp>
+
+#include "core/base/build_watch.h"
+#include "core/base/constants.h"
+#include "core/plan/mode_lattice.h"
+#include "core/waves/sea.h"
+
+namespace pelagic {
+namespace {
+
+constexpr int kTaskColumns = 16;
+
+// ∫ (1 − z²/T²) e^{kz} dz from −T to 0, Wigley's hull below the water [m].
+double below_water_m(double k, double draught_m) {
+    const double q = k * draught_m;
+    if (q < 0.05) return draught_m * (2.0 / 3.0 - q / 4.0 + q * q / 15.0);
+    return draught_m * (1.0 / q - 2.0 / (q * q * q) + std::exp(-q) * (2.0 / (q * q) + 2.0 / (q * q * q)));
+}
+
+double rise(double x) {
+    const double t = std::clamp(x, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+}  // namespace
+
+TileFade tile_fade(double from_m, double size_m) {
+    const double edge_m = VesselPlan::kEdge * size_m;
+    const double t = std::clamp((0.5 * size_m - std::abs(from_m)) / edge_m, 0.0, 1.0);
+    return {rise(t), (from_m < 0.0 ? 6.0 : -6.0) * t * (1.0 - t) / edge_m};
+}
+
+template <class T>
+VesselWaves::VesselWaves(const Cascade<T>& cascade, const VesselPlan& plan, const Dispersion& dispersion)
+    : plan_(plan), kernels_(vessel_kernels()), radius_(cascade.radius), columns_(cascade.columns) {
+    const std::size_t count = cascade.modes();
+    cycles_per_s_.assign(cascade.cycles_per_s.data(), cascade.cycles_per_s.data() + count);
+    for (Buffer<float>* buffer : {&omega_, &depth_, &group_x_, &group_y_, &turn_re_, &turn_im_})
+        *buffer = Buffer<float>(count);
+    for (int n = 0; n < 4; ++n)
+        for (Buffer<float>* buffer : {&cosine_[n], &sine_[n]}) *buffer = Buffer<float>(count);
+    ky_ = Buffer<float>(2 * static_cast<std::size_t>(radius_) - 1);
+    const double step = kTwoPi / plan_.size_m;
+    constexpr double kParabola = 2.0 / 3.0;  // of what is round it
+    const double hull_m =
+        plan_.waves * kParabola * plan_.beam_m * plan_.length_m / (plan_.size_m * plan_.size_m);
+    for (int my = 1 - radius_; my < radius_; ++my)
+        ky_[static_cast<std::size_t>(my + radius_ - 1)] = static_cast<float>(my * step);
+    tbb::parallel_for(0, radius_, [&](int mx) {
+        const int height = half_height(radius_, mx);
+        for (int my = -height; my <= height; ++my) {
+            const std::size_t i = cascade.middle(mx) + static_cast<std::size_t>(my);
+            const double k = step * std::hypot(mx, my), omega = kTwoPi * cycles_per_s_[i];
+            const double group = k > 0.0 ? dispersion.domega_dk(k) / k * step : 0.0;
+            omega_[i] = static_cast<float>(omega);
+            depth_[i] = static_cast<float>(hull_m * below_water_m(k, plan_.draught_m));
+            group_x_[i] = static_cast<float>(group * mx);
+            group_y_[i] = static_cast<float>(group * my);
+            std::complex<double> turn = std::polar(1.0, 0.5 * omega * plan_.block_s / VesselPlan::kMostSteps);
+            for (int n = 3; n >= 0; --n, turn *= turn) {
+                cosine_[n][i] = static_cast<float>(turn.real());
+                sine_[n][i] = static_cast<float>(turn.imag());
+            }
+            turn_re_[i] = static_cast<float>(turn.real());
+            turn_im_[i] = static_cast<float>(turn.imag());
+        }
+    });
+}
+
+VesselWaves::Phases VesselWaves::phases(glm::dvec2 place_m) const {
+    Phases made;
+    // Each by itself: a mode is the same however many there are.
+    const auto powers = [&](double metres, int first, std::vector<float>& re, std::vector<float>& im) {
+        const double turns = metres / plan_.size_m, rest = turns - std::floor(turns);
+        re.resize(static_cast<std::size_t>(radius_ - first) +
+                  Buffer<float>::kSlack);  // kernels read whole vectors
+        im.resize(re.size());
+        for (int m = 0; m < radius_; ++m) {
+            const double phase = -kTwoPi * std::remainder(rest * m, 1.0);
+            const auto at = static_cast<std::size_t>(m - first);
+            re[at] = static_cast<float>(std::cos(phase));
+            im[at] = static_cast<float>(std::sin(phase));
+            if (first == 0 || m == 0) continue;
+            re[at - 2 * static_cast<std::size_t>(m)] = re[at];
+            im[at - 2 * static_cast<std::size_t>(m)] = -im[at];
+        }
+    };
+    powers(place_m.x, 0, made.x_re, made.x_im);
+    powers(place_m.y, 1 - radius_, made.y_re, made.y_im);
+    return made;
+}
+
+PlanePhase VesselWaves::phase(const Phases& of, int mx) const {
+    const auto first = static_cast<std::size_t>(radius_ - 1 - half_height(radius_, mx));
+    const auto x = static_cast<std::size_t>(mx);
+    return {of.x_re[x], of.x_im[x], of.y_re.data() + first, of.y_im.data() + first};
+}
+
+const float* VesselWaves::ky_of(int mx) const {
+    return ky_.data() + (radius_ - 1 - half_height(radius_, mx));
+}
+
+// So many that no straight one is off by more than a small part of the shortest wave.
+int VesselWaves::steps_of(std::int64_t block) const {
+    const double most_m = 0.02 * plan_.size_m / VesselPlan::kRadius,
+                 from_s = static_cast<double>(block) * plan_.block_s;
+    const auto at = [&](int of, int in) { return plan_.path.at(from_s + plan_.block_s * of / in); };
+    const auto are_straight = [&](int steps) {
+        for (int i = 0; i < steps; ++i)
+            for (const int quarter : {1, 2, 3})
+                if (glm::distance(at(4 * i + quarter, 4 * steps),
+                                  glm::mix(at(i, steps), at(i + 1, steps), 0.25 * quarter)) > most_m)
+                    return false;
+        return true;
+    };
+    int steps = 1;
+    while (steps < VesselPlan::kMostSteps && !are_straight(steps)) steps *= 2;
+    return steps;
+}
+
+VesselWaves::Leg VesselWaves::leg(double from_s, double step_s, int steps) const {
+    Leg made;
+    made.from_s = from_s;
+    made.end_s = from_s + steps * step_s;
+    made.table = std::countr_zero(static_cast<unsigned>(
+        std::clamp(static_cast<int>(std::lround(plan_.block_s / step_s)), 1, VesselPlan::kMostSteps)));
+    const VesselPath& path = plan_.path;
+    const glm::dvec2 end_m = path.at(made.end_s);
+    made.middle_m = path.at(0.5 * (from_s + made.end_s));
+    made.place = phases(end_m);
+    for (int i = 0; i < steps; ++i) {
+        const double begin_s = from_s + i * step_s;
+        const glm::dvec2 a = path.at(begin_s), b = i + 1 < steps ? path.at(begin_s + step_s) : end_m;
+        Step& step = made.steps.emplace_back();
+        step.velocity_mps = (b - a) / step_s;
+        const glm::dvec2 velocity = path.velocity_mps(begin_s + 0.5 * step_s);
+        if (glm::length(velocity) > 0.0) step.along = glm::normalize(velocity);
+        step.place = phases(0.5 * (a + b) - end_m);
+        step.half_way = phases(0.5 * (a - b));
+        step.bow = phases(-0.5 * plan_.length_m * step.along);
+        step.board = phases(0.5 * plan_.beam_m * glm::dvec2(step.along.y, -step.along.x));
+    }
+    return made;
+}
+
+HullArgs VesselWaves::hull(const Step& step, int mx) const {
+    return {.along_x = static_cast<float>(step.along.x),
+            .along_y = static_cast<float>(step.along.y),
+            .half_length_m = static_cast<float>(0.5 * plan_.length_m),
+            .half_beam_m = static_cast<float>(0.5 * plan_.beam_m),
+            .depth = depth_.data() + first_of(mx),
+            .bow = phase(step.bow, mx),
+            .board = phase(step.board, mx)};
+}
+
+void VesselWaves::sum_up(const Leg& leg, int mx, const float* cosine, const float* sine,
+                         const Sums& sums) const {
+    const std::size_t count = count_of(mx);
+    for (float* sum : {sums.later_re, sums.later_im, sums.earlier_re, sums.earlier_im})
+        std::fill_n(sum, count, 0.0f);
+    for (const Step& step : leg.steps)
+        kernels_.stretch({.count = count,
+                          .kx = static_cast<float>(mx * kTwoPi / plan_.size_m),
+                          .ux = static_cast<float>(step.velocity_mps.x),
+                          .uy = static_cast<float>(step.velocity_mps.y),
+                          .half_s = static_cast<float>(0.5 * (leg.end_s - leg.from_s) /
+                                                       static_cast<double>(leg.steps.size())),
+                          .ky = ky_of(mx),
+                          .omega = omega_.data() + first_of(mx),
+                          .cosine = cosine,
+                          .sine = sine,
+                          .place = phase(step.place, mx),
+                          .half_way = phase(step.half_way, mx),
+                          .hull = hull(step, mx),
+                          .later_re = sums.later_re,
+                          .later_im = sums.later_im,
+                          .earlier_re = sums.earlier_re,
+                          .earlier_im = sums.earlier_im});
+}
+
+void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
+    t_s_ = t_s;
+    const auto last = static_cast<std::int64_t>(std::floor(t_s / plan_.block_s)),
+               first = last - VesselPlan::kBlocks;
+    std::erase_if(blocks_, [&](const auto& block) { return block.first < first || block.first >= last; });
+    std::vector<Leg*> missing;
+    order_.clear();
+    for (std::int64_t b = first; b < last; ++b) {
+        auto found = blocks_.find(b);
+        if (found == blocks_.end()) {
+            const double from_s = static_cast<double>(b) * plan_.block_s;
+            const int steps = steps_of(b);
+            found = blocks_.emplace(b, leg(from_s, plan_.block_s / steps, steps)).first;
+            for (Buffer<float>& sum : found->second.sums) sum = Buffer<float>(omega_.size());
+            missing.push_back(&found->second);
+        }
+        order_.push_back(&found->second);
+    }
+    const int tasks = (radius_ + kTaskColumns - 1) / kTaskColumns;
+    try {
+        tbb::parallel_for(0, tasks * static_cast<int>(missing.size()), [&](int task) {
+            stop_if(cancel);
+            Leg& leg = *missing[static_cast<std::size_t>(task / tasks)];
+            const int from = task % tasks * kTaskColumns, end = std::min(from + kTaskColumns, radius_);
+            // A column's kernels write beyond its end, where the next one's values are not yet.
+            for (int mx = from; mx < end; ++mx) {
+                const std::size_t at = first_of(mx), count = count_of(mx);
+                thread_local Buffer<float> own[4];
+                for (Buffer<float>& sum : own)
+                    if (sum.size() < count) sum = Buffer<float>(2 * static_cast<std::size_t>(radius_));
+                sum_up(leg, mx, cosine_[leg.table].data() + at, sine_[leg.table].data() + at,
+                       {own[0].data(), own[1].data(), own[2].data(), own[3].data()});
+                for (int part = 0; part < 4; ++part)
+                    std::copy_n(own[part].data(), count, leg.sums[part].data() + at);
+            }
+        });
+    } catch (...) {
+        blocks_.clear();  // some aren't whole
+        throw;
+    }
+    // Steps on the same lattice: as time goes on, only the last one changes.
+    const double begin_s = static_cast<double>(last) * plan_.block_s, step_s = plan_.block_s / steps_of(last);
+    const int over =
+        static_cast<int>(std::clamp((t_s - begin_s) / step_s, 0.0, VesselPlan::kMostSteps - 1.0));
+    begun_ = leg(begin_s, step_s, over);
+    last_ = leg(begun_.end_s, std::max(t_s - begun_.end_s, 1e-9 * step_s), 1);
+    middle_m_ = plan_.middle_m(t_s);
+}
+
+template <class T>
+void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T* rate_im) const {
+    struct Own {
+        Buffer<float> later_re, later_im, earlier_re, earlier_im, turn_re, turn_im, cosine, sine, now[4];
+    };
+    thread_local Own own;
+    const std::size_t most = 2 * static_cast<std::size_t>(radius_);
+    if (own.sine.size() < most)
+        for (Buffer<float>* buffer :
+             {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im, &own.turn_re, &own.turn_im,
+              &own.cosine, &own.sine, &own.now[0], &own.now[1], &own.now[2], &own.now[3]})
+            *buffer = Buffer<float>(most);
+    const double oldest_s = VesselPlan::kBlocks * plan_.block_s, fading_s = 0.25 * oldest_s;
+    for (int mx = first_mx; mx < first_mx + columns; ++mx) {
+        const std::size_t first = first_of(mx), count = count_of(mx);
+        for (Buffer<float>* sum : {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im})
+            std::fill_n(sum->data(), count, 0.0f);
+        const auto add = [&](const Leg& leg, const float* turn_re, const float* turn_im,
+                             const float* const(&of)[4]) {
+            const glm::dvec2 from_m = leg.middle_m - middle_m_;
+            const double age_s = t_s_ - 0.5 * (leg.from_s + leg.end_s);
+            kernels_.block({.count = count,
+                            .from_x = static_cast<float>(from_m.x),
+                            .from_y = static_cast<float>(from_m.y),
+                            .age_s = static_cast<float>(age_s),
+                            .share = static_cast<float>(rise((oldest_s - age_s) / fading_s)),
+                            .half_m = static_cast<float>((0.5 - 0.25 * VesselPlan::kEdge) * plan_.size_m),
+                            .per_edge_m = static_cast<float>(1.0 / (1.5 * VesselPlan::kEdge * plan_.size_m)),
+                            .place = phase(leg.place, mx),
+                            .group_x = group_x_.data() + first,
+                            .group_y = group_y_.data() + first,
+                            .turn_re = turn_re,
+                            .turn_im = turn_im,
+                            .of_later_re = of[0],
+                            .of_later_im = of[1],
+                            .of_earlier_re = of[2],
+                            .of_earlier_im = of[3],
+                            .later_re = own.later_re.data(),
+                            .later_im = own.later_im.data(),
+                            .earlier_re = own.earlier_re.data(),
+                            .earlier_im = own.earlier_im.data()});
+        };
+        for (const Leg* block : order_)
+            add(*block, turn_re_.data() + first, turn_im_.data() + first,
+                {block->sums[0].data() + first, block->sums[1].data() + first, block->sums[2].data() + first,
+                 block->sums[3].data() + first});
+        const Sums now{own.now[0].data(), own.now[1].data(), own.now[2].data(), own.now[3].data()};
+        const auto add_begun = [&](const Leg& leg, double half_s, int steps) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const double phase = kTwoPi * cycles_per_s_[first + i] * half_s;
+                own.cosine[i] = static_cast<float>(std::cos(phase));
+                own.sine[i] = static_cast<float>(std::sin(phase));
+                own.turn_re[i] = static_cast<float>(std::cos(2.0 * steps * phase));
+                own.turn_im[i] = static_cast<float>(std::sin(2.0 * steps * phase));
+            }
+            sum_up(leg, mx, own.cosine.data(), own.sine.data(), now);
+            add(leg, own.turn_re.data(), own.turn_im.data(),
+                {now.later_re, now.later_im, now.earlier_re, now.earlier_im});
+        };
+        for (const Leg* leg : {&begun_, &last_})
+            if (const auto steps = static_cast<int>(leg->steps.size()); steps > 0)
+                add_begun(*leg, 0.5 * (leg->end_s - leg->from_s) / steps, steps);
+        if (rate_re) {
+            std::fill_n(now.later_re, count, 0.0f);
+            std::fill_n(now.later_im, count, 0.0f);
+            const Step& step = last_.steps.front();
+            kernels_.lift({.count = count,
+                           .kx = static_cast<float>(mx * kTwoPi / plan_.size_m),
+                           .ux = static_cast<float>(step.velocity_mps.x),
+                           .uy = static_cast<float>(step.velocity_mps.y),
+                           .ky = ky_of(mx),
+                           .place = phase(last_.place, mx),
+                           .hull = hull(step, mx),
+                           .re = now.later_re,
+                           .im = now.later_im});
+        }
+        const std::size_t to = first - first_of(first_mx);
+        for (std::size_t i = 0; i < count; ++i) {
+            re[to + i] = static_cast<T>(own.later_re[i] + own.earlier_re[i]);
+            im[to + i] = static_cast<T>(own.later_im[i] + own.earlier_im[i]);
+            if (!rate_re) continue;
+            const float omega = omega_[first + i];
+            rate_re[to + i] = static_cast<T>(omega * (own.earlier_im[i] - own.later_im[i]) + own.now[0][i]);
+            rate_im[to + i] = static_cast<T>(omega * (own.later_re[i] - own.earlier_re[i]) + own.now[1][i]);
+        }
+    }
+}
+
+template VesselWaves::VesselWaves(const Cascade<float>&, const VesselPlan&, const Dispersion&);
+template VesselWaves::VesselWaves(const Cascade<double>&, const VesselPlan&, const Dispersion&);
+template void VesselWaves::heights(int, int, float*, float*, float*, float*) const;
+template void VesselWaves::heights(int, int, double*, double*, double*, double*) const;
+
+}  // namespace pelagic

@@ -1,0 +1,435 @@
+// The waves of vessels (waves.vessels) against Kelvin's far field, an integral over their directions, and against themselves:
+// velocities, slopes and J are those of the positions, a frame alone is that frame of a run, hard paths stay finite.
+#include "core/plan/vessels.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <ctime>
+
+#include "core/effects/sea_at_time.h"
+#include "core/evaluate/bounds.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+// On still water, at 24 frames a second.
+Scene still_water(Vessel vessel) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 0.0;
+    scene.waves.cascades = {{64.0, 16}};
+    scene.waves.vessels = {std::move(vessel)};
+    return scene;
+}
+// Straight along +x, at the world's middle at frame 1.
+Vessel straight(double speed_mps, double length_m = 25.0) {
+    Vessel vessel{.path = "1 0 0, 2401 " + std::to_string(100.0 * speed_mps) + " 0"};
+    vessel.beam_m *= length_m / vessel.length_m;
+    vessel.draught_m *= length_m / vessel.length_m;
+    vessel.length_m = length_m;
+    return vessel;
+}
+
+// Wigley's hull, spread across, in one direction of waves [m³].
+double hull(const Vessel& vessel, double kx, double ky) {
+    const auto parabola = [](double u) {
+        return std::abs(u) < 1e-2 ? 1.0 - u * u / 10.0 : 3.0 * (std::sin(u) - u * std::cos(u)) / (u * u * u);
+    };
+    double below = 0.0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+        const double z = (i + 0.5) / kSteps;
+        below +=
+            vessel.draught_m / kSteps * (1.0 - z * z) * std::exp(-std::hypot(kx, ky) * vessel.draught_m * z);
+    }
+    return 2.0 / 3.0 * vessel.length_m * vessel.beam_m * below * parabola(0.5 * vessel.length_m * kx) *
+           parabola(0.5 * vessel.beam_m * ky);
+}
+
+// Kelvin's far field with its quadrature: the poles of Ŝ (k·U)²/((k·U)² − gk), at k = g/(U cos θ)².
+class FarField {
+  public:
+    FarField(const Vessel& vessel, double speed_mps, double shortest_m) {
+        constexpr int kSteps = 8000;
+        const double k0 = kGravity / (speed_mps * speed_mps),
+                     last = std::acos(std::sqrt(k0 * shortest_m / kTwoPi));
+        for (int i = 0; i < kSteps; ++i) {
+            const double angle = last * (2.0 * (i + 0.5) / kSteps - 1.0),
+                         k = k0 / std::pow(std::cos(angle), 2);
+            kx_.push_back(k * std::cos(angle));
+            ky_.push_back(k * std::sin(angle));
+            weight_.push_back(2.0 * last / kSteps / kPi * k * k * hull(vessel, kx_.back(), ky_.back()));
+        }
+    }
+    // Its imaginary part is the height, its size the envelope.
+    std::complex<double> at(double x, double y) const {
+        std::complex<double> sum;
+        for (std::size_t i = 0; i < kx_.size(); ++i) sum += std::polar(weight_[i], kx_[i] * x + ky_[i] * y);
+        return sum;
+    }
+
+  private:
+    std::vector<double> kx_, ky_, weight_;
+};
+
+double wavelength(double speed_mps) {
+    return kTwoPi * speed_mps * speed_mps / kGravity;
+}
+
+// Where waves are loudest at this distance behind [degrees], by the means over half a wave to either side of f²(x, y).
+template <class Square>
+double loudest_angle(double distance_m, double wave_m, double from_deg, double to_deg, Square square) {
+    constexpr int kAngles = 60, kAlong = 48;
+    double best = -1.0, at = 0.0, before = 0.0, after = 0.0, last = 0.0;
+    bool is_next = false;
+    const double step = (to_deg - from_deg) / kAngles;
+    for (int a = 0; a <= kAngles; ++a) {
+        const double angle = (from_deg + a * step) * kPi / 180.0;
+        double sum = 0.0;
+        for (int i = 0; i < kAlong; ++i) {
+            const double r = distance_m + wave_m * ((i + 0.5) / kAlong - 0.5);
+            sum += square(-r * std::cos(angle), r * std::sin(angle));
+        }
+        if (is_next) after = sum;
+        is_next = false;
+        if (sum > best) {
+            best = sum;
+            before = last;
+            at = from_deg + a * step;
+            is_next = true;
+        }
+        last = sum;
+    }
+    return at + 0.5 * step * (before - after) / (before - 2.0 * best + after);  // of a parabola
+}
+
+TEST(Vessels, MakeKelvinsWaves) {
+    const double speed_mps = 5.0, wave_m = wavelength(speed_mps);
+    const Vessel vessel = straight(speed_mps);
+    const auto frame = frame_of<double>(still_water(vessel), {unfiltered(products(Position))}, 0.0);
+    const VesselPlan& plan = *frame.sea().plan().cascades.back().vessel;
+    const FarField far(vessel, speed_mps, plan.size_m / VesselPlan::kRadius);
+    for (const double waves : {5.0, 10.0, 20.0}) {
+        std::vector<glm::dvec2> rest;
+        for (int i = -60; i <= 60; ++i)
+            rest.push_back(waves * wave_m * glm::dvec2(-std::cos(0.007 * i), std::sin(0.007 * i)));
+        const auto values = sample(frame, 0, rest).vectors(Position);
+        double error = 0.0, all = 0.0;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const double said = far.at(rest[i].x, rest[i].y).imag();
+            error += std::pow(values[i].z - said, 2);
+            all += said * said;
+        }
+        EXPECT_LT(std::sqrt(error / all), 0.008) << waves;
+    }
+    for (const double waves : {10.0, 20.0}) {
+        const double said = loudest_angle(waves * wave_m, wave_m, 15.0, 21.0, [&](double x, double y) {
+            return std::pow(far.at(x, y).imag(), 2);
+        });
+        std::vector<glm::dvec2> rest;
+        loudest_angle(waves * wave_m, wave_m, 15.0, 21.0,
+                      [&](double x, double y) { return rest.emplace_back(x, y), 0.0; });
+        const auto values = sample(frame, 0, rest).vectors(Position);
+        std::size_t next = 0;
+        const double found = loudest_angle(waves * wave_m, wave_m, 15.0, 21.0,
+                                           [&](double, double) { return std::pow(values[next++].z, 2); });
+        EXPECT_NEAR(found, said, 0.3) << waves;
+        RecordProperty("loudest_at_" + std::to_string(static_cast<int>(waves)),
+                       std::to_string(found) + " of " + std::to_string(said));
+    }
+}
+
+// Along the path behind: from one fall through 0 to another.
+TEST(Vessels, DragWavesOfTheirOwnSpeed) {
+    for (const double speed_mps : {3.5, 6.0}) {
+        const double wave_m = wavelength(speed_mps);
+        const auto frame =
+            frame_of<float>(still_water(straight(speed_mps)), {unfiltered(products(Position))}, 7.3);
+        constexpr int kPoints = 4000;
+        std::vector<glm::vec2> rest;
+        for (int i = 0; i < kPoints; ++i)
+            rest.emplace_back(7.3 * speed_mps - wave_m * (6.0 + 14.0 * i / kPoints), 0.0);
+        const auto values = sample(frame, 0, rest).vectors(Position);
+        std::vector<double> falls;
+        for (std::size_t i = 1; i < values.size(); ++i)
+            if (values[i - 1].z > 0.0f && values[i].z <= 0.0f) falls.push_back(values[i].x);
+        ASSERT_GT(falls.size(), 10u);
+        const double found = (falls.front() - falls.back()) / static_cast<double>(falls.size() - 1);
+        EXPECT_NEAR(found / wave_m, 1.0, 0.01) << speed_mps;
+    }
+}
+
+// Fast ones leave a narrow wake (Darmon, Benzaquen & Raphaël 2014), the integral's.
+TEST(Vessels, LeaveANarrowWakeWhenFast) {
+    constexpr double kLengths = 32.0, kWave = 16.0, kLength_m = 6.0;
+    double before = 19.47;
+    for (const double froude : {0.8, 1.2, 1.7, 2.2}) {
+        const double speed_mps = froude * std::sqrt(kGravity * kLength_m), about = 13.0 / froude;
+        const Vessel vessel = straight(speed_mps, kLength_m);
+        const auto frame = frame_of<float>(still_water(vessel), {unfiltered(products(Position))}, 0.0);
+        const FarField far(vessel, speed_mps,
+                           frame.sea().plan().cascades.back().size_m / VesselPlan::kRadius);
+        const auto angle = [&](const auto& square) {
+            return loudest_angle(kLengths * kLength_m, kWave * kLength_m, 0.4 * about, 1.6 * about, square);
+        };
+        std::vector<glm::vec2> rest;
+        angle([&](double x, double y) { return rest.emplace_back(x, y), 0.0; });
+        const auto values = sample(frame, 0, rest).vectors(Position);
+        std::size_t next = 0;
+        const double found = angle([&](double, double) { return std::pow(values[next++].z, 2); });
+        const double said = angle([&](double x, double y) { return std::pow(far.at(x, y).imag(), 2); });
+        EXPECT_NEAR(found / said, 1.0, 0.03) << froude;
+        EXPECT_LT(found, 0.9 * before);
+        before = found;
+    }
+}
+
+// A turn under way, with starts and stops, in a sea with masks.
+Vessel turning() {
+    return {.path = "-400 -90 -30, 1 -20 0, 180 15 10, 360 20 45, 540 -10 60",
+            .length_m = 10.0,
+            .beam_m = 3.0,
+            .draught_m = 1.2};
+}
+
+TEST(Vessels, HaveTheNormalsTheJacobianAndTheVelocityOfTheirPositions) {
+    constexpr double kStep = 2e-3, kLater_s = 0.01, kNow_s = 7.3;
+    const ProductSet wanted = products(Position, Normal, Velocity, Product::JacobianMoments);
+    Scene scene = still_water(turning());
+    scene.quality.level = QualityLevel::Reference;
+    scene.waves.masks = {{.waves = 0.0}};  // of the sea's own waves
+    const auto rest = random_points<double>(120.0, 3000);
+    for (const double footprint_m : {0.0, 1.5}) {
+        auto frame = frame_of<double>(scene, {filtered(wanted, footprint_m)}, kNow_s);
+        const auto moved = [&](glm::dvec2 by) {
+            std::vector<glm::dvec2> there = rest;
+            for (glm::dvec2& x : there) x += by;
+            return sample(frame, 0, there).vectors(Position);
+        };
+        const auto east = moved({kStep, 0.0}), west = moved({-kStep, 0.0}), north = moved({0.0, kStep}),
+                   south = moved({0.0, -kStep});
+        const auto answers = sample(frame, 0, rest);
+        frame.set(kNow_s + kLater_s);
+        const auto after = moved({});
+        frame.set(kNow_s - kLater_s);
+        const auto before = moved({});
+        double slopes = 0.0, speeds = 0.0, speed_error = 0.0;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const glm::dvec3 across =
+                glm::cross((east[i] - west[i]) / (2.0 * kStep), (north[i] - south[i]) / (2.0 * kStep));
+            ASSERT_NEAR(glm::length(answers.vectors(Normal)[i] - glm::normalize(across)), 0.0, 1e-3) << i;
+            ASSERT_NEAR(answers.vectors(Product::JacobianMoments)[i].x, across.z, 1e-3) << i;
+            const glm::dvec3 velocity = (after[i] - before[i]) / (2.0 * kLater_s);
+            speed_error += std::pow(glm::length(answers.vectors(Velocity)[i] - velocity), 2);
+            speeds += std::pow(glm::length(velocity), 2);
+            slopes = std::max(slopes, 1.0 - answers.vectors(Normal)[i].z);
+        }
+        EXPECT_GT(slopes, 0.005);
+        EXPECT_LT(std::sqrt(speed_error / speeds), 1e-3) << footprint_m;
+    }
+}
+
+TEST(Vessels, AreTheSameAloneInARunAndOnOneThread) {
+    Scene scene = still_water(turning());
+    scene.sea.wind_speed_mps = 6.0;
+    const ProductSet wanted = products(Position, Normal, Velocity);
+    const std::vector<Query> queries{unfiltered(wanted)};
+    const auto rest = random_points<float>(300.0, 4000);
+    auto run = frame_of<float>(scene, queries, -3.0);
+    for (const double t_s : {-1.0, 2.0, 90.0, 7.25}) run.set(t_s);
+    const auto of_run = sample(run, 0, rest);
+    const auto is_it = [&](const Frame<float>& frame) {
+        const auto there = sample(frame, 0, rest);
+        for (const Product product : {Position, Normal, Velocity})
+            if (there.vectors(VectorProduct::checked(product)) !=
+                of_run.vectors(VectorProduct::checked(product)))
+                return false;
+        return true;
+    };
+    EXPECT_TRUE(is_it(frame_of<float>(scene, queries, 7.25)));
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const std::clock_t begin = std::clock();
+    auto alone = frame_of<float>(scene, queries, 7.25);
+    const double with_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    EXPECT_TRUE(is_it(alone));
+    scene.waves.vessels.clear();
+    const std::clock_t again = std::clock();
+    auto plain = frame_of<float>(scene, queries, 7.25);
+    const double without_s = static_cast<double>(std::clock() - again) / CLOCKS_PER_SEC;
+    RecordProperty("cpu_s", std::to_string(with_s - without_s));
+    EXPECT_LT(with_s - without_s, 0.6);  // 0.2 where nobody else is at work
+    EXPECT_FALSE(is_it(plain));
+    // Beyond the tile the sea is as it is without, to the bit.
+    const Where<float> far{.origin_m = {3000.0, 0.0}, .cell_m = {}, .pixel_m = {}};
+    EXPECT_EQ(sample(alone, 0, rest, far).vectors(Position), sample(plain, 0, rest, far).vectors(Position));
+}
+
+TEST(Vessels, LieWithinTheirBoundsAndFadeToTheTilesBorder) {
+    Scene scene = still_water(turning());
+    scene.waves.masks = {{.waves = 0.0}};
+    const auto frame = frame_of<float>(scene, {unfiltered(products(Position))}, 6.0);
+    const VesselPlan& plan = *frame.sea().plan().cascades.back().vessel;
+    const glm::dvec2 middle_m = plan.middle_m(6.0);
+    const FrameBounds<float> bounds(frame, 0);
+    const auto rest = random_points<float>(1.1 * plan.size_m, 30000);
+    const auto values =
+        sample(frame, 0, rest, {.origin_m = middle_m, .cell_m = {}, .pixel_m = {}}).vectors(Position);
+    const DisplacementBounds all = bounds.everywhere();
+    double most = 0.0;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const double z = values[i].z, from = std::max(std::abs(rest[i].x), std::abs(rest[i].y)) / plan.size_m;
+        most = std::max(most, std::abs(z));
+        ASSERT_TRUE(all.z.lo <= z && z <= all.z.hi) << all.z.lo << ' ' << z << ' ' << all.z.hi;
+        ASSERT_TRUE(from <= 0.5 || z == 0.0);
+        ASSERT_TRUE(from <= 0.499 || std::abs(z) < 1e-4 * plan.highest_m());
+    }
+    EXPECT_GT(most, 0.1);
+    EXPECT_LT(most, plan.highest_m());
+    for (int i = 0; i < 40; ++i) {
+        const glm::dvec2 low = middle_m + glm::dvec2(rest[static_cast<std::size_t>(i)]), high = low + 7.0;
+        const DisplacementBounds part = bounds.region({low, high}, 64);
+        std::vector<glm::vec2> inside;
+        for (int j = 0; j < 64; ++j) inside.emplace_back(j % 8, j / 8);
+        for (const glm::vec3& at :
+             sample(frame, 0, inside, {.origin_m = low, .cell_m = {}, .pixel_m = {}}).vectors(Position))
+            ASSERT_TRUE(part.z.lo <= at.z && at.z <= part.z.hi) << i;
+    }
+}
+
+TEST(Vessels, StayFiniteOnHardPaths) {
+    const auto rest = random_points<float>(200.0, 2000);
+    for (const char* path : {"1 0 0, 100 0 0", "1 5 5, 10 5 5, 20 9 5, 30 9 5", "1 0 0, 1000 8 0",
+                             "1 0 0, 5 2 0, 9 0 0, 13 2 0, 17 0 0", "1 1e6 -1e6, 24 1e6 -999990",
+                             "1 0 0, 2 4 0, 3 0 1, 4 -4 0, 5 0 -1"})
+        for (const CameraInterpolation by : {CameraInterpolation::Linear, CameraInterpolation::Smooth})
+            for (const double t_s : {-1e6, -0.1, 0.0, 1e-9, 3.0, 1e5}) {
+                Scene scene = still_water({.path = path, .interpolation = by});
+                if (t_s != 3.0 && t_s != 0.0 && by == CameraInterpolation::Linear) continue;
+                const auto frame =
+                    frame_of<float>(scene, {unfiltered(products(Position, Normal, Velocity))}, t_s);
+                const auto there = sample(frame, 0, rest);
+                for (const Product product : {Position, Normal, Velocity})
+                    for (const glm::vec3& value : there.vectors(VectorProduct::checked(product)))
+                        ASSERT_TRUE(std::isfinite(value.x + value.y + value.z)) << path << ' ' << t_s;
+            }
+    Scene rising = still_water({});
+    rising.keyed = {{"sea.wind_speed_mps", {.keys = {{1, 5.0}, {100, 12.0}}}}};
+    Frame<float> frame(std::make_shared<const SeaOverTime<float>>(
+        make_plan(rising, {unfiltered(products(Position, Velocity))})));
+    frame.set(2.0);
+    for (const glm::vec3& value : sample(frame, 0, rest).vectors(Velocity))
+        ASSERT_TRUE(std::isfinite(value.x + value.y + value.z));
+    EXPECT_EQ(
+        make_plan(still_water({.path = "1 0 0, 100 0 0"}), {unfiltered(products(Position))}).vessel_bytes(),
+        0u);
+}
+
+// Of the squares of the slopes what is shown and what is hidden: over the tile the same sum at each footprint.
+TEST(Vessels, ShowAndHideTheirSlopes) {
+    Query query = unfiltered(products(Normal, SlopeVarianceAtRest));
+    query.cell_m = query.pixel_m = {0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+    Scene scene = still_water(straight(5.0));
+    scene.waves.choppiness = 0.0;
+    scene.effects.whitecaps = false;
+    const auto frame = frame_of<float>(scene, {query}, 0.0);
+    const VesselPlan& plan = *frame.sea().plan().cascades.back().vessel;
+    std::vector<glm::vec2> rest;
+    constexpr int kSide = 320;
+    for (int i = 0; i < kSide * kSide; ++i)
+        rest.push_back(static_cast<float>(plan.size_m) *
+                       (glm::vec2(i % kSide, i / kSide) / static_cast<float>(kSide) - 0.5f));
+    const auto all = [&](float footprint_m) {
+        Where<float> where{.origin_m = plan.middle_m(0.0), .cell_m = {}, .pixel_m = {}};
+        where.cell_m = where.pixel_m = std::vector<float>(rest.size(), footprint_m);
+        const auto values = sample(frame, 0, rest, where);
+        double shown = 0.0, hidden = 0.0;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const glm::vec3 n = values.vectors(Normal)[i], of = values.vectors(SlopeVarianceAtRest)[i];
+            shown += (n.x * n.x + n.y * n.y) / (n.z * n.z);
+            hidden += of.x + of.y;
+        }
+        return std::pair(shown, hidden);
+    };
+    const auto [whole, none] = all(0.0f);
+    EXPECT_LT(none, 1e-3 * whole);
+    for (const float footprint_m : {0.5f, 1.0f, 2.0f, 4.0f, 8.0f, 16.0f}) {
+        const auto [shown, hidden] = all(footprint_m);
+        EXPECT_NEAR((shown + hidden) / whole, 1.0, 0.03) << footprint_m << ' ' << shown / whole;
+    }
+    // Between levels a wave that the coarser one half shows is taken for one that it doesn't.
+    const auto [shown, hidden] = all(2.8f);
+    EXPECT_NEAR((shown + hidden) / whole, 1.0, 0.08) << shown / whole;
+}
+
+// White behind the stern and less of it farther on, wider there; ripples are damped; beside it all is as it was.
+TEST(Vessels, LeaveAStripOfFoamAndCalm) {
+    Scene scene = still_water(straight(5.0));
+    scene.sea.wind_speed_mps = 5.0;
+    scene.sea.fetch_m = 3e3;
+    scene.quality.level = QualityLevel::Draft;
+    const Query query = filtered(foam_products() | products(SlopeVarianceAtRest), 0.5);
+    const auto there = [&](const std::vector<glm::vec2>& rest) {
+        SeaAtTime<float> sea(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
+        sea.set(0.0);
+        ProductArrays<float> values;
+        values.resize(query.products, rest.size());
+        sea.evaluate(0, {.origin_m = {}, .count = rest.size(), .rest_m = {rest.data()}}, values.results());
+        return values;
+    };
+    const std::vector<glm::vec2> rest{{-16.0f, 0.0f},  {-60.0f, 0.0f},  {-300.0f, 0.0f}, {-16.0f, 12.0f},
+                                      {-300.0f, 5.5f}, {-60.0f, 40.0f}, {60.0f, 0.0f},   {10.0f, 1.6f}};
+    const auto with = there(rest);
+    scene.waves.vessels.clear();
+    const auto without = there(rest);
+    const auto foam = [&](std::size_t i) { return with.numbers(Coverage)[i] - without.numbers(Coverage)[i]; };
+    EXPECT_GT(foam(0), 0.6f);
+    EXPECT_NEAR(foam(1), 0.55f, 0.06f);
+    EXPECT_LT(foam(2), 0.6f * foam(1));
+    EXPECT_LT(foam(3), 0.02f);
+    EXPECT_GT(foam(4), 0.02f);
+    EXPECT_GT(foam(7), 0.2f);  // the bow's
+    for (const std::size_t i : {5, 6}) EXPECT_NEAR(foam(i), 0.0f, 1e-5f);
+    EXPECT_NEAR(with.numbers(Product::FoamAge)[1], 12.0f, 0.5f);
+    const auto hidden = [&](const ProductArrays<float>& of, std::size_t i) {
+        return of.vectors(SlopeVarianceAtRest)[i].x;
+    };
+    EXPECT_LT(hidden(with, 1), 0.8f * hidden(without, 1));
+    EXPECT_EQ(hidden(with, 5), hidden(without, 5));
+}
+
+TEST(Vessels, AreRefusedWhereTheyCannotBe) {
+    const auto first = [](Scene scene) {
+        const auto problems = validate(scene);
+        return problems.empty() ? std::string() : text_of(problems.front());
+    };
+    const auto of_path = [&](const char* path) { return first(still_water({.path = path})); };
+    EXPECT_EQ(first(still_water({})), "");
+    EXPECT_NE(of_path("").find("is no list of keys"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0").find("too few keys"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0, 2 nan 0").find("is no list of keys"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0, 2 1").find("is no list of keys"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0, 1 5 0").find("does not come after"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0, 2 50 0").find("too short"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0, 2 2e9 0").find("no place on the sea"), std::string::npos);
+    Scene scene = still_water({});
+    scene.shot.time_scale = 0.0;
+    EXPECT_NE(first(scene).find("waves.vessels"), std::string::npos);
+    scene = still_water({});
+    scene.shot.loop_s = 2.0;
+    EXPECT_NE(first(scene).find("is a loop"), std::string::npos);
+    scene = still_water({});
+    scene.waves.model = WaveModel::Trochoid;
+    EXPECT_NE(first(scene).find("waves.model"), std::string::npos);
+    scene = still_water({});
+    scene.output.cascade_tiles = true;
+    EXPECT_NE(first(scene).find("cascade_tiles"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <random>
@@ -36,6 +37,7 @@ std::optional<Fragment> fragment_of(std::string_view rest) {
     if (!take(fragment.first, "-") || !take(fragment.last, ".") || !take(fragment.frames, ".") ||
         !rest.ends_with(".json"))
         return {};
+    if (fragment.frames < 0 || fragment.frames > std::int64_t{fragment.last} - fragment.first + 1) return {};
     return fragment;
 }
 
@@ -52,9 +54,10 @@ void add(Frames& frames, int number, FrameRecord frame) {
 }
 
 // Reads a fragment's frames; version: the record's, empty: not known.
-void read_fragment(const fs::path& record, const Fragment& fragment, const std::string& version,
-                   Frames& frames, RecordsReading& found, const std::atomic<bool>* cancel) {
+void read_fragment(const fs::path& record, Fragment fragment, const std::string& version, Frames& frames,
+                   RecordsReading& found, const std::atomic<bool>* cancel) {
     std::vector<std::pair<int, FrameRecord>> read;
+    fragment.identity = files::identity_of(fragment.file);
     const RecordReading reading = read_record(
         fragment.file, [&](int number, FrameRecord frame) { read.emplace_back(number, std::move(frame)); },
         cancel);
@@ -71,6 +74,7 @@ void read_fragment(const fs::path& record, const Fragment& fragment, const std::
     if (!reading.altered.empty())
         found.damaged.push_back(path + " was altered in what it says about the frames " +
                                 frames_text(reading.altered));
+    if (!reading.is_blocked) found.read.push_back(std::move(fragment));
 }
 
 }  // namespace
@@ -141,36 +145,37 @@ RecordsReading read_records(const fs::path& record, const std::function<void(int
 RecordsReading read_some(const fs::path& record, std::span<const int> frames,
                          const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
                          const std::atomic<bool>* cancel) {
-    if (!is_read_in_part(record, frames))
-        return read_records(
-            record,
-            [&](int number, FrameRecord frame) {
-                numbers.insert(number);
-                take(number, std::move(frame));
-            },
-            cancel);
+    const auto take_numbered = [&](int number, FrameRecord frame) {
+        if (!frame.is_stale) numbers.insert(number);
+        take(number, std::move(frame));
+    };
+    if (frames.size() > kFewFrames) return read_records(record, take_numbered, cancel);
     RecordsReading found;
-    Frames read;
-    static_cast<RecordReading&>(found) = read_frames(
-        record, frames, [&](int number, FrameRecord frame) { read[number] = std::move(frame); }, numbers,
-        cancel);
+    Frames theirs;
     const auto is_among = [&](int first, int last) {
         const auto at = std::lower_bound(frames.begin(), frames.end(), first);
         return at != frames.end() && *at <= last;
     };
+    // Before the record: one that is taken into it meanwhile is seen there.
+    std::set<int> ignored;
+    std::string version;
     for (const Fragment& fragment : fragments_of(record)) {
-        const bool has_all = std::int64_t{fragment.last} - fragment.first + 1 == fragment.frames;
-        if (has_all && !is_among(fragment.first, fragment.last)) {
-            for (int number = fragment.first; number <= fragment.last; ++number) numbers.insert(number);
-            continue;
-        }
-        Frames theirs;
-        if (fragment.frames > 0) read_fragment(record, fragment, found.version, theirs, found, cancel);
-        for (auto& [number, frame] : theirs) {
-            numbers.insert(number);
-            if (std::binary_search(frames.begin(), frames.end(), number)) add(read, number, std::move(frame));
-        }
+        if (fragment.frames == 0) continue;
+        if (fragment.is_without_gaps())
+            for (int number = fragment.first; number <= fragment.last; ++number)
+                numbers.insert(numbers.end(), number);
+        if (!is_among(fragment.first, fragment.last)) continue;
+        if (version.empty())
+            version = read_frames(
+                          record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
+                          .version;
+        read_fragment(record, fragment, version, theirs, found, cancel);
     }
+    Frames read;
+    static_cast<RecordReading&>(found) = read_frames(
+        record, frames, [&](int number, FrameRecord frame) { read[number] = std::move(frame); }, numbers,
+        cancel);
+    for (auto& [number, frame] : theirs) add(read, number, std::move(frame));
     for (auto& [number, frame] : read) take(number, std::move(frame));
     return found;
 }

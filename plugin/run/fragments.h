@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <set>
@@ -20,10 +21,16 @@ namespace pelagic {
 struct Fragment {
     std::filesystem::path file{};
     int first = 0, last = 0, frames = 0;
-    files::FileIdentity identity{};
+    files::FileIdentity identity{};  // when it was read
+
+    // Of a wrong name that says a billion frames, nobody counts them.
+    bool is_without_gaps() const {
+        constexpr int kMost = 1 << 20;
+        return frames <= kMost && std::int64_t{last} - first + 1 == frames;
+    }
 };
 
-// The fragments beside the record DIR/NAME.json, those that were changed first before the others.
+// The fragments beside the record DIR/NAME.json, as the folder lists them.
 std::vector<Fragment> fragments_of(const std::filesystem::path& record);
 
 // A name for another one.
@@ -37,13 +44,14 @@ std::string new_fragment_id();
 struct RecordsReading : RecordReading {
     std::vector<std::string> damaged{};  // fragments, by path below DIR, as lines: "record/… is damaged"
     bool has_changed = false;            // a fragment went while it was read: it may be in the record now
+    std::vector<Fragment> read{};  // those that could be read; of damaged ones what is as it was written
 };
 RecordsReading read_records(const std::filesystem::path& record,
                             const std::function<void(int, FrameRecord)>& take,
                             const std::atomic<bool>* cancel = nullptr);
 
-// The same of these frames alone, rising. Of a record that isn't small it parses no other frame, looks at none for damage, and
-// tells of none what is stale. numbers: of all frames that are recorded.
+// The same of these frames. Where they are few it reads no fragment whose name says that it has none of them, and of a record that isn't
+// small no other entry; what it reads beside it hands over as well. numbers: of all frames that are recorded and not known as stale.
 RecordsReading read_some(const std::filesystem::path& record, std::span<const int> frames,
                          const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
                          const std::atomic<bool>* cancel = nullptr);

@@ -224,6 +224,12 @@ void take_entry(const std::string& number, const Json& entry, RecordReading& rea
     take(frame, std::move(record));
 }
 
+void remove_fragment(const std::filesystem::path& fragment) {
+    std::error_code ignored;
+    std::filesystem::remove(fragment, ignored);
+    std::filesystem::remove(fragment.parent_path(), ignored);  // if it is empty
+}
+
 // The bytes of a file for a parser. Ends where a single frame would be larger than any is, so that a file of
 // anything in the record's place fills no memory and takes no time.
 class Bytes final : public std::streambuf {
@@ -310,8 +316,7 @@ RecordReading read_record(const std::filesystem::path& file,
 }
 
 bool is_read_in_part(const std::filesystem::path& file, std::span<const int> frames) {
-    constexpr std::size_t kFew = 16;
-    return frames.size() <= kFew && files::file_size(file).value_or(0) >= kSmallRecord;
+    return frames.size() <= kFewFrames && files::file_size(file).value_or(0) >= kSmallRecord;
 }
 
 RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
@@ -323,13 +328,13 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
         return read_record(
             file,
             [&](int number, FrameRecord frame) {
-                numbers.insert(number);
+                if (!frame.is_stale) numbers.insert(number);
                 take(number, std::move(frame));
             },
             cancel);
     };
     constexpr std::uintmax_t kLargest = std::uintmax_t{1}
-                                        << 30;  // [bytes] a million frames: anything may be in its place
+                                        << 30;  // [bytes] 1e5 frames: anything may be in its place
     if (!is_read_in_part(file, frames) || files::file_size(file).value_or(0) > kLargest ||
         !files::carries(file, "{\n  \"pelagic\": "))
         return whole();
@@ -351,7 +356,8 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
         const auto [end, error] = std::from_chars(text.data() + key, text.data() + text.size(), number);
         const auto after = static_cast<std::size_t>(end - text.data());
         if (error != std::errc() || !text.substr(after).starts_with("\": {")) return whole();
-        numbers.insert(number);
+        if (text.substr(after, next - after).find("\"stale\": true") == std::string_view::npos)
+            numbers.insert(numbers.end(), number);
         if (std::binary_search(frames.begin(), frames.end(), number)) {
             const std::size_t last = text.find(kEnd, after);
             const Json entry = parsed(std::string(
@@ -470,8 +476,8 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
         if (there.shot)
             for (const auto& [path, listed] : there.shot->files) files_there[path] = to_json(listed);
         for (const auto& [path, listed] : shot_["files"].items()) files[path] = listed;
-        is_done =
-            (there.version == version_of(shot_) && files_there == files) || merge(file, false) == Merged::Yes;
+        is_done = (there.version == version_of(shot_) && files_there == files) ||
+                  merge(file, Taken::Nothing) == Merged::Yes;
     }
     if (makes_frames) save(file);
 }
@@ -485,10 +491,17 @@ void Record::save(const std::filesystem::path& file) {
     const auto named = numbers.empty() ? fragment_file(file, 0, 0, 0, id_)
                                        : fragment_file(file, *numbers.begin(), *numbers.rbegin(),
                                                        static_cast<int>(numbers.size()), id_);
-    files::ensure_folder(named.parent_path());
-    files::write_atomically(named, [&](const files::ByteSink& sink) {
-        write(sink, [&](const Take& take) { read_record(fragment_, take); });
-    });
+    constexpr int kMostTimes = 10;
+    for (int times = 1;; ++times) try {
+            files::ensure_folder(named.parent_path());
+            files::write_atomically(named, [&](const files::ByteSink& sink) {
+                write(sink, [&](const Take& take) { read_record(fragment_, take); });
+            });
+            break;
+        } catch (const files::FileError& error) {
+            // Whoever took the last fragment away took the folder as well.
+            if (error.code() != std::errc::no_such_file_or_directory || times == kMostTimes) throw;
+        }
     if (named != fragment_) drop_fragment();
     fragment_ = named;
     saved_ = numbers.size();
@@ -515,7 +528,7 @@ void Record::take_in(const std::filesystem::path& file, const files::LockWatch& 
         }
         const files::FolderLock lock(file.parent_path(), waiting);
         if (!is_small && write_static) write_static();
-        const Merged merged = merge(file, !is_small);
+        const Merged merged = merge(file, is_small ? Taken::Ours : Taken::All);
         if (merged == Merged::Yes) return drop_fragment();
         if (merged == Merged::NotWhole) return;
     }
@@ -557,43 +570,40 @@ bool Record::may_be_whole(const std::filesystem::path& file) const {
 }
 
 void Record::drop_fragment() {
-    std::error_code ignored;
-    if (fragment_.empty()) return;
-    std::filesystem::remove(fragment_, ignored);
-    std::filesystem::remove(fragment_.parent_path(), ignored);  // if it is empty
+    if (!fragment_.empty()) remove_fragment(fragment_);
     fragment_.clear();
 }
 
-Record::Merged Record::merge(const std::filesystem::path& file, bool must_be_whole) {
+Record::Merged Record::merge(const std::filesystem::path& file, Taken taken) {
     struct NotWhole {};
     const files::FileIdentity former = files::identity_of(file);
-    std::vector<Fragment> fragments = fragments_of(file);
-    for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
-    bool has_changed = false;
+    RecordsReading reading;
     try {
         const auto made = files::replace_if_same(file, former, [&](const files::ByteSink& sink) {
             const std::int64_t fresh = write(sink, [&](const Take& take) {
-                has_changed = read_records(file, [&](int number, FrameRecord frame) {
-                                  if (is_stale_) frame.is_stale = is_stale_(number, frame);
-                                  take(number, std::move(frame));
-                              }).has_changed;
+                const auto take_marked = [&](int number, FrameRecord frame) {
+                    if (is_stale_) frame.is_stale = is_stale_(number, frame);
+                    take(number, std::move(frame));
+                };
+                if (taken == Taken::Nothing)
+                    read_record(file, take_marked);
+                else
+                    reading = read_records(file, take_marked);
             });
-            if (must_be_whole && (has_changed || fresh <= std::int64_t{last_frame_} - first_frame_))
+            if (taken == Taken::All &&
+                (reading.has_changed || fresh <= std::int64_t{last_frame_} - first_frame_))
                 throw NotWhole();
         });
         if (!made) return Merged::Changed;
     } catch (const NotWhole&) {
-        return has_changed ? Merged::Changed : Merged::NotWhole;
+        return reading.has_changed ? Merged::Changed : Merged::NotWhole;
     }
     unsaved_.clear();
-    // One without frames says that its run is at work.
-    for (const Fragment& fragment : fragments)
-        if ((fragment.frames > 0 || must_be_whole) &&
-            files::identity_of(fragment.file) == fragment.identity) {
-            std::error_code ignored;
-            std::filesystem::remove(fragment.file, ignored);
-            std::filesystem::remove(fragment.file.parent_path(), ignored);
-        }
+    if (taken == Taken::Nothing) return Merged::Yes;
+    for (const Fragment& fragment : reading.read)
+        if ((taken == Taken::All || fragment.file == fragment_) &&
+            files::identity_of(fragment.file) == fragment.identity)
+            remove_fragment(fragment.file);
     return Merged::Yes;
 }
 

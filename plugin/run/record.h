@@ -87,10 +87,12 @@ RecordReading read_record(const std::filesystem::path& file,
 // A record of fewer bytes is read and written in milliseconds.
 inline constexpr std::uintmax_t kSmallRecord = std::uintmax_t{1} << 18;
 
+inline constexpr std::size_t kFewFrames = 16;
+
 // Whether these frames are few and the record isn't small: then read_frames() parses no other.
 bool is_read_in_part(const std::filesystem::path& file, std::span<const int> frames);
 
-// The same of these frames, rising, and the numbers of all that have an entry. In part, other entries aren't looked at for what was
+// The same of these frames, rising, and the numbers of all that have an entry and aren't stale. In part, other entries aren't looked at for what was
 // altered; else all of them are handed over.
 RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
                           const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
@@ -121,7 +123,7 @@ class Record {
     // All of these take the record's file, DIR/NAME.json, and throw files::FileError.
     //
     // Makes sure that the record tells of this version of the shot. Where it is of another one, or missing, it is written anew with
-    // all frames that are recorded, those of other versions as stale. Throws std::invalid_argument where it says that another run
+    // the frames that it has, those of other versions as stale; fragments stay as they are. Throws std::invalid_argument where it says that another run
     // has chosen otherwise, and what `waiting` throws. `write_static`: what is written, and set, before the record and under its
     // lock; not called where that throws. makes_frames: whether the run has a fragment from now on.
     void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
@@ -130,9 +132,9 @@ class Record {
     // Writes what was set into the run's fragment. Holds one frame in memory of those that are there already.
     void save(const std::filesystem::path& file);
 
-    // The last save() of a run. Where the record is small and no other run is at work, or where all the shot's frames are there, its
-    // fragments become a part of the record, which is as one run would have written it. Where locks don't hold nothing is lost, since
-    // two that make a record whole write the same. `write_static`: as of begin(), before a record that is whole.
+    // The last save() of a run. Where all the shot's frames are there, the fragments become a part of the record, which is as one run
+    // would have written it; two that do so at once write the same, and a lock needn't hold. Where the record is small and no other
+    // fragment is there, this run's does. `write_static`: as of begin(), before a record that is whole.
     void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {},
                 const std::function<void()>& write_static = {});
 
@@ -143,10 +145,12 @@ class Record {
   private:
     using Take = std::function<void(int, FrameRecord)>;
     enum class Merged { Yes, Changed, NotWhole };  // Changed: by another run meanwhile
+    // Into the record: nothing, so that it tells of this version of the shot; this run's fragment; all of them, if that makes it whole.
+    enum class Taken { Nothing, Ours, All };
 
     void refuse_other_choice(const RecordReading& there, const std::filesystem::path& file) const;
-    // Writes the record with its fragments and what was set since, and deletes those. must_be_whole: only with all of the shot's frames.
-    Merged merge(const std::filesystem::path& file, bool must_be_whole);
+    // Writes the record with these and what was set since, and deletes the fragments that it took in.
+    Merged merge(const std::filesystem::path& file, Taken taken);
     std::int64_t write(const files::ByteSink& sink, const std::function<void(const Take&)>& former) const;
     void take_in(const std::filesystem::path& file, const files::LockWatch& waiting,
                  const std::function<void()>& write_static);

@@ -148,13 +148,20 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
 
     Verification found;
     Known known;
+    // A shot whose own record was lost is known by its runs'.
+    std::set<std::string> records;
+    for (fs::directory_iterator entry(folder / "record", error), end; !error && entry != end;
+         entry.increment(error))
+        if (entry->path().extension() == ".json")
+            records.insert(shot_of(entry->path().filename().string()) + ".json");
     for (const std::string& name : names) {
         if (name.starts_with('.')) continue;
-        if (name.ends_with(".json")) read_shot(folder, name, watch.cancel, known, found);
+        if (name.ends_with(".json")) records.insert(name);
         if (is_picture(name))
             known.files.push_back(
                 {.path = name, .recorded = {.bytes = files::file_size(folder / name).value_or(0)}});
     }
+    for (const std::string& record : records) read_shot(folder, record, watch.cancel, known, found);
     for (const FileCheck& file : known.files) found.bytes += file.recorded.bytes;
     check_files(folder, known.files, watch);
     found.files = static_cast<int>(known.files.size());

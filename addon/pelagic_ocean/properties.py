@@ -74,7 +74,7 @@ class Field:
 
     @property
     def is_path(self):
-        return "path" in self.key["accepted"]
+        return self.key["type"] != "entries" and "path" in self.key["accepted"]
 
     def read(self, group):
         """The value as the module takes it, of a group: plain numbers, strings, tuples."""

@@ -52,8 +52,8 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
         for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();
     }
     for (const VesselPlan& vessel : plan_vessels(scene)) {
-        extent.height_m += vessel.highest_m();
-        extent.reach_m += choppiness.largest() * vessel.highest_m();
+        extent.height_m += vessel.highest_m(scene.sea.depth_m);
+        extent.reach_m += choppiness.largest() * vessel.highest_m(scene.sea.depth_m);
     }
     return extent;
 }

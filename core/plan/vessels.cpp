@@ -51,8 +51,11 @@ glm::dvec2 VesselPlan::middle_m(double time_s) const {
     return 0.5 * (path.at(time_s) + path.at(time_s - kBehind * size_m / speed_mps));
 }
 
-double VesselPlan::highest_m() const {
-    return waves * std::min(draught_m, 2.0 * speed_mps * speed_mps * beam_m / (kGravity * length_m));
+double VesselPlan::highest_m(double depth_m) const {
+    constexpr double kMargin = 1.2;
+    const double froude2 = std::min(speed_mps * speed_mps / (kGravity * depth_m), 0.9);
+    return kMargin * waves * std::max(1.0, 2.0 * beam_m / length_m) / (1.0 - froude2) *
+           std::min(draught_m, 2.0 * speed_mps * speed_mps * beam_m / (kGravity * length_m));
 }
 
 std::size_t VesselPlan::bytes(int radius) {

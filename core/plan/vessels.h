@@ -40,8 +40,10 @@ struct VesselPlan {
     static constexpr int kMostSteps = 8;   // of a block where the vessel turns
     static constexpr double kEdge = 0.06;  // of the side, at each border: where waves fade to none
 
-    // How high its waves are nowhere [m]: of Froude's numbers from 0.15 to 3 they are up to 1.8 U²B/(gL), and 0.9 of the draught.
-    double highest_m() const;
+    // How high its waves are nowhere [m], and how far they move water to the side: of Froude's numbers from 0.15 to 3 they are up to
+    // 1.8 U²B/(gL), and 0.9 of the draught; of a hull as wide as it is long twice that, and more where water is so shallow that they
+    // are nearly as fast as any there.
+    double highest_m(double depth_m) const;
     // The tile's, at a time: the vessel is ahead of it, with most of the tile behind.
     glm::dvec2 middle_m(double time_s) const;
     static std::size_t bytes(int radius);  // of what is remembered of the modes within

@@ -438,7 +438,7 @@ void add_waves(Built& out) {
                 {.name = "waves",
                  .help = "of its waves' amplitude: theory has too much of slow and of planing hulls",
                  .range = limits::kVesselWaves,
-                 .soft = SoftRange{0.0, 2.0}}),
+                 .soft = SoftRange{0.01, 2.0}}),
             row<&Vessel::foam>({.name = "foam",
                                 .help = "of the coverage of the foam at its bow and behind its stern",
                                 .range = limits::kMaskShare,

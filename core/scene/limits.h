@@ -69,11 +69,13 @@ inline constexpr Range kMaskSize_m{1.0, 1e5};
 inline constexpr Range kMaskEdge_m{1.0, 1e5};
 inline constexpr Range kMaskWaves{0.0, 4.0};
 inline constexpr Range kMaskShare{0.0, 1.0};
-inline constexpr int kVessels = 8;  // each has a tile of its own
+inline constexpr int kVessels = 16;  // each has a tile of its own
 inline constexpr Range kVesselSize_m{0.1, 1000.0};
-inline constexpr Range kVesselWaves{0.0, 4.0};
+inline constexpr Range kVesselWaves{0.01, 4.0};
 inline constexpr double kVesselSpeed_mps = 100.0;  // of the sea's seconds
-inline constexpr int kVesselKeys = 10000;
+inline constexpr int kVesselKeys = 1000;
+inline constexpr double kVesselDepthFroude =
+    0.8;  // nearer to √(g d) waves pile up, which linear theory has without an end
 inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)

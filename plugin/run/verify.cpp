@@ -152,8 +152,8 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
     std::set<std::string> records;
     for (fs::directory_iterator entry(folder / "record", error), end; !error && entry != end;
          entry.increment(error))
-        if (entry->path().extension() == ".json")
-            records.insert(shot_of(entry->path().filename().string()) + ".json");
+        records.insert(shot_of(entry->path().filename().string()) + ".json");
+    std::erase_if(records, [&](const std::string& record) { return fragments_of(folder / record).empty(); });
     for (const std::string& name : names) {
         if (name.starts_with('.')) continue;
         if (name.ends_with(".json")) records.insert(name);

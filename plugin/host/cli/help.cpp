@@ -211,8 +211,8 @@ const char* const kMeasureThreads =
     "Default: one for each core that the process may use";
 
 const char* const kAccuracy =
-    "Measure what accuracy costs on a shot: error against time for each approximation, and what\n"
-    "each effect that is on costs a picture and a bake.\n"
+    "Measure what accuracy costs on a shot: error against time for each approximation.\n"
+    "Also what each effect that is on costs a picture and a bake.\n"
     "Sweeps the knob of each, with errors against a named reference and times of the same run, and\n"
     "writes DIR/accuracy.html with plots, accuracy.csv, accuracy.txt and ROW.svg. Rows that were measured before\n"
     "stay, with their age.";

@@ -112,7 +112,7 @@ int run(int argc, const char* const* argv) {
     program.require_subcommand(1);
     const auto formatter = std::make_shared<Formatter>();
     formatter->label("SUBCOMMAND", "VERB");
-    formatter->column_width(20);
+    formatter->column_width(22);
     program.formatter(formatter);  // inherited by the verbs
     const std::vector<Verb> verbs{add_bake(program),     add_render(program),   add_preview(program),
                                   add_explain(program),  add_accuracy(program), add_verify(program),

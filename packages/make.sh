@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Debian packages of everything, into a folder: pelagic, libpelagic, libpelagic-dev, python3-pelagic, blender-pelagic.
+#   packages/make.sh [FOLDER]      default: build/packages
+# On Debian 12, as root or with sudo; installs what is missing and builds first. They need what this Debian has.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=../examples/setup.sh
+source "$here/../examples/setup.sh"
+folder=${1:-$PELAGIC_ROOT/build/packages}
+mkdir -p "$folder" && folder=$(cd "$folder" && pwd)
+
+install_packages program preview python packages
+# A folder with everything may have been configured for tests too; their programs aren't built here.
+build release pelagic pelagic_procedural pelagic_python pelagic_openvdb_writer pelagic_ocio_module
+release=$PELAGIC_ROOT/build/release
+"$here/man.sh" "$release/pelagic" "$release/man"
+(cd "$release" && cpack -G DEB -B "$folder")
+rm -rf "$folder/_CPack_Packages"
+ls -l "$folder"/*.deb

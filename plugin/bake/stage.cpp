@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <mutex>
@@ -191,6 +193,37 @@ std::vector<usd::Volume> volumes_of(const Plan& plan) {
     return volumes;
 }
 
+// Round a surface that stays where it is, at all frames: by expectation, as the sea's own extent (core/plan/extent.h), and with its volumes.
+std::optional<usd::Extent> extents_of(const Plan& plan) {
+    if (!plan.surface->is_constant()) return {};
+    RestPoints<float> points;
+    plan.surface->points_at(plan.from->scene.shot.first_frame, points);
+    if (points.rest_m.empty() || points.curvature_per_m != 0.0) return {};
+    glm::vec2 low(points.rest_m.front()), high = low;
+    for (const glm::vec2& at : points.rest_m) {
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    float lowest = 0.0f, highest = 0.0f;
+    for (const float height_m : points.height_m) {
+        lowest = std::min(lowest, height_m);
+        highest = std::max(highest, height_m);
+    }
+    const Extent& sea = plan.from->extent;
+    const glm::vec2 origin(points.origin_m);
+    const auto reach = static_cast<float>(sea.reach_m), height = static_cast<float>(sea.height_m);
+    // A cage's normals point anywhere: so do its waves.
+    const float beside = points.normal.empty() ? reach : reach + height;
+    const float above = points.normal.empty() ? height : reach + height;
+    usd::Extent extent{glm::vec3(origin + low - beside, lowest - above),
+                       glm::vec3(origin + high + beside, highest + above)};
+    for (const usd::Volume& volume : volumes_of(plan)) {
+        extent[0] = glm::min(extent[0], volume.extent[0]);
+        extent[1] = glm::max(extent[1], volume.extent[1]);
+    }
+    return extent;
+}
+
 usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::FrameLight> light) {
     const Scene& scene = plan.from->scene;
     const Shot& shot = scene.shot;
@@ -216,6 +249,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
     stage.has_camera = true;
     stage.has_volumes = !volumes_of(plan).empty();
     stage.has_drops = scene.output.drops;
+    stage.extents_hint = extents_of(plan);
     if (has_changing_light(scene)) {
         stage.light = std::move(light);
     } else {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/lighting/spray.h"
 #include "core/plan/spray.h"
 #include "plugin/bake/volumes.h"
 
@@ -27,14 +28,15 @@ usd::Volume volume_prim(const Plan& plan, VolumeKind volume) {
         return usd::Extent{glm::vec3(low_m), glm::vec3(high_m)};
     };
     if (volume == VolumeKind::Spray)
-        return {.prim = "Spray",
-                .file_prefix = {},
-                .fields = {{"density", "fogVolume"}, {"velocity", "unknown", true}},
-                .extent =
-                    round({-half_m, -half_m, -height_m - voxel_m},
-                          {half_m + voxel_m, half_m + voxel_m,
-                           height_m + spray_top_m(spray_law(scene, plan.from->extent.significant_height_m)) +
-                               voxel_m})};
+        return {
+            .prim = "Spray",
+            .file_prefix = {},
+            .fields = {{"density", "fogVolume"}, {"velocity", "unknown", true}},
+            .extent = round(
+                {-half_m, -half_m, -height_m - voxel_m},
+                {half_m + voxel_m, half_m + voxel_m,
+                 height_m + spray_top_m(spray_law(scene, plan.from->extent.significant_height_m)) + voxel_m}),
+            .mean_cosine = Spray{}.forward.x};
     const double beside_m = kHalfWidth_voxels * voxel_m;
     return {.prim = "LevelSet",
             .file_prefix = {},

@@ -15,7 +15,6 @@
 // declares them. Between two frames with different numbers of points USD holds the first one's mesh; between
 // others it mixes both.
 //
-// A float holds a place to a 16 millionth of its distance from the origin. A mesh that follows a camera has
 // A float holds a place to a 16 millionth of its distance from the origin. So a mesh that follows a camera has an
 // origin of its own: its points, and its extent with them, are relative to xformOp:translate. That is a double3 and a
 // sample of the frame's own layer, so that it comes with the points, and is mixed where they are. It moves in long
@@ -159,6 +158,8 @@ struct Material {
 // A value of the root's customLayerData. Infinity is allowed (deep water), NaN is refused.
 using CustomValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 
+using Extent = std::array<glm::vec3, 2>;  // lower and upper corner [m]
+
 // The root layer.
 struct Stage {
     std::string name = "sea";  // letters, digits, _ and -
@@ -172,9 +173,10 @@ struct Stage {
     std::string frame_extension = "usda";     // without the dot
     std::string topology_extension = "usda";  // without the dot
     Material material{};
-    bool has_camera = false;   // camera_file() is beside the root
-    bool has_volumes = false;  // volumes_file() is
-    bool has_drops = false;    // drops_file() (drops.h) is
+    bool has_camera = false;               // camera_file() is beside the root
+    bool has_volumes = false;              // volumes_file() is
+    bool has_drops = false;                // drops_file() (drops.h) is
+    std::optional<Extent> extents_hint{};  // round everything at all frames, where that is known [m]
     std::optional<Sun> sun{};
     std::optional<Sky> sky{};
     std::vector<FrameLight>
@@ -219,8 +221,6 @@ struct VaryingValues {
         return numbers / static_cast<std::size_t>(attribute.components);
     }
 };
-
-using Extent = std::array<glm::vec3, 2>;  // lower and upper corner [m]
 
 // The box round the points; {0, 0} if there are none.
 Extent extent_of(std::span<const glm::vec3> points);

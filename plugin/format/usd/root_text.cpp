@@ -360,10 +360,11 @@ void write_sky(Page& page, const Sky& sky) {
     page.close("}");
 }
 
-// The values of what changes, by frame.
+// The values of what changes, by frame, and the first for who asks at no time.
 template <class Text>
 void write_samples(Page& page, const std::string& name, const std::vector<FrameLight>& light,
                    const Text& text) {
+    page.line({name, " = ", text(light.front())});
     page.open({name, ".timeSamples = {"});
     for (const FrameLight& at : light) page.line({number(std::int64_t{at.frame}), ": ", text(at), ","});
     page.close("}");
@@ -419,6 +420,24 @@ void write_drops(Page& page, const Stage& stage) {
     page.line({"}"});
 }
 
+// An asset of its own: outliners take a component for one thing, and its hint as its size before they load more of it.
+void open_root(Page& page, const Stage& stage, const std::string& root) {
+    page.gap();
+    page.open({"def Xform \"", root, "\" ("});
+    if (stage.extents_hint) page.line({"prepend apiSchemas = [\"GeomModelAPI\"]"});
+    page.open({"assetInfo = {"});
+    page.line({"asset identifier = ", asset("./" + root_file(stage.name))});
+    page.line({"string name = ", quoted(stage.name)});
+    page.close("}");
+    page.line({"kind = \"component\""});
+    page.close(")");
+    page.open({"{"});
+    if (!stage.extents_hint) return;
+    const auto corner = [](const glm::vec3& at) { return color("the sea's extent", at); };
+    page.line({"float3[] extentsHint = [", corner((*stage.extents_hint)[0]), ", ",
+               corner((*stage.extents_hint)[1]), "]"});
+}
+
 }  // namespace
 
 std::string root_text(const Stage& stage) {
@@ -435,7 +454,7 @@ std::string root_text(const Stage& stage) {
                       .first_frame = stage.first_frame,
                       .last_frame = stage.last_frame});
     page.close(")");
-    page.prim("def Xform", root);
+    open_root(page, stage, root);
     write_mesh(page, stage, material);
     page.prim("def Scope", "Materials");
     write_material(page, stage, material);

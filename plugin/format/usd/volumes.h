@@ -6,6 +6,7 @@
 // A field's file is a time sample at each frame: USD holds it until the next one.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,9 @@ struct Volume {
     std::string file_prefix;  // a frame's file is this, its number and ".vdb", relative to the layer's folder
     std::vector<VolumeField> fields;
     Extent extent{};  // round the volume at all frames [m]
+    // Of a fog whose field "density" is its extinction [1/m] and that absorbs nothing: the mean cosine of what it scatters. Such a volume has
+    // a material, MaterialX's: UsdPreviewSurface has none for volumes.
+    std::optional<float> mean_cosine{};
 };
 
 struct VolumeLayer {

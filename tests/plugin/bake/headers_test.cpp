@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
+#include <glm/vec3.hpp>
 #include <sstream>
 
 #include "core/scene/keys.h"
@@ -53,6 +55,49 @@ TEST(Headers, NameTheKeysThatTheFilesDependOn) {
               std::string::npos);
     EXPECT_NE(stage.find("double sea_depth_m = inf"), std::string::npos);
     EXPECT_NE(stage.find("bool effects_whitecaps = true"), std::string::npos);
+}
+
+// The three floats that follow a place in a text, "(x, y, z".
+glm::vec3 point_at(const std::string& text, std::size_t at) {
+    glm::vec3 point(0.0f);
+    std::sscanf(text.c_str() + at, "(%f, %f, %f", &point.x, &point.y, &point.z);
+    return point;
+}
+
+// Round the sea at every frame, on surfaces that stay where they are; others have none.
+TEST(Headers, HintOfExtentsHoldsEachFrame) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("pelagic-extents-" + std::to_string(getpid()));
+    for (const SurfaceKind kind : {SurfaceKind::Patch, SurfaceKind::ProjectedGrid}) {
+        Scene scene;
+        scene.shot.last_frame = 4;
+        scene.sea.wind_speed_mps = 20.0;
+        scene.waves.choppiness = 1.3;
+        scene.surface.kind = kind;
+        scene.surface.resolution = 32;
+        scene.surface.cell_px = 64.0;
+        scene.surface.size_m = 150.0;
+        scene.output.mesh = MeshFormat::Usda;
+        bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
+        const std::string stage = bytes_of_header(folder / "sea.usda");
+        const std::size_t hint = stage.find("extentsHint = [");
+        EXPECT_EQ(hint != std::string::npos, kind == SurfaceKind::Patch);
+        for (int frame = 1; frame <= 4 && hint != std::string::npos; ++frame) {
+            const std::string mesh =
+                bytes_of_header(folder / ("mesh/sea.000" + std::to_string(frame) + ".usda"));
+            const std::size_t low = mesh.find('(', mesh.find("extent.timeSamples")),
+                              high = mesh.find('(', low + 1);
+            ASSERT_NE(high, std::string::npos);
+            const std::size_t hint_low = stage.find('(', hint), hint_high = stage.find('(', hint_low + 1);
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_LE(point_at(stage, hint_low)[axis], point_at(mesh, low)[axis]) << frame;
+                EXPECT_GE(point_at(stage, hint_high)[axis], point_at(mesh, high)[axis]) << frame;
+            }
+            EXPECT_GT(point_at(mesh, high).z, 0.2f * point_at(stage, hint_high).z)
+                << "the hint is far too large";
+        }
+        std::filesystem::remove_all(folder);
+    }
 }
 
 }  // namespace

@@ -242,7 +242,13 @@ TEST(UsdText, RootOfASmallShotIsThisPage) {
     upAxis = "Z"
 )
 
-def Xform "a_b"
+def Xform "a_b" (
+    assetInfo = {
+        asset identifier = @./a-b.usda@
+        string name = "a-b"
+    }
+    kind = "component"
+)
 {
     def Mesh "Sea" (
         prepend apiSchemas = ["MaterialBindingAPI"]
@@ -354,6 +360,39 @@ glm::dvec3 rotated_by_text(const std::vector<float>& angles_deg, glm::dvec3 v) {
         v[j] = before[i] * std::sin(angle) + before[j] * std::cos(angle);
     }
     return v;
+}
+
+TEST(UsdText, SizeOfTheWholeShotIsAHint) {
+    const std::string text =
+        root_text({.extents_hint = Extent{glm::vec3(-1.5f, -2, -3), glm::vec3(1, 2, 3.25f)}});
+    EXPECT_NE(text.find("(\n    prepend apiSchemas = [\"GeomModelAPI\"]\n    assetInfo = {"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("\n    float3[] extentsHint = [(-1.5, -2, -3), (1, 2, 3.25)]\n"), std::string::npos)
+        << text;
+    EXPECT_EQ(root_text({}).find("xtentsHint"), std::string::npos);
+    EXPECT_THROW(
+        root_text({.extents_hint = Extent{glm::vec3(std::numeric_limits<float>::infinity()), glm::vec3(1)}}),
+        std::invalid_argument);
+}
+
+// Whoever asks at no time gets the first frame's light, and no fallback of the schema's.
+TEST(UsdText, LightThatChangesHasDefaults) {
+    FrameLight morning{
+        .frame = 1, .sun = {.elevation_deg = 5.0, .intensity = 3.0}, .sky = {.lat_long_file = "./a.exr"}};
+    FrameLight noon{
+        .frame = 9, .sun = {.elevation_deg = 60.0, .intensity = 7.0}, .sky = {.lat_long_file = "./b.exr"}};
+    const std::string text = root_text({.light = {morning, noon}});
+    for (const char* attribute : {"color3f inputs:color", "float inputs:intensity",
+                                  "float3 xformOp:rotateXYZ", "asset inputs:texture:file"}) {
+        const std::string samples = std::string(attribute) + ".timeSamples = {\n";
+        const std::size_t at = text.find(samples);
+        ASSERT_NE(at, std::string::npos) << attribute;
+        const std::size_t value = text.find("1: ", at) + 3, end = text.find(",\n", value);
+        EXPECT_NE(text.find(std::string(attribute) + " = " + text.substr(value, end - value) + '\n'),
+                  std::string::npos)
+            << attribute << text;
+    }
 }
 
 TEST(UsdText, SunShinesFromItsDirection) {

@@ -62,6 +62,7 @@ def Scope "Volumes"
             token fieldClass = "fogVolume"
             token fieldDataType = "float"
             token fieldName = "density"
+            asset filePath = @./volumes/a-b.spray.-001.vdb@
             asset filePath.timeSamples = {
                 -1: @./volumes/a-b.spray.-001.vdb@,
                 0: @./volumes/a-b.spray.0000.vdb@,
@@ -75,6 +76,7 @@ def Scope "Volumes"
             token fieldDataType = "float3"
             token fieldName = "velocity"
             token vectorDataRoleHint = "Vector"
+            asset filePath = @./volumes/a-b.spray.-001.vdb@
             asset filePath.timeSamples = {
                 -1: @./volumes/a-b.spray.-001.vdb@,
                 0: @./volumes/a-b.spray.0000.vdb@,
@@ -93,6 +95,7 @@ def Scope "Volumes"
             token fieldClass = "levelSet"
             token fieldDataType = "float"
             token fieldName = "surface"
+            asset filePath = @./volumes/a-b.level-set.-001.vdb@
             asset filePath.timeSamples = {
                 -1: @./volumes/a-b.level-set.-001.vdb@,
                 0: @./volumes/a-b.level-set.0000.vdb@,
@@ -143,6 +146,29 @@ TEST(UsdVolumes, RefusesWhatNoStageCanSay) {
     Volume endless = level_set();
     endless.extent[1].y = std::numeric_limits<float>::infinity();
     refuses({.frames = {1}, .volumes = {endless}});
+}
+
+// A fog's material scatters all that its density takes away; a level set has none.
+TEST(UsdVolumes, FogHasAMaterial) {
+    Volume fog = spray();
+    fog.mean_cosine = 0.85f;
+    const std::string text = text_of({.frames = {1}, .volumes = {fog, level_set()}});
+    for (const char* line :
+         {"    def Volume \"Spray\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n",
+          "        rel material:binding = </Volumes/Spray/Medium>\n",
+          "token outputs:mtlx:volume.connect = </Volumes/Spray/Medium/Volume.outputs:out>\n",
+          "float inputs:anisotropy = 0.85\n", "float3 inputs:absorption = (0, 0, 0)\n",
+          "float3 inputs:scattering.connect = </Volumes/Spray/Medium/Extinction.outputs:out>\n",
+          "string inputs:geomprop = \"density\"\n", "    def Volume \"LevelSet\"\n    {\n"})
+        EXPECT_NE(text.find(line), std::string::npos) << line << text;
+    EXPECT_EQ(text_of({.frames = {1}, .volumes = {level_set()}}).find("Material"), std::string::npos);
+    // Brackets of all kinds are closed.
+    for (const char* pair : {"{}", "()", "[]", "<>"})
+        EXPECT_EQ(std::count(text.begin(), text.end(), pair[0]),
+                  std::count(text.begin(), text.end(), pair[1]))
+            << pair;
+    fog.mean_cosine = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(text_of({.frames = {1}, .volumes = {fog}}), std::invalid_argument);
 }
 
 }  // namespace

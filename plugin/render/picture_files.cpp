@@ -6,6 +6,10 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "core/base/instruction_set.h"
@@ -97,6 +101,31 @@ std::string light_names() {
     return names + " and " + last;
 }
 
+// Right, up and forward become x, y and z: OpenEXR's camera space, which is left-handed.
+glm::dmat4 camera_from_world(const View& view) {
+    const glm::dmat3 turned = glm::transpose(glm::dmat3(view.right, view.up, view.forward));
+    return glm::dmat4(turned) * glm::translate(glm::dmat4(1.0), -view.position_m);
+}
+
+// (0, 0) is the picture's upper left corner, (1, 1) its lower right one; z is 1 - 1 m over the distance along the axis.
+glm::dmat4 ndc_from_world(const View& view) {
+    const glm::dvec2 size = 2.0 * view.half_tangents() * glm::dvec2(1.0, -1.0);
+    const glm::dvec2 offset = 0.5 - view.middle_tangents() / size;
+    glm::dmat4 ndc_from_camera(0.0);  // columns
+    ndc_from_camera[0][0] = 1.0 / size.x;
+    ndc_from_camera[1][1] = 1.0 / size.y;
+    ndc_from_camera[2] = glm::dvec4(offset, 1.0, 1.0);
+    ndc_from_camera[3][2] = -1.0;
+    return ndc_from_camera * camera_from_world(view);
+}
+
+exr::Matrix packed(const glm::dmat4& matrix) {
+    exr::Matrix rows;  // of row vectors: our columns
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) rows[i][j] = static_cast<float>(matrix[i][j]);
+    return rows;
+}
+
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
@@ -108,6 +137,9 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"cameraPosition_m", packed(glm::vec3(view.position_m))},
         {"cameraForward", packed(glm::vec3(view.forward))},
         {"horizontalFieldOfView_deg", view.fov_deg()},
+        {"worldToCamera", packed(camera_from_world(view))},
+        {"worldToNDC", packed(ndc_from_world(view))},
+        {"framesPerSecond", exr::FramesPerSecond{scene.shot.fps}},
         {"sunDirection", packed(context.sky.sun_direction)},
         {"exposure", static_cast<double>(context.exposure)},
         {"samplesPerPixel", context.options.samples * context.options.samples},
@@ -115,6 +147,10 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
+    constexpr int kDay_s = 24 * 3600;
+    if (const int fps = static_cast<int>(std::lround(scene.shot.fps));
+        frame >= 0 && fps >= 1 && fps <= 30 && frame / fps < kDay_s)
+        attributes.push_back({"timeCode", exr::TimeCode{frame, fps}});
     if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
     for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg))
         attributes.push_back(std::move(attribute));

@@ -17,14 +17,18 @@
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
+#include <ImfFramesPerSecond.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfRationalAttribute.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 #include <ImfTiledOutputFile.h>
+#include <ImfTimeCodeAttribute.h>
 #include <ImfVecAttribute.h>
 #include <half.h>
 
@@ -141,6 +145,20 @@ void insert(Imf::Header& header, const Attribute& attribute) {
             const auto place = [](const std::array<float, 2>& xy) { return Imath::V2f(xy[0], xy[1]); };
             header.insert(name, Imf::ChromaticitiesAttribute(
                                     {place(v.red), place(v.green), place(v.blue), place(v.white)}));
+        }
+        void operator()(FramesPerSecond v) const {
+            header.insert(name, Imf::RationalAttribute(Imf::guessExactFps(v.value)));
+        }
+        void operator()(TimeCode v) const {
+            const int seconds = v.frame / v.fps;
+            header.insert(name, Imf::TimeCodeAttribute(Imf::TimeCode(seconds / 3600, seconds / 60 % 60,
+                                                                     seconds % 60, v.frame % v.fps)));
+        }
+        void operator()(const Matrix& v) const {
+            Imath::M44f m;
+            for (int row = 0; row < 4; ++row)
+                for (int column = 0; column < 4; ++column) m[row][column] = v[row][column];
+            header.insert(name, Imf::M44fAttribute(m));
         }
     } visitor{header, name};
     std::visit(visitor, attribute.value);

@@ -52,9 +52,23 @@ struct Chromaticities {
     std::array<float, 2> red{}, green{}, blue{}, white{};
 };
 
+// Frames per second as the ratio that is closest: 24000/1001 for 23.976.
+struct FramesPerSecond {
+    double value = 24.0;
+};
+
+// SMPTE's time code of a frame, counted on in whole frames, not dropping any.
+struct TimeCode {
+    int frame = 0;
+    int fps = 24;  // 1 … 30: the format has no frames beyond 29
+};
+
+// Of row vectors, as the format has it: v M, one row after another.
+using Matrix = std::array<std::array<float, 4>, 4>;
+
 // The format has 32-bit integers only: longer ones (seeds) are written as text.
-using AttributeValue =
-    std::variant<std::string, double, float, int, std::array<float, 2>, std::array<float, 3>, Chromaticities>;
+using AttributeValue = std::variant<std::string, double, float, int, std::array<float, 2>,
+                                    std::array<float, 3>, Chromaticities, FramesPerSecond, TimeCode, Matrix>;
 
 struct Attribute {
     std::string name;  // 1 … 255 bytes, unique, and not one of the format's ("channels", "wrapmodes", …)

@@ -8,6 +8,7 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -29,6 +30,7 @@
 
 #include "core/lighting/primaries.h"
 #include "core/scene/keys.h"
+#include "core/surface/view.h"
 #include "plugin/run/seals.h"
 
 namespace pelagic {
@@ -96,6 +98,54 @@ Sky some_sky(float sun_radiance) {
     sky.sky_irradiance = glm::vec3(6.0f);
     sky.sun_radiance = glm::vec3(sun_radiance);
     return sky;
+}
+
+// Of row vectors, after the division.
+glm::dvec3 through(const Imath::M44f& matrix, const glm::dvec3& p) {
+    Imath::V3d from(p.x, p.y, p.z), to;
+    Imath::M44d(matrix).multVecMatrix(from, to);
+    return {to.x, to.y, to.z};
+}
+
+// What OpenEXR's standard attributes promise: a place that a pixel shows comes out at that pixel, and the camera's axes are x, y and z.
+TEST(PictureFiles, SayTheirCameraTimeAndRateAsTheStandardHasIt) {
+    Scene scene;
+    scene.shot.fps = 23.976;
+    scene.camera.position_m = {120.0, -40.0, 9.0};
+    scene.camera.look_at_m = {150.0, 30.0, 2.0};
+    scene.camera.shift_x = 0.1;
+    scene.camera.shift_y = -0.2;
+    scene.camera.resolution = {64, 36};
+    const RenderOptions options;
+    const Sky sky = some_sky(100.0f);
+    const PictureContext context{scene, options, sky, "0123456789abcdef", 1.0f};
+    const Picture picture = pattern(scene.camera.resolution);
+    const std::string bytes = encode_exr(context, picture, 91);
+    MemoryStream stream(bytes);
+    Imf::InputFile file(stream);
+    const Imf::Header& header = file.header();
+    const View view = view_at(scene.camera, 91);
+    for (const glm::dvec2 pixel : {glm::dvec2(0.5, 0.5), glm::dvec2(63.5, 20.5), glm::dvec2(31.0, 36.0)}) {
+        const glm::dvec3 place = view.position_m + 37.0 * view.direction(pixel);
+        const glm::dvec3 ndc = through(Imf::worldToNDC(header), place);
+        EXPECT_NEAR(ndc.x * 64.0, pixel.x, 2e-3);
+        EXPECT_NEAR(ndc.y * 36.0, pixel.y, 2e-3);
+    }
+    const glm::dvec3 seen = through(Imf::worldToCamera(header),
+                                    view.position_m + 2.0 * view.right + 3.0 * view.up + 5.0 * view.forward);
+    EXPECT_NEAR(seen.x, 2.0, 1e-4);
+    EXPECT_NEAR(seen.y, 3.0, 1e-4);
+    EXPECT_NEAR(seen.z, 5.0, 1e-4);
+    EXPECT_EQ(Imf::framesPerSecond(header).n, 24000);
+    EXPECT_EQ(Imf::framesPerSecond(header).d, 1001u);
+    const Imf::TimeCode code = Imf::timeCode(header);  // 91 = 3 · 24 + 19
+    EXPECT_EQ(code.seconds(), 3);
+    EXPECT_EQ(code.frame(), 19);
+    for (const int frame : {-1, 24 * 24 * 3600}) {
+        const std::string other = encode_exr(context, picture, frame);
+        MemoryStream other_stream(other);
+        EXPECT_FALSE(Imf::hasTimeCode(Imf::InputFile(other_stream).header())) << frame;
+    }
 }
 
 // The first row of the file is the picture's top one, each layer is where it belongs, and they add up: to a

@@ -294,7 +294,8 @@ TEST(NightlyBudgetOfMeshes, ReadingErrsByNoMoreThanIsRecorded) {
     for (const auto& entry : std::filesystem::directory_iterator(PELAGIC_SOURCE_DIR "/examples")) {
         if (entry.path().extension() != ".toml") continue;
         Scene scene = load_shot(entry.path(), check_scene);
-        if (!frames_of_sea(scene).empty()) scene = scene_at(scene, scene.shot.first_frame);  // its grids are the same at each
+        if (!frames_of_sea(scene).empty())
+            scene = scene_at(scene, scene.shot.first_frame);  // its grids are the same at each
         const MeasuredRow measured = sweep(*row, scene, 1, {});
         for (const MeasuredSetting& setting : measured.settings)
             for (const QualityRow& level : quality_table()) {

@@ -26,7 +26,7 @@ class Memory : public testing::Test {
     void expect_refused(std::vector<std::string> arguments, const std::vector<std::string>& words) {
         const Ended explained = pelagic({"explain", "shot.toml"});
         const Ended refused = pelagic(std::move(arguments));
-        EXPECT_EQ(refused.status, 1) << refused.err;
+        EXPECT_EQ(refused.status, 75) << refused.err;
         for (const std::string& word : words)
             EXPECT_TRUE(has(refused.err, word)) << word << "\n" << refused.err;
         EXPECT_LT(refused.seconds, 20.0 * explained.seconds + 60.0);
@@ -65,7 +65,7 @@ TEST_F(Memory, TheSystemsOwnLimitCounts) {
         const Ended refused = run({.arguments = {verb, "shot.toml", "--out", "out"},
                                    .folder = folder(),
                                    .most_address_space = std::size_t{1500} << 20});
-        EXPECT_EQ(refused.status, 1);
+        EXPECT_EQ(refused.status, 75);
         EXPECT_TRUE(has(refused.err, "its limit of address space (ulimit -v) leaves")) << refused.err;
     }
     EXPECT_EQ(files_below(folder()).size(), 1u);
@@ -82,7 +82,7 @@ TEST_F(Memory, WhatFitsExactlyIsBaked) {
         arguments.emplace_back(memory);
         return pelagic(arguments);
     };
-    EXPECT_EQ(with("1K").status, 1);
+    EXPECT_EQ(with("1K").status, 75);
     const Ended baked = with("64M");
     EXPECT_EQ(baked.status, 0) << baked.err;
 }
@@ -142,12 +142,12 @@ TEST_F(Memory, RefusingTakesLittle) {
          {std::vector<std::string>{"bake", shot, "--out", out, "--max-memory", "1G"},
           {"render", shot, "--out", out, "--size", "65536x65536", "--max-memory", "8G"}}) {
         const Peak peak = peak_of(words);
-        EXPECT_EQ(peak.status, 1) << words[0];
+        EXPECT_EQ(peak.status, 75) << words[0];
         EXPECT_LT(peak.kib, kMost_kib) << words[0];
     }
     if (!kHasPreview) return;
     const Peak peak = peak_of({"preview", shot, "--offscreen", out + ".png", "--size", "65536x36"});
-    EXPECT_EQ(peak.status, 1);
+    EXPECT_EQ(peak.status, 75);
     EXPECT_LT(peak.kib, kMost_kib);
 }
 

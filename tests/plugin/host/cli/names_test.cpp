@@ -96,7 +96,7 @@ TEST_F(Names, MessagesObeyNoPath) {
 TEST_F(Names, ALetterOutsideAsciiIsOneCharacterOfItsMessage) {
     write_file(folder_.path() / "s.toml", "[shot]\nname = \"caf\xc3\xa9\"\n");
     const Ended ended = run({.arguments = {"validate", "s.toml"}, .folder = folder_.path()});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find("it has \"\xc3\xa9\" in it"), std::string::npos) << ended.err;
 }
 

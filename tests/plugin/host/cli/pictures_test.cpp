@@ -332,7 +332,7 @@ TEST_F(Pictures, WhatAPreviewCantWriteIsAnsweredWithoutAnotherVerbsOption) {
     write_file(folder() / "small.toml", small_shot());
     write_file(folder() / "file", "");
     const Ended ended = cli({"preview", "small.toml", "--offscreen", "file/a.png"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find("a part of the path is a file"), std::string::npos) << ended.err;
     EXPECT_EQ(ended.err.find("--out"), std::string::npos) << ended.err;
 }
@@ -426,7 +426,7 @@ TEST_F(Pictures, AFolderThatCantBeMadeIsSaid) {
           std::vector<std::string>{"preview", "small.toml", "--offscreen", "in-the-way/a.png"}}) {
         if (arguments.front() == "preview" && !kHasPreview) continue;
         const Ended ended = cli(arguments);
-        EXPECT_EQ(ended.status, 1) << ended.err;
+        EXPECT_EQ(ended.status, 2) << ended.err;
         EXPECT_EQ(ended.out, "");
         EXPECT_TRUE(has(ended.err, "in-the-way")) << ended.err;
     }
@@ -439,7 +439,7 @@ TEST_F(Pictures, AFullDiskIsSaidAndWhatIsThereIsWhole) {
     const std::string problem = mount_disk({.folder = folder() / "disk", .size = "64k"});
     if (!problem.empty()) GTEST_SKIP() << "this machine lets us mount nothing: " << problem;
     const Ended ended = cli({"render", "small.toml", "--out", "disk", "--size", "96x54"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     EXPECT_TRUE(has(ended.err, "disk is full") || has(ended.err, "space")) << ended.err;
     EXPECT_EQ(torn_files(folder() / "disk"), "");
     EXPECT_TRUE(leftovers(folder() / "disk").empty());

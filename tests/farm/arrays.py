@@ -74,7 +74,9 @@ def short_array(cluster, folder):
     shot, out, whole = folder / "shot.toml", folder / "a shot's 100 %", folder / "whole"
     shot.write_text(SHOT.format(frames=8, quads=8, texels=8))
     pelagic("bake", shot, "--out", whole)
-    submit(shot, out, 4)
+    array, last = submit(shot, out, 4)
+    dependency = cluster("squeue", "-h", "-j", last, "-o", "%E")
+    assert f"afterany:{array}" in dependency, f"the check waits for {dependency!r}"
     cluster.wait(60)
     assert status_of(out)["whole"] == "1-8", logs_in(out)
     assert "all whole" in (out / "farm/small.bake.verify.log").read_text(), logs_in(out)

@@ -128,11 +128,13 @@ std::string last_line(const fs::path& file) {
     return last;
 }
 
-// The tasks that Slurm knows of, ARRAY_NUMBER, with their states; nothing where it doesn't answer.
-std::optional<std::map<std::string, std::string>> queued() {
+// The tasks that Slurm knows of, ARRAY_NUMBER, with their states.
+using Queue = std::map<std::string, std::string>;
+// Nothing where it doesn't answer.
+std::optional<Queue> queued() {
     FILE* pipe = popen("timeout 10 squeue -h -r -o '%F_%K %T' 2>/dev/null", "r");
     if (!pipe) return {};
-    std::map<std::string, std::string> states;
+    Queue states;
     std::array<char, 256> line{};
     while (std::fgets(line.data(), static_cast<int>(line.size()), pipe)) {
         std::string_view text = line.data();
@@ -146,7 +148,7 @@ std::optional<std::map<std::string, std::string>> queued() {
 }
 
 // Whether a task that said that it has begun surely doesn't run any more: by Slurm, or as a process of this machine (HOST-PROCESS_NUMBER).
-bool is_gone(const std::string& id, const std::optional<std::map<std::string, std::string>>& queue) {
+bool is_gone(const std::string& id, const std::optional<Queue>& queue) {
     if (id.find_first_not_of("0123456789_") == std::string::npos) {
         if (!queue) return false;
         const auto at = queue->find(id);
@@ -168,8 +170,7 @@ struct Counted {
     int frames = 0, whole = 0;
 };
 
-Counted print_job(const FarmJob& job, const fs::path& out,
-                  const std::optional<std::map<std::string, std::string>>& queue) {
+Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Queue>& queue) {
     const std::set<int> there = frames_there(job, out);
     std::vector<int> whole, missing;
     std::string running, failed;
@@ -187,6 +188,14 @@ Counted print_job(const FarmJob& job, const fs::path& out,
         const std::string frames = frames_text(lacking);
         const Log log = read_log(out / "farm" / task.log);
         std::string message = log.message;
+        // Slurm's word counts: on a full disk a task's own last words may be lost.
+        if (const auto at = queue ? queue->find(log.running.value_or(log.again)) : Queue::const_iterator();
+            queue && at != queue->end() && at->second == "PENDING") {
+            running += "\n  " + frames + ": is begun again soon" +
+                       (message.empty() ? "" : ", after: " + line_text(message));
+            told["running"].push_back({{"frames", frames}, {"message", message}});
+            continue;
+        }
         if (log.running && !is_gone(*log.running, queue)) {
             running += "\n  " + frames + ": on " + line_text(log.host) + ", last heard of " +
                        duration_text(log.silent_s) + " ago";
@@ -204,11 +213,6 @@ Counted print_job(const FarmJob& job, const fs::path& out,
             message = "stopped by signal " + std::to_string(*log.status - kKilledFrom);
         } else if (*log.status == kDone) {
             message = "made, and not there any more, or of another version of the shot";
-        }
-        if (queue && !log.running && queue->contains(log.again) && queue->at(log.again) != "FAILED") {
-            running += "\n  " + frames + ": is begun again soon, after: " + line_text(message);
-            told["running"].push_back({{"frames", frames}, {"message", message}});
-            continue;
         }
         failed += "\n  " + frames + ": " + line_text(message);
         if (log.status) failed += " (status " + std::to_string(*log.status) + ')';

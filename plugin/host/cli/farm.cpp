@@ -19,7 +19,6 @@
 #include "plugin/bake/bake.h"
 #include "plugin/files/files.h"
 #include "plugin/format/shot/shot.h"
-#include "plugin/format/usd/layers.h"
 #include "plugin/host/cli/account.h"
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/guarded_run.h"
@@ -29,6 +28,7 @@
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
 #include "plugin/light/light.h"
+#include "plugin/run/part.h"
 
 namespace pelagic::cli {
 namespace {
@@ -261,8 +261,8 @@ int run(FarmArguments arguments) {
             for (const std::vector<int>& part : split(options.frames, tasks)) {
                 std::string frames = frames_text(part);
                 std::erase(frames, ' ');
-                const std::string log = name + '.' + usd::frame_number(part.front()) + '-' +
-                                        usd::frame_number(part.back()) + ".log";
+                const std::string log = FilePattern{name + '.', ""}.file(part.front()) +
+                                        FilePattern{"-", ".log"}.file(part.back());
                 job.tasks.push_back({.frames = frames,
                                      .log = log,
                                      .slurm = name + '.' + std::to_string(job.tasks.size()) + ".slurm"});

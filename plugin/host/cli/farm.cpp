@@ -277,7 +277,8 @@ int run(FarmArguments arguments) {
                                                                   static_cast<double>(tasks));
             files::write_atomically(array, array_script(arguments, job, need, program, out, seconds));
             files::write_atomically(last, verify_script(arguments, job, program, out));
-            files::write_atomically(folder / (name + ".json"), told.dump(2) + '\n');
+            files::write_atomically(folder / (name + ".json"),
+                                    told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
             std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
                       << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
                       << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)

@@ -82,7 +82,7 @@ bool is_json() {
 void tell_json(const nlohmann::ordered_json& event) {
     if (!the_json) return;
     const std::lock_guard lock(json_writing);
-    the_json->lines_ << event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+    the_json->lines_ << event.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
 }  // namespace pelagic::cli

@@ -52,7 +52,7 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
     for (const char* flag : {"--help", "-h"}) {
         const Ended ended = cli({flag});
         EXPECT_EQ(ended.status, 0);
-        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  verify ",
+        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  verify ", "  farm ",
                                  "  validate ", "  keys ", "  presets ", "Examples:", "Exit status"})
             EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
         EXPECT_EQ(ended.err, "");
@@ -70,7 +70,10 @@ TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
         {"preview",
          {"SHOT.toml", "--offscreen", "--frame", "--size", "--quality", "--scale", "--screenshot", "--after",
           "--threads", "--help", "F1"}},
-        {"explain", {"SHOT.toml", "--measure", "--threads", "--help"}},
+        {"explain", {"SHOT.toml", "--measure", "--threads", "--json", "--help"}},
+        {"farm",
+         {"SHOT.toml", "--out", "--frames", "--verb", "--submit", "--status", "--tasks", "--minutes",
+          "--sbatch", "--threads", "--samples", "--json", "--help", "Exit status of --status: 0"}},
         {"verify",
          {"DIR", "--threads", "--help", "missing", "damaged", "stale", "foreign", "Exit status: 0"}},
         {"validate", {"SHOT.toml", "--help"}},

@@ -2,6 +2,7 @@
 // the words for programs. On a real Slurm: tests/farm.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -78,6 +79,31 @@ TEST_F(Farm, ItsTasksLeaveWhatOneBakeLeaves) {
     for (const char* log : {"farm/small.bake.0001-0004.log", "farm/small.bake.0009-0012.log"})
         EXPECT_TRUE(has(files_below(folder() / name).at(log), "with status 0")) << log;
     EXPECT_EQ(without_farm(name, "whole"), "");
+}
+
+TEST_F(Farm, TasksTakeMinutesAndWhatThePlanCounts) {
+    write_file(folder() / "long.toml", text_of({.name = "long", .frames = 1000, .quads = 512}));
+    for (const double minutes : {0.1, 0.5, 1000.0}) {
+        const Json job = result("$P farm long.toml --out out --json --minutes " + std::to_string(minutes));
+        // Half as much again for encoding and writing.
+        const double seconds = 1000 * 1.5 * job.at("frame").at("seconds_a_frame").get<double>();
+        EXPECT_EQ(static_cast<double>(job.at("tasks").size()), std::ceil(seconds / (60.0 * minutes)))
+            << seconds;
+        EXPECT_EQ(job.at("threads"), 1);
+        EXPECT_GT(job.at("task_memory_bytes"), job.at("frame").at("memory_bytes"));
+    }
+    write_file(
+        folder() / "large.toml",
+        "[waves]\ncascades = [ { size_m = 150.0, resolution = 8192 }, { size_m = 5.0, resolution = 8192 } ]\n"
+        "[surface]\nresolution = 8192\nsize_m = 5\n[output]\nmaps = [\"displacement\"]\nmap_resolution = 4000\n");
+    const Json large = result("$P farm large.toml --out out --json");
+    const double memory = large.at("task_memory_bytes").get<double>();
+    EXPECT_GT(memory, 4.0 * (1 << 30)) << "the test needs a large shot";
+    EXPECT_GE(large.at("threads").get<double>(), std::floor(memory / (4.0 * (1 << 30)))) << memory;
+    EXPECT_EQ(result("$P farm large.toml --out out --json --threads 7").at("threads"), 7);
+    EXPECT_EQ(shell("$P farm small.toml --out out --tasks 1001").status, 2);
+    EXPECT_EQ(result("$P farm small.toml --out out --json --tasks 1000").at("tasks").size(), 12u)
+        << "a frame each";
 }
 
 TEST_F(Farm, StatusSaysWhatIsWholeRunningFailedAndMissing) {

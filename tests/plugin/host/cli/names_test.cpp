@@ -63,6 +63,8 @@ TEST_F(Names, MessagesObeyNoPath) {
                                                    {"render", shot, "--out", "pictures", "--samples", "1"},
                                                    {"verify", "pictures"},
                                                    {"verify", "nowhere"},
+                                                   {"farm", shot, "--out", "out"},
+                                                   {"farm", "--status", "out"},
                                                    {"verify", "."},  // foreign and unread ones
                                                    {"render", shot, "--out", "file"},
                                                    {"accuracy", shot, "--out", "file"},

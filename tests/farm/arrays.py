@@ -118,18 +118,21 @@ def bad_night(cluster, folder):
     submit(shot, out, tasks)  # the same again, beside it
     until(lambda: len(programs_of(out)) > 1, 60, "task at work", out)
     os.kill(programs_of(out)[0], signal.SIGKILL)
-    cluster.stop("slurmctld", signal.SIGKILL)
+    cluster.stop("slurmctld")  # killed, it would forget jobs of the last seconds: that is Slurm's
     cluster.start_controller()
     until(lambda: "RUNNING" in cluster("squeue", "-h", "-r", "-o", "%T", check=False), 60, "task that runs again", out)
     number = cluster("squeue", "-h", "-r", "-t", "RUNNING", "-o", "%F_%K").split()[0]
     cluster("scontrol", "requeue", number, check=False)  # it may have ended just now
     cluster("scontrol", "update", "NodeName=node4", "State=DOWN", "Reason=test")
     until(lambda: "no space left on the device" in logs_in(out), 240, "full disk", out)
+    found = status_of(out)
+    assert found["running"] or found["failed"], f"{found}\n{logs_in(out)}"
     subprocess.run(["mount", "-o", f"remount,size={4 * size}", out], check=True)
     cluster("scontrol", "update", "NodeName=node4", "State=RESUME", check=False)  # it may have come back by itself
     cluster.wait(300)
     found = status_of(out)
     assert found["whole"] == f"1-{frames}", f"{found}\n{logs_in(out)}"
+    assert (out / "farm/small.bake.verify.log").read_text().rstrip().endswith("all whole"), logs_in(out)
     said = logs_in(out)
     for what in ("with status 137, and is begun again", "with status 75, and is begun again"):
         assert what in said, f"nothing ended {what}: the test asked nothing\n{said}"

@@ -317,27 +317,32 @@ Verb add_farm(CLI::App& program) {
     command->add_option("--minutes", arguments->minutes, help::kFarmMinutes)
         ->type_name("MINUTES")
         ->check(CLI::Range(0.1, 1440.0).description(""));
-    command->add_option("--sbatch", arguments->sbatch, help::kFarmSbatch)->type_name("OPTION");
+    command->add_option("--sbatch", arguments->sbatch, help::kFarmSbatch)
+        ->type_name("OPTION")
+        ->allow_extra_args(false);
     add_json(*command);
     const std::size_t own = command->get_options().size();
     add_run_options(*command, *arguments, help::kTrustTimes);
+    command->get_option("--out")->description(help::kFarmOut);
+    command->get_option("--threads")->description(help::kFarmThreads);
     const std::size_t of_runs = command->get_options().size();
     add_picture_options(*command, *arguments);
-    return {
-        command, [arguments, command, own, of_runs] {
-            const std::vector<CLI::Option*> options = command->get_options();
-            for (std::size_t i = own; i < options.size(); ++i) {
-                const std::string name = "--" + options[i]->get_lnames().front();
-                if (options[i]->count() == 0 || name == "--out" || name == "--frames" || name == "--threads")
-                    continue;
-                if (i >= of_runs && arguments->verb != "render")
-                    throw WrongUsage(name + " is of pictures: --verb render makes them");
-                for (const std::string& value : options[i]->results())
-                    arguments->passed.push_back(
-                        options[i]->get_items_expected_max() == 0 ? name : name + '=' + shell_word(value));
-            }
-            return run(*arguments);
-        }};
+    return {command, [arguments, command, own, of_runs] {
+                const std::vector<CLI::Option*> options = command->get_options();
+                for (std::size_t i = own; i < options.size(); ++i) {
+                    const std::string name = "--" + options[i]->get_lnames().front();
+                    if (options[i]->count() == 0 || name == "--out" || name == "--frames" ||
+                        name == "--threads" || name == "--chosen")
+                        continue;
+                    if (i >= of_runs && arguments->verb != "render")
+                        throw WrongUsage(name + " is of pictures: --verb render makes them");
+                    for (const std::string& value : options[i]->results())
+                        arguments->passed.push_back(options[i]->get_items_expected_max() == 0
+                                                        ? name
+                                                        : name + '=' + shell_word(value));
+                }
+                return run(*arguments);
+            }};
 }
 
 }  // namespace pelagic::cli

@@ -16,7 +16,7 @@ const char* const kProgramFooter =
     "  pelagic explain storm.toml              what a bake will compute, and why\n"
     "  pelagic accuracy storm.toml             what accuracy costs, measured\n"
     "  pelagic verify storm                    check the files that were written\n"
-    "  pelagic farm storm.toml --out storm     shares a shot out among a farm's machines\n"
+    "  pelagic farm storm.toml --out storm     share a shot out among a farm's machines\n"
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            every key of a shot file\n"
     "  pelagic presets                         seas that a shot file can begin with\n"
@@ -100,7 +100,12 @@ const char* const kFarmFooter =
     "killed, three times at most. Its log is DIR/farm/NAME.VERB.FIRST-LAST.log.\n"
     "\n"
     "Exit status of --status: 0 if all frames are there, 3 if not.";
-const char* const kFarmOut = "The folder for the files and, in its folder farm, the scripts and logs";
+const char* const kFarmOut =
+    "The folder for the files and, in its folder farm, the scripts and logs.\n"
+    "Default: a folder in the working folder, named after the shot";
+const char* const kFarmThreads =
+    "How many cores and threads a task has, 1 to 256.\n"
+    "Default: one for each 4 GiB of its memory";
 const char* const kFarmVerb = "What each task runs: bake or render. Default: bake";
 const char* const kFarmSubmit = "Submit both jobs with sbatch";
 const char* const kFarmStatus =

@@ -82,6 +82,7 @@ extern const char* const kFarmStatus;
 extern const char* const kFarmTasks;
 extern const char* const kFarmMinutes;
 extern const char* const kFarmSbatch;
+extern const char* const kFarmThreads;
 
 extern const char* const kValidate;
 extern const char* const kValidateFooter;

@@ -66,15 +66,18 @@ class Farm : public ::testing::Test {
 
 TEST_F(Farm, ItsTasksLeaveWhatOneBakeLeaves) {
     const std::string out = "a shot's 100% \\\"folder\\\"";
-    ASSERT_EQ(shell("$P farm small.toml --out \"" + out + "\" --tasks 3 --frames 1-12").status, 0);
+    ASSERT_EQ(shell("$P farm --sbatch=--partition=night --sbatch=--nice small.toml --out \"" + out +
+                    "\" --tasks 3 --frames 1-12")
+                  .status,
+              0);
     const Ended tasks = shell("for n in 2 0 1; do bash \"" + out + "\"/farm/small.bake.sh $n || exit; done");
     EXPECT_EQ(tasks.status, 0) << tasks.err;
     EXPECT_EQ(shell("$P bake small.toml --out whole").status, 0);
     const std::string name = "a shot's 100% \"folder\"";
     const std::string script = files_below(folder() / name).at("farm/small.bake.sh");
-    for (const char* part :
-         {"#SBATCH --array=0-2\n", "#SBATCH --requeue\n", "\n    5-8\n", "#SBATCH --mem=",
-          "#SBATCH --cpus-per-task=", "/a shot's 100%% \\\"folder\\\"/farm/small.bake.%a.slurm\"\n"})
+    for (const char* part : {"#SBATCH --array=0-2\n", "#SBATCH --requeue\n", "#SBATCH --partition=night\n",
+                             "#SBATCH --nice\n", "\n    5-8\n", "#SBATCH --mem=", "#SBATCH --cpus-per-task=",
+                             "/a shot's 100%% \\\"folder\\\"/farm/small.bake.%a.slurm\"\n"})
         EXPECT_TRUE(has(script, part)) << part << script;
     for (const char* log : {"farm/small.bake.0001-0004.log", "farm/small.bake.0009-0012.log"})
         EXPECT_TRUE(has(files_below(folder() / name).at(log), "with status 0")) << log;

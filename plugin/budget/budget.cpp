@@ -323,7 +323,7 @@ Said said_in(const std::filesystem::path& folder, const Shot& shot, Purpose purp
 
 // Where files in `folder` (null: none) say what was chosen for this budget, that.
 Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& with,
-                   const std::filesystem::path* folder) {
+                   const std::filesystem::path* folder, const std::string& told = {}) {
     Settled settled{.scene = without_budget(scene)};
     const std::unique_ptr<Choices> from = choices(scene, purpose, with, settled);
     if (purpose == Purpose::Pictures) settled.options = fixed_options(settled.scene, with.fixed);
@@ -350,7 +350,11 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
              ? "; measured on a small picture, which held about " + bytes_text(settled.measuring_bytes)
              : std::string());
     if (!folder) return settled;
-    const Said said = said_in(*folder, scene.shot, purpose, settled.budget);
+    Said said = said_in(*folder, scene.shot, purpose, settled.budget);
+    if (!told.empty()) {
+        said.words = line_text(told);
+        said.is = [&](const std::string& chosen) { return chosen == told; };
+    }
     settled.before = said.record;
     if (said.words.empty()) return settled;
     Settled recorded = settled;
@@ -430,8 +434,12 @@ Settled settle(const Scene& scene, Purpose purpose, const SettleOptions& with) {
 
 Settled settle_for(const RunOptions& run, const Scene& scene, Purpose purpose, const SettleOptions& with,
                    const std::string& or_else) {
-    const Settled found = settled_by(scene, purpose, with, &run.out);
+    const Settled found = settled_by(scene, purpose, with, &run.out, run.settled);
     if (found.budget.empty() || found.is_recorded) return found;
+    if (!run.settled.empty())
+        throw std::invalid_argument(
+            found.budget + ": " + line_text(run.settled) +
+            " isn't among what this budget is given, or errs by more: share the shot out anew");
     const auto asked = static_cast<std::int64_t>(run.frames.size());
     if (held(found, or_else);
         asked > 0 && asked <= std::int64_t{scene.shot.last_frame} - scene.shot.first_frame)

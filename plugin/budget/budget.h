@@ -82,7 +82,8 @@ Settled settle(const Scene& scene, Purpose purpose, const SettleOptions& with = 
 Settled held(Settled settled, const std::string& or_else = {});
 
 // The settings that hold the budget, for a run into a folder: those that its record, or one of its pictures, says were chosen for the
-// same budget, so that all tasks that fill it agree, unless they err by more than max_error in today's shot; otherwise today's.
+// same budget, so that all tasks that fill it agree, unless they err by more than max_error in today's shot; otherwise today's. Where
+// run.settled says what was chosen, that, or it is refused.
 // Throws as settle() and held(), and std::invalid_argument for a part of the shot's frames where the folder says nothing yet, or
 // something that is none of what is chosen from today; a run of all frames then has a note.
 Settled settle_for(const RunOptions& run, const Scene& scene, Purpose purpose, const SettleOptions& with = {},

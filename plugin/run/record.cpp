@@ -455,10 +455,10 @@ void Record::refuse_other_choice(const RecordReading& there, const std::filesyst
     if (choices_.empty() || !there.shot || there.shot->chosen.empty() ||
         std::find(choices_.begin(), choices_.end(), there.shot->chosen) != choices_.end())
         return;
-    throw std::invalid_argument("another run into " + line_text(file.parent_path().string()) +
-                                " has begun meanwhile, with other settings (" +
-                                line_text(there.shot->chosen) + "; here it would be " + choices_.front() +
-                                "): run the same command again, and it takes those");
+    throw ChosenMeanwhile("another run into " + line_text(file.parent_path().string()) +
+                          " has begun meanwhile, with other settings (" + line_text(there.shot->chosen) +
+                          "; here it would be " + choices_.front() +
+                          "): run the same command again, and it takes those");
 }
 
 void Record::begin(const std::filesystem::path& file, const files::LockWatch& waiting,
@@ -533,6 +533,31 @@ void Record::take_in(const std::filesystem::path& file, const files::LockWatch& 
         if (merged == Merged::NotWhole) return;
     }
     if (!unsaved_.empty()) save(file);
+}
+
+bool Record::take_in_fragments(const std::filesystem::path& file, const files::LockWatch& waiting) {
+    if (fragments_of(file).empty()) return false;
+    const files::FolderLock lock(file.parent_path(), waiting);
+    Record record;
+    try {
+        // Frames are of the fragments' readers: here they are only passed by.
+        const auto skip_frames = [](int depth, Json::parse_event_t event, const Json& parsed) {
+            return event != Json::parse_event_t::key || depth != 1 || parsed != "frames";
+        };
+        std::string text;
+        if (!files::read_pieces(file, [&](std::string_view piece) { text += piece; }).empty()) return false;
+        record.shot_ = Json::parse(text, skip_frames);
+        if (!is_as_written("", record.shot_)) return false;
+        record.shot_.erase("checksum");
+        const ShotRecord shot = shot_from_json(record.shot_);
+        record.first_frame_ = shot.first_frame;
+        record.last_frame_ = shot.last_frame;
+        // Of a longer shot they name the frames that are recorded (plugin/run/run.cpp): a bake writes them again.
+        if (!names_all_frames(shot.first_frame, shot.last_frame)) return false;
+    } catch (const Json::exception&) {
+        return false;
+    }
+    return record.merge(file, Taken::All) == Merged::Yes;
 }
 
 bool Record::is_alone(const std::filesystem::path& file) const {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -98,6 +99,17 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
                           const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
                           const std::atomic<bool>* cancel = nullptr);
 
+// Another run into the folder has chosen other settings since this one looked: the same command again takes those.
+class ChosenMeanwhile : public std::invalid_argument {
+  public:
+    using invalid_argument::invalid_argument;
+};
+
+// Whether the files of no frame name all of the shot's, a line of some 70 bytes for each, or those that are recorded.
+inline bool names_all_frames(int first, int last) {
+    return std::int64_t{last} - first < 32768;
+}
+
 // What a run adds to the record of its shot.
 class Record {
   public:
@@ -123,7 +135,7 @@ class Record {
     // All of these take the record's file, DIR/NAME.json, and throw files::FileError.
     //
     // Makes sure that the record tells of this version of the shot. Where it is of another one, or missing, it is written anew with
-    // the frames that it has, those of other versions as stale; fragments stay as they are. Throws std::invalid_argument where it says that another run
+    // the frames that it has, those of other versions as stale; fragments stay as they are. Throws ChosenMeanwhile where it says that another run
     // has chosen otherwise, and what `waiting` throws. `write_static`: what is written, and set, before the record and under its
     // lock; not called where that throws. makes_frames: whether the run has a fragment from now on.
     void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
@@ -137,6 +149,11 @@ class Record {
     // fragment is there, this run's does. `write_static`: as of begin(), before a record that is whole.
     void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {},
                 const std::function<void()>& write_static = {});
+
+    // Of a folder whose runs are over: where the fragments make the record whole they become a part of it, as by finish(), and the
+    // record is the one that a single run leaves. False where nothing was done: there are none, or they don't. Throws
+    // files::FileError.
+    static bool take_in_fragments(const std::filesystem::path& file, const files::LockWatch& waiting = {});
 
     // Why other runs aren't kept from writing the record at the same time, in words; empty where they are, as far as
     // the system says.

@@ -135,8 +135,7 @@ std::map<int, FrameRecord> sealed_frames(const std::filesystem::path& folder, co
 // The frames that files of no frame name: all of the shot, or of a very long one those that are asked for or recorded.
 std::vector<int> named_frames(const Shot& shot, const std::vector<int>& asked,
                               const std::set<int>& recorded) {
-    constexpr std::int64_t kMost = 32768;  // a line for each, some 70 bytes
-    if (std::int64_t{shot.last_frame} - shot.first_frame < kMost) return frames_of(shot, {});
+    if (names_all_frames(shot.first_frame, shot.last_frame)) return frames_of(shot, {});
     std::set<int> named(asked.begin(), asked.end());
     for (const int frame : recorded)
         if (is_in(shot, frame)) named.insert(frame);

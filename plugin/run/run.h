@@ -52,6 +52,8 @@ struct RunOptions {
     // What the shot's settings were chosen for, and which they are (plugin/budget): the record or the pictures say it. Empty: they
     // are the shot's own.
     std::string chosen{};
+    // What whoever shared the shot out says was chosen for its budget (the same words as `chosen`): settle_for() takes that.
+    std::string settled{};
     // What the record said of that when they were settled. A run whose record says by now what another one has chosen is refused.
     std::string chosen_before{};
 };
@@ -79,7 +81,7 @@ struct RunReport {
 };
 
 // Throws what the work throws, files::FileError where a file can't be written (what was finished is kept and recorded), and
-// std::invalid_argument for frames outside the shot's range, and where another run has chosen other settings meanwhile.
+// std::invalid_argument for frames outside the shot's range, and ChosenMeanwhile where another run has chosen other settings meanwhile.
 RunReport run(const RunWork& work, const RunOptions& options);
 
 // Where the time of a finished run went: "compute 41 %, encode 22 %, write 97 % of the time busy; the disk

@@ -112,6 +112,19 @@ bool is_of_missing_frame(const std::string& path, const Known& known) {
            !baked.frames.contains(*frame);
 }
 
+// Whole shots' records take in what lies beside them.
+void merge_records(const fs::path& folder, const std::set<std::string>& records, Verification& found) {
+    std::set<std::string> flawed;
+    for (const Finding& finding : found.findings)
+        flawed.insert(shot_of(fs::path(finding.path).filename().string()));
+    for (const std::string& record : records)
+        if (!flawed.contains(shot_of(record))) try {
+                if (Record::take_in_fragments(folder / record)) found.merged.push_back(record);
+            } catch (const files::FileError& error) {
+                found.notes.emplace_back(error.what());
+            }
+}
+
 bool is_of_frame(const std::string& path) {
     return frame_of(fs::path(path).stem().extension().string(), {".", ""}).has_value();
 }
@@ -198,6 +211,7 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
             finding.flaw = Flaw::Foreign;
             finding.what = "is no record of a bake, and no file here is of such a shot";
         }
+    merge_records(folder, records, found);
     std::stable_sort(found.findings.begin(), found.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.path < b.path; });
     return found;

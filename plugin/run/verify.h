@@ -26,17 +26,20 @@ struct Finding {
 };
 
 struct Verification {
-    std::vector<Finding> findings;  // by path
-    int shots = 0;                  // records
-    int files = 0;                  // that the records know, and pictures
-    std::uintmax_t bytes = 0;       // that these have
+    std::vector<Finding> findings;      // by path
+    int shots = 0;                      // records
+    int files = 0;                      // that the records know, and pictures
+    std::uintmax_t bytes = 0;           // that these have
+    std::vector<std::string> merged{};  // records that took in what lay beside them: NAME.json
+    std::vector<std::string> notes{};   // and why others couldn't, a line each
     bool is_whole() const { return findings.empty() && files > 0; }
 };
 
 // Reads all files in full. A shot's files are known by its record; pictures (NAME.####.exr, .png) by what they say
 // about themselves: those that a folder lacks altogether, nobody knows. Of a shot whose record is damaged, files that
 // are in no entry that is left aren't called foreign. Nor are files of a frame that the record lacks, and those of a
-// stale frame aren't looked at: a bake is at them, or was stopped there. Throws files::FileError where there is no such folder, and
+// stale frame aren't looked at: a bake is at them, or was stopped there. Of a shot that is whole, what runs have recorded beside its
+// record is taken into it, which then is the one that a single run leaves; nothing else is written. Throws files::FileError where there is no such folder, and
 // BuildCancelled.
 Verification verify(const std::filesystem::path& folder, const BuildWatch& watch = {});
 

@@ -72,7 +72,7 @@ def lay_out(draw, folder):
 def run(verb, shot, keys, out):
     shot.write_text(common_shots.shot_text(keys), encoding="utf-8")
     done = campaign.run(verb, shot, "--out", out, *(("--samples", "1") if verb == "render" else ()), timeout=300)
-    campaign.ended_well(done, (0, 1))
+    campaign.ended_well(done, (0, 2, 75))
     return done
 
 

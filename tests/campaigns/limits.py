@@ -45,14 +45,14 @@ def judge(draw, folder):
     if draw.case < len(STACK_CASES):
         what, kib = STACK_CASES[draw.case]
         run = campaign.run(*arguments_of(what, folder), limits={resource.RLIMIT_STACK: kib << 10}, timeout=120)
-        campaign.ended_well(run, (0, 1))
+        campaign.ended_well(run, (0, 75))
         return
     number = draw.case - len(STACK_CASES)
     what, space, size_mb, time = SPACE_CASES[number]
     # The last time past the check of memory, so that it runs out in the middle of the work.
     unchecked = ["--max-memory", "8G"] if time == TIMES - 1 else []
     run = campaign.run(*arguments_of(what, folder), *unchecked, limits={SPACES[space]: size_mb * 1000 * 1000}, timeout=60)
-    campaign.ended_well(run, (0, 1))
+    campaign.ended_well(run, (0, 75))
     campaign.expect("bug in the program" not in run.err, "lack of memory is said to be a bug", run)
     out = folder / "out"
     has_files = out.exists() and any(map(is_under_its_name, out.rglob("*")))

@@ -131,7 +131,7 @@ def judge(draw, folder):
         allowed = "1K" if need == 0.0 else f"{need + 1.0:.0f}M"
         refused = campaign.run(*arguments, "--max-memory", allowed, timeout=600)
         named = re.search(r"needs (about|at least) ([\d.]+) ([KMG]iB) of memory", refused.err)
-        campaign.expect(refused.status == 1 and named, "it isn't refused with the memory that it needs", refused)
+        campaign.expect(refused.status == 75 and named, "it isn't refused with the memory that it needs", refused)
         campaign.expect(not (folder / "out").exists(), "a refused run left a folder", refused)
         how, more = named[1], mib_of(named[2], named[3])
         campaign.expect(more > need, f"with {allowed} it needs {how} {more:.1f} MiB", refused)

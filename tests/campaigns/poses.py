@@ -63,7 +63,7 @@ def judge(draw, folder):
 
     out = folder / "pictures"
     done = campaign.run("render", shot, "--out", out, "--samples", "1", timeout=300)
-    campaign.ended_well(done, (0, 1))
+    campaign.ended_well(done, (0, 2, 75))
     if done.status:
         campaign.expect(str(shot) in done.err and not out.exists(), f"{words}: refused, but how", done)
         campaign.expect("memory" in done.err or height_m < 3 * scene.significant_height_m(),
@@ -76,7 +76,7 @@ def judge(draw, folder):
 
     out = folder / "mesh"
     done = campaign.run("bake", shot, "--out", out, timeout=300)
-    campaign.ended_well(done, (0, 1))
+    campaign.ended_well(done, (0, 2, 75))
     if done.status:
         campaign.expect(str(shot) in done.err and not out.exists(), f"{words}: grid refused, but how", done)
         campaign.count("grids refused")

@@ -26,10 +26,10 @@ def judge(draw, folder):
     keys = common_shots.shot(draw, folder)
     shot.write_text(common_shots.shot_text(keys), encoding="utf-8")
     valid = campaign.run("validate", shot)
-    campaign.ended_well(valid, (0, 1))
+    campaign.ended_well(valid, (0, 2, 75))
     out = folder / "out"
     first = campaign.run("bake", shot, "--out", out, "--threads", "2", timeout=300)
-    campaign.ended_well(first, (0, 1))
+    campaign.ended_well(first, (0, 2, 75))
     if first.status:
         campaign.expect(str(shot) in first.err, "refused without the file's name", first)
         campaign.expect(not out.exists(), "refused, and something was written", first)
@@ -106,7 +106,7 @@ def judge_pictures(draw, folder, keys, shot):
     size = draw.choice(["24x16", "33x9", "1x1"])
     arguments = ("render", shot, "--size", size, "--samples", "1", "--frames", str(keys["shot.frames"][0]), "--out")
     done = campaign.run(*arguments, out, "--threads", "2", timeout=300)
-    campaign.ended_well(done, (0, 1))
+    campaign.ended_well(done, (0, 2, 75))
     if done.status:
         campaign.expect(not out.exists(), "refused, and something was written", done)
         campaign.count("pictures refused")

@@ -31,7 +31,7 @@ class View {
 };
 
 // Throws std::invalid_argument, for a message after the option's name, for a configuration that can't be read or doesn't
-// know such a display, view or space, with what it knows; std::runtime_error if OpenColorIO can't be loaded.
+// know such a display, view or space, with what it knows; std::system_error if OpenColorIO can't be loaded.
 std::shared_ptr<const View> make_view(const ViewChoice& choice);
 
 }  // namespace pelagic::ocio

@@ -7,6 +7,7 @@
 #include <latch>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -48,9 +49,10 @@ const OpenVdbWriter& writer() {
         void* const library = ::dlopen(PELAGIC_OPENVDB_WRITER, RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
         if (!symbol)
-            throw std::runtime_error(
+            throw std::system_error(
+                std::make_error_code(std::errc::not_supported),
                 std::string("OpenVDB can't be loaded: ") + ::dlerror() +
-                "; volumes need that file of Pelagic's, and the OpenVDB that it was built with");
+                    "; volumes need that file of Pelagic's, and the OpenVDB that it was built with");
         return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(symbol)();
     }();
     return loaded;

@@ -13,6 +13,7 @@
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/memory.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
@@ -85,11 +86,8 @@ Verb add_bake(CLI::App& program) {
     CLI::App* command = program.add_subcommand("bake", help::kBake)->footer(help::kBakeFooter);
     auto arguments = std::make_shared<RunArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
-    command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
-    command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
-    command->add_flag("--trust-times", arguments->trust_times, help::kTrustTimes);
-    add_threads(*command, arguments->threads, help::kThreads);
-    add_max_memory(*command, arguments->max_memory, help::kMaxMemory);
+    add_run_options(*command, *arguments, help::kTrustTimes);
+    add_json(*command);
     return {command, [arguments] { return run(*arguments); }};
 }
 

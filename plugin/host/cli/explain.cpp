@@ -20,10 +20,13 @@
 #include "plugin/bake/measure.h"
 #include "plugin/bake/stage.h"
 #include "plugin/budget/budget.h"
+#include "plugin/budget/calibration.h"
 #include "plugin/format/shot/shot.h"
+#include "plugin/host/cli/account.h"
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/threads.h"
 #include "plugin/host/cli/verb.h"
@@ -83,8 +86,7 @@ int print_prices(const Scene& scene, const ExplainArguments& arguments) {
         const int threads = session.threads.count();
         needed = measure_bytes(scene, threads);
         if (const MemoryLimit limit = machine::memory_limit(); needed > limit.bytes)
-            throw std::runtime_error(
-                too_large(needed, ", and " + limit.whose + " " + bytes_text(limit.bytes)));
+            throw NotEnoughMemory(too_large(needed, ", and " + limit.whose + " " + bytes_text(limit.bytes)));
         std::cout
             << "\nPrices: a frame with the item minus a frame without it, on "
             << count_text(threads, "thread", "threads") << ", " << instruction_set()
@@ -150,6 +152,26 @@ void print_keyed(const Scene& scene) {
         std::cout << "A bake refuses " << problem.key << ": it " << problem.problem << ".\n";
 }
 
+// --json: what a frame takes here, by what was measured of this machine where that is known.
+void tell_accounts(const Settled& pictures, const Plan& plan) {
+    const int threads = tbb::this_task_arena::max_concurrency();
+    const auto kept = kept_calibration(cache_folder());
+    const Rates rates = kept ? kept->rates() : rates_on(threads);
+    const Shot& shot = plan.from->scene.shot;
+    nlohmann::ordered_json told{{"event", "result"},  {"verb", "explain"},
+                                {"name", shot.name},  {"frames", {shot.first_frame, shot.last_frame}},
+                                {"threads", threads}, {"rates", kept ? "measured" : "recorded"}};
+    if (!plan.outputs.empty()) {
+        told["bake"] = json_of(bake_account(plan, shot.last_frame - shot.first_frame + 1, threads, rates));
+        told["bake"]["transforms_a_frame"] = plan.transforms_per_frame();
+    }
+    told["pictures"] = json_of(picture_account(pictures.scene, pictures.options, threads, rates));
+    told["pictures"]["resolution"] = {pictures.scene.camera.resolution.x, pictures.scene.camera.resolution.y};
+    told["pictures"]["samples"] = pictures.options.samples;
+    told["text"] = explain(plan);
+    tell_json(told);
+}
+
 // What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.
 void print_memory(const Scene& scene, const RenderOptions& options, const Plan& plan) {
     const int threads = tbb::this_task_arena::max_concurrency();
@@ -181,6 +203,7 @@ Verb add_explain(CLI::App& program) {
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
+    add_json(*command);
     return {command, [arguments] {
                 const Scene scene = load_shot(arguments->shot, check_scene);
                 const Plan plan = plan_bake(print_settled(scene, Purpose::Mesh, "Budget").scene);
@@ -188,6 +211,7 @@ Verb add_explain(CLI::App& program) {
                 const Settled pictures = print_settled(scene, Purpose::Pictures, "\nBudget of pictures");
                 print_memory(pictures.scene, pictures.options, plan);
                 print_warnings(arguments->shot, scene);
+                if (is_json()) tell_accounts(pictures, plan);
                 return arguments->measure ? print_prices(plan.from->scene, *arguments) : int{kDone};
             }};
 }

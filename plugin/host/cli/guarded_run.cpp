@@ -8,6 +8,8 @@
 #include "core/plan/memory.h"
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/memory.h"
 #include "plugin/host/cli/text.h"
 
@@ -24,7 +26,7 @@ int guarded_run(const Guard& guard, const std::function<int(Session&)>& work) {
     } catch (const std::bad_alloc&) {
         if (!guard.out_of_memory) throw;
         std::cerr << "pelagic: " << guard.out_of_memory(threads.count()) << '\n';
-        return kRefused;
+        return kTryAgain;
     } catch (const NotEnoughMemory& error) {
         if (guard.shot.empty()) throw;
         return refuse_memory(guard.shot, error);
@@ -32,12 +34,21 @@ int guarded_run(const Guard& guard, const std::function<int(Session&)>& work) {
         // load_shot() has looked at every value with its line: what is refused here is what it can't see.
         if (guard.shot.empty()) throw;
         std::cerr << placed(guard.shot, error.what()) << '\n';
-        return kRefused;
+        return status_of(error);
     } catch (const BuildCancelled&) {
         if (!stop || !guard.stopped) throw;
         std::cerr << "pelagic: stopped; " << guard.stopped() << '\n';
         return kSignal + stop->number();
     }
+}
+
+void add_run_options(CLI::App& command, RunArguments& arguments, const char* trust_times) {
+    command.add_option("--out", arguments.out, help::kOut)->type_name("DIR");
+    command.add_option("--frames", arguments.frames, help::kFrames)->type_name("FRAMES");
+    command.add_flag("--trust-times", arguments.trust_times, trust_times);
+    command.add_option("--chosen", arguments.chosen, help::kChosen)->type_name("TEXT");
+    add_threads(command, arguments.threads, help::kThreads);
+    add_max_memory(command, arguments.max_memory, help::kMaxMemory);
 }
 
 RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
@@ -48,6 +59,7 @@ RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
     options.out = arguments.out.value_or(shot.name);
     options.max_memory_bytes = memory_of(arguments.max_memory);
     options.trust_times = arguments.trust_times;
+    options.settled = arguments.chosen;
     return options;
 }
 
@@ -88,6 +100,15 @@ int run_frames(const RunArguments& arguments, RunOptions options, const FrameVer
                            if (report.cancelled) throw BuildCancelled();
                            session.progress.clear();
                            verb.report(report, out);
+                           tell_json({{"event", "result"},
+                                      {"done", report.done},
+                                      {"kept", report.kept},
+                                      {"total", report.total},
+                                      {"seconds", report.seconds},
+                                      {"record", report.record.string()},
+                                      {"damaged", report.damaged},
+                                      {"foreign", report.foreign},
+                                      {"stale", report.stale}});
                            return int{kDone};
                        });
 }

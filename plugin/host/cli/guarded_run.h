@@ -1,6 +1,7 @@
 // What verbs do alike around their work: threads, progress, stop signals, and what is said where it fails.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -53,8 +54,10 @@ struct RunArguments {
     std::string shot;
     std::optional<std::string> out, frames;
     std::string threads, max_memory;
+    std::string chosen;
     bool trust_times = false;
 };
+void add_run_options(CLI::App& command, RunArguments& arguments, const char* trust_times);
 // Throws WrongUsage.
 RunOptions run_options(const RunArguments& arguments, const Shot& shot);
 

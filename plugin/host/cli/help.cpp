@@ -16,6 +16,7 @@ const char* const kProgramFooter =
     "  pelagic explain storm.toml              what a bake will compute, and why\n"
     "  pelagic accuracy storm.toml             what accuracy costs, measured\n"
     "  pelagic verify storm                    check the files that were written\n"
+    "  pelagic farm storm.toml --out storm     share a shot out among a farm's machines\n"
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            every key of a shot file\n"
     "  pelagic presets                         seas that a shot file can begin with\n"
@@ -23,9 +24,15 @@ const char* const kProgramFooter =
     "\n"
     "\"pelagic VERB --help\" has more on each verb.\n"
     "\n"
-    "Exit status: 0 if everything requested is complete; 1 if a shot file is invalid, a file can't\n"
-    "be read or written, or verify finds something wrong; 2 for an error on the command line; 128 plus the number\n"
-    "of the signal that stopped the program (130: Ctrl-C).";
+    "Exit status:\n"
+    "  0        everything that was asked for is whole\n"
+    "  1        an error that nobody knows; please report it\n"
+    "  2        what was asked for can't be, and the same again gives the same: the command line, a shot\n"
+    "           file, a folder that can't be written into, a part that this machine lacks\n"
+    "  3        not whole: verify or farm --status found something missing or wrong\n"
+    "  75       try again, later or on another machine: the disk (full, failing), memory, threads, or another\n"
+    "           run that was first\n"
+    "  128 + N  stopped by signal N (130: Ctrl-C)";
 const char* const kVersion = "Print the version and what the program was built with, and exit";
 const char* const kVerbs = "Verbs";
 const char* const kHelp = "Print this help and exit";
@@ -67,6 +74,49 @@ const char* const kPreviewMaxMemory =
 const char* const kTrustTimes =
     "Don't read the files that are there: those of the recorded size that are no newer than the\n"
     "record count as whole. Faster for many gigabytes, and damage goes unnoticed";
+
+const char* const kChosen =
+    "What the shot's budget was settled to, in the words of its record (\"chosen\"): for tasks that each make\n"
+    "a part of the shot. pelagic farm gives it";
+const char* const kJson =
+    "Say it for programs: an object a line on stdout, with \"event\": progress, message, result or end";
+
+const char* const kFarm =
+    "Share a shot out among a farm's machines: a job array for Slurm.\n"
+    "Writes DIR/farm/NAME.VERB.sh, each of whose tasks makes a part of the frames, and NAME.VERB.verify.sh,\n"
+    "which checks the folder when all have ended. A budget is settled here, once for all of them; how many\n"
+    "frames a task has, its memory and its cores follow from what a frame costs by the shot's plan.\n"
+    "Bakes nothing itself. Further options are those of bake and render, and the tasks get them.";
+const char* const kFarmFooter =
+    "Examples:\n"
+    "  pelagic farm storm.toml --out /data/storm                   writes the scripts, and says how to submit them\n"
+    "  pelagic farm storm.toml --out /data/storm --submit          and submits them with sbatch\n"
+    "  pelagic farm storm.toml --out /data/storm --verb render --samples 4 --sbatch=--partition=night\n"
+    "  pelagic farm --status /data/storm                           whole, running, failed and missing frames\n"
+    "  bash /data/storm/farm/storm.bake.sh 3                       task 3 without Slurm, for any other queue\n"
+    "\n"
+    "A task may be killed, begun again, run twice at once or lost with its machine: nothing is torn, and the\n"
+    "same array again makes what is missing. It asks Slurm to begin it again where it ends with status 75 or is\n"
+    "killed, three times at most. Its log is DIR/farm/NAME.VERB.FIRST-LAST.log.\n"
+    "\n"
+    "Exit status of --status: 0 if all frames are there, 3 if not.";
+const char* const kFarmOut =
+    "The folder for the files and, in its folder farm, the scripts and logs.\n"
+    "Default: a folder in the working folder, named after the shot";
+const char* const kFarmThreads =
+    "How many cores and threads a task has, 1 to 256.\n"
+    "Default: one for each 4 GiB of its memory";
+const char* const kFarmVerb = "What each task runs: bake or render. Default: bake";
+const char* const kFarmSubmit = "Submit both jobs with sbatch";
+const char* const kFarmStatus =
+    "Say what is whole, missing, running and failed, of the jobs that were written into this folder: from the\n"
+    "record or the pictures, the tasks' logs, and squeue where there is one";
+const char* const kFarmTasks =
+    "How many tasks, 1 to 1000.\n"
+    "Default: so many that each takes about --minutes";
+const char* const kFarmMinutes = "How long a task should take, in minutes, 0.1 to 1440. Default: 10";
+const char* const kFarmSbatch =
+    "An option for sbatch, as --sbatch=--partition=night; may be given several times";
 
 const char* const kRender =
     "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"
@@ -252,7 +302,8 @@ const char* const kVerify =
     "  foreign      named as a bake's files are, and in no record\n"
     "  interrupted  of a bake that was stopped before it wrote its record\n"
     "A frame that a bake is at, or was stopped at, is missing or stale: its files aren't named one by one.\n"
-    "Changes nothing: the next bake or render makes again what is missing, damaged or stale.";
+    "Deletes and repairs nothing: the next bake or render makes again what is missing, damaged or stale.\n"
+    "Where a shot is whole, what its tasks have recorded becomes DIR/NAME.json, as a single bake leaves it.";
 const char* const kVerifyFooter =
     "Examples:\n"
     "  pelagic verify storm\n"
@@ -260,7 +311,7 @@ const char* const kVerifyFooter =
     "\n"
     "A picture whose .exr and .png are both gone isn't missed: pictures have no record.\n"
     "\n"
-    "Exit status: 0 if every folder is whole; 1 if something isn't as it was written,\n"
+    "Exit status: 0 if every folder is whole; 3 if something isn't as it was written,\n"
     "if a folder holds nothing to check, or can't be read; 2 for an error on the command line; 128\n"
     "plus the signal's number if it was stopped (130: Ctrl-C).";
 const char* const kFolders = "The folders that were baked or rendered into";

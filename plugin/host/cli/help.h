@@ -17,6 +17,8 @@ extern const char* const kOut;
 extern const char* const kFrames;
 extern const char* const kThreads;
 extern const char* const kTrustTimes;
+extern const char* const kChosen;
+extern const char* const kJson;
 
 extern const char* const kMaxMemory;
 extern const char* const kPreviewMaxMemory;
@@ -70,6 +72,17 @@ extern const char* const kVerify;
 extern const char* const kVerifyFooter;
 extern const char* const kFolders;
 extern const char* const kVerifyThreads;
+
+extern const char* const kFarm;
+extern const char* const kFarmFooter;
+extern const char* const kFarmOut;
+extern const char* const kFarmVerb;
+extern const char* const kFarmSubmit;
+extern const char* const kFarmStatus;
+extern const char* const kFarmTasks;
+extern const char* const kFarmMinutes;
+extern const char* const kFarmSbatch;
+extern const char* const kFarmThreads;
 
 extern const char* const kValidate;
 extern const char* const kValidateFooter;

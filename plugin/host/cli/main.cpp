@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
     pelagic::machine::settle_threads();
-    int status = pelagic::cli::kRefused;
+    int status = pelagic::cli::kTryAgain;
     if (pelagic::machine::run_on_large_stack([&] { status = pelagic::cli::run_program(argc, argv); }))
         return status;
     constexpr char kNoStack[] =

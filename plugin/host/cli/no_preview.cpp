@@ -12,7 +12,7 @@ Verb add_preview(CLI::App& program) {
     command->allow_extras();  // whatever it is asked for, the answer is the same
     return {command, [] {
                 std::cerr << "pelagic: " << help::kNoPreview << '\n';
-                return kRefused;
+                return kWrongUsage;
             }};
 }
 

@@ -168,7 +168,14 @@ Verb add_preview(CLI::App& program) {
     screenshot->excludes(offscreen);
     add_threads(*command, arguments->threads, help::kPreviewThreads);
     add_max_memory(*command, arguments->max_memory, help::kPreviewMaxMemory);
-    return {command, [arguments] { return run(*arguments); }};
+    return {command, [arguments] {
+                try {
+                    return run(*arguments);
+                } catch (const PreviewError& error) {
+                    std::cerr << "pelagic: " << error.what() << '\n';
+                    return int{kWrongUsage};
+                }
+            }};
 }
 
 }  // namespace pelagic::cli

@@ -27,6 +27,7 @@
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
 
@@ -114,10 +115,10 @@ int run(int argc, const char* const* argv) {
     formatter->label("SUBCOMMAND", "VERB");
     formatter->column_width(22);
     program.formatter(formatter);  // inherited by the verbs
-    const std::vector<Verb> verbs{add_bake(program),     add_render(program),   add_preview(program),
-                                  add_explain(program),  add_accuracy(program), add_verify(program),
-                                  add_validate(program), add_keys(program),     add_presets(program),
-                                  add_calibrate(program)};
+    const std::vector<Verb> verbs{add_bake(program),    add_render(program),   add_preview(program),
+                                  add_explain(program), add_accuracy(program), add_verify(program),
+                                  add_farm(program),    add_validate(program), add_keys(program),
+                                  add_presets(program), add_calibrate(program)};
 
     if (argc < 2) return usage_error("a verb is missing", "pelagic");
     for (const Verb& verb : verbs) verb.command->group(help::kVerbs);
@@ -139,9 +140,9 @@ int run(int argc, const char* const* argv) {
     return kWrongUsage;
 }
 
-int failed(std::string_view message) {
+int failed(std::string_view message, int status) {
     std::cerr << message << '\n';
-    return kRefused;
+    return status;
 }
 
 // A closed standard stream's number must not become an output file's, which messages would then be written into.
@@ -159,29 +160,25 @@ constexpr const char* kNoThread =
     "pelagic: the system refuses another thread; ask for fewer with --threads, or raise the limit on processes or "
     "memory (ulimit -u, ulimit -v); files already written are whole";
 
-// oneTBB's exception says it in words only.
-bool is_about_threads(const std::exception& error) {
-    const auto* system = dynamic_cast<const std::system_error*>(&error);
-    return (system && system->code() == std::errc::resource_unavailable_try_again) ||
-           std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
-}
-
 [[noreturn]] void end_at_once() {
     static std::atomic_flag is_ending;  // several threads may come here
     while (is_ending.test_and_set()) pause();
     const char* message =
         "pelagic: an error that nothing handles; this is a bug in the program, please report it";
+    int status = kUnknown;
     try {
         if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
     } catch (const std::bad_alloc&) {
         message = "pelagic: out of memory; files already written are whole";
+        status = kTryAgain;
     } catch (const std::exception& error) {
+        status = status_of(error);
         if (is_about_threads(error)) message = kNoThread;
     } catch (...) {
     }
     for (const char* part : {message, "\n"})
         if (write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
-    _exit(kRefused);
+    _exit(status);
 }
 
 // Whether whoever reads our output has gone, as head does when it has enough.
@@ -195,7 +192,27 @@ int flushed(int status) {
     if (std::cout.flush()) return status;
     if (is_reader_gone()) raise(SIGPIPE);  // ends the program without a word, as it ends other tools
     std::cerr << "pelagic: standard output can't be written to: is it closed, or its disk full?\n";
-    return std::max(status, kRefused);
+    return status == kDone ? kTryAgain : status;
+}
+
+// run(), and what it throws, as messages.
+int said_run(int argc, const char* const* argv) {
+    try {
+        return run(argc, argv);
+    } catch (const ShotError& error) {
+        return failed(error.what(),
+                      status_of(error));  // each line begins with the file, as compilers' messages do
+    } catch (const std::bad_alloc&) {
+        return failed(
+            "pelagic: out of memory; lower the resolution (pelagic explain shows what takes how much)",
+            kTryAgain);
+    } catch (const std::exception& error) {
+        return failed(is_about_threads(error) ? kNoThread : std::string("pelagic: ") + error.what(),
+                      status_of(error));
+    } catch (...) {
+        return failed("pelagic: an error without a message; this is a bug in the program, please report it",
+                      kUnknown);
+    }
 }
 
 }  // namespace
@@ -206,16 +223,16 @@ int run_program(int argc, const char* const* argv) noexcept {
         std::set_terminate(end_at_once);
         // A file beyond the limit (ulimit -f) is an error with a message, also where it is a log.
         std::signal(SIGXFSZ, SIG_IGN);
-        return flushed(run(argc, argv));
-    } catch (const ShotError& error) {
-        return failed(error.what());  // each line begins with the file, as compilers' messages do
-    } catch (const std::bad_alloc&) {
-        return failed(
-            "pelagic: out of memory; lower the resolution (pelagic explain shows what takes how much)");
-    } catch (const std::exception& error) {
-        return failed(is_about_threads(error) ? kNoThread : std::string("pelagic: ") + error.what());
+        if (!asks_for_json(argc, argv)) return flushed(said_run(argc, argv));
+        int status = kUnknown;
+        {
+            JsonOutput json;
+            status = said_run(argc, argv);
+            json.end(status);
+        }
+        return flushed(status);
     } catch (...) {
-        return failed("pelagic: an error without a message; this is a bug in the program, please report it");
+        return kUnknown;
     }
 }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 
 namespace pelagic::cli {
@@ -35,6 +36,11 @@ int terminal_columns() {
 
 std::string percent(double share) {
     return std::to_string(std::lround(100.0 * share)) + " %";
+}
+
+const char* word_of(RunStage stage) {
+    constexpr std::array kWords{"planning", "checking", "building", "looking", "frames", "waiting"};
+    return kWords[static_cast<std::size_t>(stage)];
 }
 
 int finished(const RunProgress& progress) {
@@ -102,9 +108,26 @@ std::string progress_bar(const RunProgress& progress, int columns) {
            text;
 }
 
-Progress::Progress() : terminal_(is_terminal()) {}
+Progress::Progress() : terminal_(is_terminal() && !is_json()) {}
+
+void Progress::tell(const RunProgress& progress) {
+    const Clock::time_point now = Clock::now();
+    const std::pair moment(progress.stage, finished(progress));
+    if (told_ == moment && now - last_ < std::chrono::seconds(1)) return;
+    told_ = moment;
+    last_ = now;
+    tell_json({{"event", "progress"},
+               {"stage", word_of(progress.stage)},
+               {"frame", progress.frame},
+               {"done", progress.done},
+               {"kept", progress.kept},
+               {"total", progress.total},
+               {"seconds", progress.seconds},
+               {"share", progress.share}});
+}
 
 void Progress::show(const RunProgress& progress) {
+    if (is_json()) return tell(progress);
     switch (progress.stage) {
         case RunStage::Planning:
             return;  // milliseconds
@@ -153,6 +176,7 @@ void Progress::show(const std::string& line) {
     if (frame_said_ && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery)) return;
     frame_said_ = true;
     last_ = now;
+    if (is_json()) return tell_json({{"event", "progress"}, {"text", line}});
     if (terminal_) return write_over(line.substr(0, static_cast<std::size_t>(terminal_columns()) - 1));
     print(line + '\n');
 }

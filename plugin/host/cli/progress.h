@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "plugin/run/run.h"
 
@@ -23,6 +25,7 @@ class Progress {
   private:
     using Clock = std::chrono::steady_clock;
 
+    void tell(const RunProgress& progress);  // --json
     void show_building(double built);
     void write_over(const std::string& line);
 
@@ -32,6 +35,7 @@ class Progress {
     bool frame_said_ = false;
     bool waiting_said_ = false;
     Clock::time_point last_;
+    std::optional<std::pair<RunStage, int>> told_{};  // frames that were finished then
 };
 
 // One line for a terminal of this width: "[######----] frame 12  13/48  3.4 frames/s  10 s left".

@@ -24,7 +24,9 @@
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/memory.h"
+#include "plugin/host/cli/render_order.h"
 #include "plugin/host/cli/size.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
@@ -34,14 +36,6 @@
 
 namespace pelagic::cli {
 namespace {
-
-struct RenderArguments : RunArguments {
-    std::optional<std::string> terms, sky_quality, layers;
-    std::optional<int> samples;
-    double exposure_stops = 0.0, shutter_frames = 0.0;
-    bool alpha = false;
-    std::string size, ocio, display, view, space, primaries = "rec709";
-};
 
 // "sun,sea": those alone.
 void parse_terms(const std::string& text, LightingChoice& choice) {
@@ -108,6 +102,8 @@ PictureColours colours_of(const RenderArguments& arguments) {
     return colours;
 }
 
+}  // namespace
+
 PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
     PictureOrder order{.scene = load_shot(arguments.shot, check_scene), .options = {}};
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) order.scene.camera.resolution = size;
@@ -134,6 +130,8 @@ PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
     order.colours = colours_of(arguments);
     return order;
 }
+
+namespace {
 
 // Pictures take long: each says how far it is.
 void show_pictures(const RunProgress& now, Progress& progress) {
@@ -193,28 +191,29 @@ int run(const RenderArguments& arguments) {
 
 }  // namespace
 
+void add_picture_options(CLI::App& command, RenderArguments& arguments) {
+    add_size(command, arguments.size, help::kSize);
+    command.add_option("--exposure", arguments.exposure_stops, help::kExposure)->type_name("EV");
+    command.add_option("--samples", arguments.samples, help::kSamples)->type_name("N");
+    command.add_option("--sky-quality", arguments.sky_quality, help::kSkyQuality)->type_name("QUALITY");
+    command.add_option("--terms", arguments.terms, help::kTerms)->type_name("TERMS");
+    command.add_option("--shutter", arguments.shutter_frames, help::kShutter)->type_name("FRAMES");
+    command.add_flag("--alpha", arguments.alpha, help::kAlpha);
+    command.add_option("--layers", arguments.layers, help::kLayers)->type_name("LAYERS");
+    command.add_option("--ocio", arguments.ocio, help::kOcio)->type_name("CONFIG");
+    command.add_option("--ocio-display", arguments.display, help::kOcioDisplay)->type_name("NAME");
+    command.add_option("--ocio-view", arguments.view, help::kOcioView)->type_name("NAME");
+    command.add_option("--ocio-space", arguments.space, help::kOcioSpace)->type_name("NAME");
+    command.add_option("--primaries", arguments.primaries, help::kPrimaries)->type_name("NAME");
+}
+
 Verb add_render(CLI::App& program) {
     CLI::App* command = program.add_subcommand("render", help::kRender)->footer(help::kRenderFooter);
     auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
-    command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
-    command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
-    add_size(*command, arguments->size, help::kSize);
-    command->add_option("--exposure", arguments->exposure_stops, help::kExposure)->type_name("EV");
-    command->add_option("--samples", arguments->samples, help::kSamples)->type_name("N");
-    command->add_option("--sky-quality", arguments->sky_quality, help::kSkyQuality)->type_name("QUALITY");
-    command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
-    command->add_option("--shutter", arguments->shutter_frames, help::kShutter)->type_name("FRAMES");
-    command->add_flag("--alpha", arguments->alpha, help::kAlpha);
-    command->add_option("--layers", arguments->layers, help::kLayers)->type_name("LAYERS");
-    command->add_option("--ocio", arguments->ocio, help::kOcio)->type_name("CONFIG");
-    command->add_option("--ocio-display", arguments->display, help::kOcioDisplay)->type_name("NAME");
-    command->add_option("--ocio-view", arguments->view, help::kOcioView)->type_name("NAME");
-    command->add_option("--ocio-space", arguments->space, help::kOcioSpace)->type_name("NAME");
-    command->add_option("--primaries", arguments->primaries, help::kPrimaries)->type_name("NAME");
-    command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
-    add_threads(*command, arguments->threads, help::kThreads);
-    add_max_memory(*command, arguments->max_memory, help::kMaxMemory);
+    add_run_options(*command, *arguments, help::kTrustPictures);
+    add_picture_options(*command, *arguments);
+    add_json(*command);
     return {command, [arguments] { return run(*arguments); }};
 }
 

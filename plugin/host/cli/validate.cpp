@@ -14,6 +14,7 @@
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
 #include "plugin/host/cli/warnings.h"
@@ -55,24 +56,27 @@ Verb add_validate(CLI::App& program) {
     CLI::App* command = program.add_subcommand("validate", help::kValidate)->footer(help::kValidateFooter);
     auto files = std::make_shared<std::vector<std::string>>();
     command->add_option("SHOT.toml", *files, help::kShots)->required()->type_name("");
-    return {command, [files] {
-                int status = kDone;
-                for (const std::string& file : *files) {
-                    try {
-                        const Scene scene = load_shot(file, check_scene);
-                        const Settled settled = settle(scene, Purpose::Mesh, with_rates(recorded_rates()));
-                        if (!settled.holds)
-                            throw ShotError(placed(file, settled.text + "; raise the budget"));
-                        const Plan plan = plan_bake(settled.scene);
-                        std::cout << line_text(file) << ": fine\n    " << summary(scene, plan) << std::endl;
-                        print_warnings(file, scene);
-                    } catch (const ShotError& error) {
-                        std::cerr << error.what() << std::endl;
-                        status = kRefused;
-                    }
+    add_json(*command);
+    return {
+        command, [files] {
+            int status = kDone;
+            for (const std::string& file : *files) {
+                try {
+                    const Scene scene = load_shot(file, check_scene);
+                    const Settled settled = settle(scene, Purpose::Mesh, with_rates(recorded_rates()));
+                    if (!settled.holds) throw ShotError(placed(file, settled.text + "; raise the budget"));
+                    const Plan plan = plan_bake(settled.scene);
+                    std::cout << line_text(file) << ": fine\n    " << summary(scene, plan) << std::endl;
+                    tell_json({{"event", "result"}, {"verb", "validate"}, {"shot", file}, {"valid", true}});
+                    print_warnings(file, scene);
+                } catch (const ShotError& error) {
+                    std::cerr << error.what() << std::endl;
+                    tell_json({{"event", "result"}, {"verb", "validate"}, {"shot", file}, {"valid", false}});
+                    status = kWrongUsage;
                 }
-                return status;
-            }};
+            }
+            return status;
+        }};
 }
 
 }  // namespace pelagic::cli

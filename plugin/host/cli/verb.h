@@ -24,5 +24,6 @@ Verb add_keys(CLI::App& program);
 Verb add_presets(CLI::App& program);
 Verb add_accuracy(CLI::App& program);
 Verb add_calibrate(CLI::App& program);
+Verb add_farm(CLI::App& program);
 
 }  // namespace pelagic::cli

@@ -12,6 +12,7 @@
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/threads.h"
 #include "plugin/host/cli/verb.h"
@@ -38,6 +39,18 @@ std::string summary(const Verification& found) {
     return text + (flaws.empty() ? "no bake and no pictures are here" : flaws);
 }
 
+nlohmann::ordered_json json_of(const Verification& found, const std::string& folder) {
+    nlohmann::ordered_json told{{"event", "result"},    {"verb", "verify"},
+                                {"folder", folder},     {"whole", found.is_whole()},
+                                {"shots", found.shots}, {"files", found.files},
+                                {"bytes", found.bytes}, {"findings", nlohmann::ordered_json::array()}};
+    told["merged"] = found.merged;
+    for (const Finding& finding : found.findings)
+        told["findings"].push_back(
+            {{"path", finding.path}, {"flaw", word_of(finding.flaw)}, {"what", finding.what}});
+    return told;
+}
+
 int run(const VerifyArguments& arguments) {
     std::string at;  // the folder that is read
     const auto check_all = [&](Session& session) {
@@ -59,11 +72,17 @@ int run(const VerifyArguments& arguments) {
                     std::cout << word_of(finding.flaw) << ": " << line_text(folder + '/' + finding.path)
                               << ' ' << finding.what << '\n';
                 std::cout << at << ": " << summary(found) << std::endl;
-                if (!found.is_whole()) status = kRefused;
+                for (const std::string& record : found.merged)
+                    std::cout << at << ": what its runs recorded is in " << line_text(record) << " now"
+                              << std::endl;
+                for (const std::string& note : found.notes)
+                    std::cerr << "pelagic: note: " << note << std::endl;
+                tell_json(json_of(found, folder));
+                if (!found.is_whole()) status = kNotWhole;
             } catch (const files::FileError& error) {
                 session.progress.clear();
                 std::cerr << "pelagic: " << error.what() << std::endl;
-                status = kRefused;
+                status = kNotWhole;
             }
         }
         return status;
@@ -81,6 +100,7 @@ Verb add_verify(CLI::App& program) {
     auto arguments = std::make_shared<VerifyArguments>();
     command->add_option("DIR", arguments->folders, help::kFolders)->required()->type_name("");
     add_threads(*command, arguments->threads, help::kVerifyThreads);
+    add_json(*command);
     return {command, [arguments] { return run(*arguments); }};
 }
 

@@ -235,7 +235,8 @@ void add_verify(py::module_& module) {
         "verify", &run_verify, py::arg("dir"), py::arg("progress") = py::none(),
         py::arg("cancel") = py::none(),
         "Reads everything that was baked or rendered into a folder, as `pelagic verify` does: a list of "
-        "findings, empty where all is as it was written.\n\n"
+        "findings, empty where all is as it was written. Of a shot that is whole, what its runs have recorded beside "
+        "NAME.json is taken into that.\n\n"
         "progress: called with the share that was read, 0 to 1, from the first second on. cancel: as bake()'s. "
         "Cancelled; FileError where there is no such folder.");
 }

@@ -19,7 +19,7 @@ TEST(BakeDisk, AFileInTheWayOfTheFolderIsSaid) {
     write_file(folder.path() / "file", "kept");
     for (const char* out : {"file", "file/below"}) {
         const Ended ended = run({.arguments = {"bake", "shot.toml", "--out", out}, .folder = folder.path()});
-        EXPECT_EQ(ended.status, 1) << out;
+        EXPECT_EQ(ended.status, 2) << out;
         EXPECT_TRUE(has(ended.err, "'" + std::string(out) + "'")) << ended.err;
         EXPECT_TRUE(has(ended.err, "a file, not a folder")) << ended.err;
         EXPECT_TRUE(has(ended.err, "choose another folder")) << "what to do: " << ended.err;
@@ -34,7 +34,7 @@ TEST(BakeDisk, AFolderInTheWayOfAFileIsSaid) {
     write_file(folder.path() / "shot.toml", text_of({.frames = 3}));
     fs::create_directories(folder.path() / "out/mesh/small.0002.usda");
     const Ended ended = run({.arguments = {"bake", "shot.toml", "--out", "out"}, .folder = folder.path()});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_TRUE(has(ended.err, "small.0002.usda")) << ended.err;
     EXPECT_TRUE(fs::exists(folder.path() / "out/mesh/small.0001.usda")) << "the frame before is kept";
     EXPECT_EQ(leftovers(folder.path()), std::vector<std::string>());
@@ -48,7 +48,7 @@ TEST(BakeDisk, AReadOnlyFileSystemIsSaid) {
     if (!problem.empty()) GTEST_SKIP() << "a read-only file system can't be mounted here: " << problem;
     for (const char* out : {"disk", "disk/new"}) {
         const Ended ended = run({.arguments = {"bake", "shot.toml", "--out", out}, .folder = folder.path()});
-        EXPECT_EQ(ended.status, 1) << out;
+        EXPECT_EQ(ended.status, 75) << out;
         EXPECT_TRUE(has(ended.err, "the file system is read-only")) << ended.err;
         EXPECT_TRUE(has(ended.err, "'" + std::string(out) + "'")) << ended.err;
     }
@@ -65,7 +65,7 @@ TEST(BakeDisk, AFullDiskLosesNothingAndMoreRoomFinishesTheShot) {
     const Launch bake{.arguments = {"bake", "shot.toml", "--out", "disk"}, .folder = folder.path()};
 
     const Ended full = run(bake);
-    EXPECT_EQ(full.status, 1);
+    EXPECT_EQ(full.status, 75);
     EXPECT_TRUE(has(full.err, "no space left on the device")) << full.err;
     EXPECT_TRUE(has(full.err, "disk/")) << "names the file: " << full.err;
     EXPECT_TRUE(has(full.err, "run again to continue")) << full.err;
@@ -76,7 +76,7 @@ TEST(BakeDisk, AFullDiskLosesNothingAndMoreRoomFinishesTheShot) {
     ASSERT_FALSE(fs::exists(folder.path() / "disk/mesh/small.0012.usda")) << "and a disk that fills";
     const fs::file_time_type first = fs::last_write_time(folder.path() / "disk/mesh/small.0001.usda");
 
-    EXPECT_EQ(run(bake).status, 1) << "still full";
+    EXPECT_EQ(run(bake).status, 75) << "still full";
     EXPECT_EQ(torn_files(folder.path() / "disk"), "");
     EXPECT_EQ(leftovers(folder.path() / "disk"), std::vector<std::string>());
 

@@ -110,7 +110,7 @@ TEST_F(BakeResume, VerifySaysWhatIsWrongAndItsStatus) {
     fs::remove(folder() / "out/maps/small.whitecaps.0004.exr");
     write_file(folder() / "out/maps/old.normal.0001.exr", "somebody's");
     ended = verify({"out"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 3);
     for (const char* line :
          {"damaged: out/mesh/small.0003.usda holds other bytes than were written",
           "missing: out/maps/small.whitecaps.0004.exr is missing",
@@ -125,11 +125,11 @@ TEST_F(BakeResume, VerifySaysWhatIsWrongAndItsStatus) {
     fs::remove(folder() / "out/maps/old.normal.0001.exr");
     expect_as_new();
     EXPECT_EQ(verify({"out", "new"}).status, 0);
-    EXPECT_EQ(verify({"out", "nowhere", "new"}).status, 1);
+    EXPECT_EQ(verify({"out", "nowhere", "new"}).status, 3);
     EXPECT_EQ(verify({}).status, 2);
     fs::create_directory(folder() / "empty");
     ended = verify({"empty"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 3);
     EXPECT_NE(ended.out.find("no bake and no pictures are here"), std::string::npos) << ended.out;
 }
 
@@ -138,7 +138,7 @@ TEST_F(BakeResume, APipeInTheRecordsPlaceIsRefused) {
     fs::remove(folder() / "out/small.json");
     ASSERT_EQ(mkfifo((folder() / "out/small.json").c_str(), 0600), 0);
     const Ended ended = bake();
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find("the record 'out/small.json' is a pipe, not a file: move it away"),
               std::string::npos)
         << ended.err;

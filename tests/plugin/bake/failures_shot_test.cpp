@@ -29,7 +29,7 @@ TEST_P(RefusedShot, SaysWhereWhatAndWhatInstead) {
     write_file(folder.path() / "shot.toml", refused.text);
     for (const char* verb : {"bake", "explain", "validate"}) {
         const Ended ended = run({.arguments = {verb, "shot.toml"}, .folder = folder.path()});
-        EXPECT_EQ(ended.status, 1) << verb;
+        EXPECT_EQ(ended.status, 2) << verb;
         EXPECT_EQ(ended.out, "") << verb;
         EXPECT_TRUE(ended.err.starts_with("shot.toml:" + refused.at + ": " + refused.says)) << verb << "\n"
                                                                                             << ended.err;
@@ -84,7 +84,7 @@ TEST(RefusedShots, AllProblemsOfAFileAreSaidAtOnce) {
     const TempFolder folder;
     write_file(folder.path() / "shot.toml", "[shot]\nfps = 0\n[sea]\nwind_speed_mps = -1\ndepht_m = 3\n");
     const Ended ended = run({.arguments = {"bake", "shot.toml"}, .folder = folder.path()});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     for (const char* line : {"shot.toml:2:7: shot.fps = 0: ", "\nshot.toml:4:18: sea.wind_speed_mps = -1: ",
                              "\nshot.toml:5:1: sea.depht_m = 3: "})
         EXPECT_NE(ended.err.find(line), std::string::npos) << line << "\n" << ended.err;

@@ -51,7 +51,7 @@ TEST_F(Budget, AMeshIsBakedAsItAsks) {
 TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
     for (const char* verb : {"bake", "validate"}) {
         const Ended refused = ended(verb, "frame_ms = 0.01");
-        EXPECT_EQ(refused.status, 1) << verb;
+        EXPECT_EQ(refused.status, 2) << verb;
         EXPECT_TRUE(has(refused.err, "shot.toml:13:12: quality.frame_ms")) << verb << '\n' << refused.err;
         for (const char* part :
              {"quality.frame_ms = 0.01, which nothing holds", "surface.resolution = 8", "raise the budget"})
@@ -59,14 +59,14 @@ TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
     }
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "s"));
     const Ended picture = ended("render", "frame_ms = 0.01");
-    EXPECT_EQ(picture.status, 1);
+    EXPECT_EQ(picture.status, 2);
     EXPECT_TRUE(has(picture.err, "shot.toml:13:12: quality.frame_ms = 0.01, which nothing holds"))
         << picture.err;
 }
 
 TEST_F(Budget, PicturesTakeItAndNamedSettingsStay) {
     const Ended part = ended("render", "frame_ms = 1000", {"--frames", "1"});
-    EXPECT_EQ(part.status, 1);
+    EXPECT_EQ(part.status, 2);
     EXPECT_TRUE(has(part.err, "shot.toml:13:12: quality.frame_ms = 1000: isn't settled yet")) << part.err;
     const Ended cheap = ended("render", "frame_ms = 1000");
     ASSERT_EQ(cheap.status, 0) << cheap.err;

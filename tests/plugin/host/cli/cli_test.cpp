@@ -52,7 +52,7 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
     for (const char* flag : {"--help", "-h"}) {
         const Ended ended = cli({flag});
         EXPECT_EQ(ended.status, 0);
-        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  verify ",
+        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  verify ", "  farm ",
                                  "  validate ", "  keys ", "  presets ", "Examples:", "Exit status"})
             EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
         EXPECT_EQ(ended.err, "");
@@ -70,7 +70,10 @@ TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
         {"preview",
          {"SHOT.toml", "--offscreen", "--frame", "--size", "--quality", "--scale", "--screenshot", "--after",
           "--threads", "--help", "F1"}},
-        {"explain", {"SHOT.toml", "--measure", "--threads", "--help"}},
+        {"explain", {"SHOT.toml", "--measure", "--threads", "--json", "--help"}},
+        {"farm",
+         {"SHOT.toml", "--out", "--frames", "--verb", "--submit", "--status", "--tasks", "--minutes",
+          "--sbatch", "--threads", "--samples", "--json", "--help", "Exit status of --status: 0"}},
         {"verify",
          {"DIR", "--threads", "--help", "missing", "damaged", "stale", "foreign", "Exit status: 0"}},
         {"validate", {"SHOT.toml", "--help"}},
@@ -246,7 +249,7 @@ TEST_F(Cli, ValidateLooksAtEveryFile) {
     write_file(folder() / "wrong.toml", "[sea]\nwind_speed_mps = -3.5\nfetch_m = nan\n");
     write_file(folder() / "empty.toml", "");
     const Ended ended = cli({"validate", "wrong.toml", "small.toml", "missing.toml", "empty.toml"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_TRUE(has(
         ended.out,
         "small.toml: fine\n    12 frames at 24 frames/s, a patch of 8 × 8 quads over 40 m, 2 maps, jonswap at 10 m/s"))
@@ -299,7 +302,7 @@ TEST_F(Cli, ASeaThatFoldsIsWarnedOf) {
     std::ofstream(folder() / "breaks.toml")
         << "[sea]\nswell = [ { height_m = 50, period_s = 1, direction_deg = 0 } ]\n";
     const Ended refused = cli({"validate", "breaks.toml"});
-    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.status, 2);
     EXPECT_TRUE(
         has(refused.err,
             "breaks.toml:2:24: sea.swell[0].height_m = 50: is more than waves can have that are 1.5 m long"))
@@ -309,7 +312,7 @@ TEST_F(Cli, ASeaThatFoldsIsWarnedOf) {
 TEST_F(Cli, ResultsThatCantBePrintedAreAnError) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "this machine has no /dev/full";
     const Ended ended = run({.arguments = {"keys"}, .folder = folder(), .stdout_to = "/dev/full"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     EXPECT_TRUE(has(ended.err, "standard output")) << ended.err;
 }
 
@@ -351,7 +354,7 @@ TEST_F(Cli, ALogThatIsClosedDoesNotEndABake) {
 TEST_F(Cli, AShotThatAsksForNothingIsRefused) {
     write_file(folder() / "nothing.toml", "[output]\nmesh = \"none\"\n");
     const Ended ended = cli({"bake", "nothing.toml"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_TRUE(has(ended.err, "nothing.toml:")) << ended.err;
     EXPECT_TRUE(has(ended.err, "output.mesh = \"none\"")) << ended.err;
     EXPECT_TRUE(has(ended.err, "accepted: ")) << ended.err;
@@ -368,7 +371,7 @@ TEST_F(Cli, OutOfMemoryIsSaidAndIsNoCrash) {
                              .folder = folder(),
                              .most_address_space = std::size_t{600} << 20});
     EXPECT_FALSE(ended.killed) << "signal " << ended.status - 128;
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     for (const char* part :
          {"out of memory; this bake holds about ", "for values of the mesh", "lower surface.resolution"})
         EXPECT_TRUE(has(ended.err, part)) << part << "\n" << ended.err;

@@ -36,7 +36,7 @@ TEST_F(Endings, WhatIsPrintedHasArrivedOrTheProgramSaysThatItHasnt) {
           "bake small.toml --out out", "render small.toml --out out --size 16x8 --frames 1 --samples 1"})
         for (const char* output : {">/dev/full", ">&-"}) {
             const Ended ended = shell("$P " + std::string(arguments) + " " + output);
-            EXPECT_EQ(ended.status, 1) << arguments << output;
+            EXPECT_EQ(ended.status, 75) << arguments << output;
             EXPECT_TRUE(has(ended.err, "standard output can't be written to"))
                 << arguments << output << ended.err;
         }
@@ -73,13 +73,13 @@ TEST_F(Endings, ALogBeyondTheLimitOfFilesIsNoSignal) {
         const Ended ended =
             shell("head -c 4096 /dev/zero > log; echo 'x = 1' > wrong.toml; ulimit -f 4; $P " +
                   std::string(verb) + " wrong.toml 2>> log");
-        EXPECT_EQ(ended.status, 1) << verb;
+        EXPECT_EQ(ended.status, 2) << verb;
     }
     const Ended ended = shell("ulimit -f 4; $P keys > keys.txt");
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     EXPECT_TRUE(has(ended.err, "standard output can't be written to")) << ended.err;
     const Ended baked = shell("ulimit -f 1; $P bake small.toml --out out");
-    EXPECT_EQ(baked.status, 1);
+    EXPECT_EQ(baked.status, 75);
     EXPECT_TRUE(has(baked.err, "ulimit -f")) << baked.err;
     EXPECT_EQ(torn_files(folder() / "out"), "");
     EXPECT_EQ(leftovers(folder() / "out"), std::vector<std::string>());
@@ -98,7 +98,7 @@ TEST_F(Endings, ThreadsThatTheSystemRefusesAreSaid) {
                 shell("ulimit -c 0; export LD_PRELOAD='" PELAGIC_FEW_THREADS "' PELAGIC_TEST_THREADS=" +
                       std::to_string(threads) + "; $P " + arguments + " --threads 12");
             if (ended.status != 0) {  // it may have done with fewer
-                EXPECT_EQ(ended.status, 1) << arguments << ' ' << threads << ended.err;
+                EXPECT_EQ(ended.status, 75) << arguments << ' ' << threads << ended.err;
                 EXPECT_TRUE(has(ended.err, "the system refuses another thread; ask for fewer with --threads"))
                     << arguments << ' ' << threads << ended.err;
             }
@@ -215,7 +215,7 @@ TEST_F(Endings, APipeOrADeviceIsNoFile) {
         for (const std::string verb :
              {"validate ", "explain ", "bake ", "render --size 16x8 ", "preview --offscreen x.png "}) {
             const Ended ended = shell("timeout 20 $P " + verb + file);
-            EXPECT_EQ(ended.status, 1) << verb << file << ended.err;
+            EXPECT_EQ(ended.status, 2) << verb << file << ended.err;
             EXPECT_TRUE(ended.err.starts_with(file)) << verb << file << ended.err;
         }
 }

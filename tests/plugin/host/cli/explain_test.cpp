@@ -164,7 +164,7 @@ TEST_F(Explain, RefusesToMeasureWhatDoesNotFit) {
         "[surface]\nresolution = 8192\nsize_m = 5\n"
         "[output]\nmaps = [\"displacement\", \"normal\", \"whitecaps\"]\nmap_resolution = 4000\n",
         {"--measure"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     EXPECT_TRUE(has(ended.out, "Each frame: ")) << "the page itself is there";
     EXPECT_TRUE(has(ended.err, "measuring holds the sea twice")) << ended.err;
     EXPECT_TRUE(has(ended.err, "GiB, and ")) << ended.err;
@@ -180,7 +180,7 @@ TEST_F(Explain, RefusesWhereThisProcessGetsNoMemory) {
                              .folder = folder(),
                              .most_address_space = std::size_t{600} << 20});
     EXPECT_FALSE(ended.killed);
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     EXPECT_TRUE(has(ended.err, "measuring holds the sea twice")) << ended.err;
 }
 

@@ -22,7 +22,7 @@ TEST(NoPreview, IsSaidWhateverIsAskedOfIt) {
         program.parse(last_first);
         EXPECT_TRUE(verb.command->parsed());
         testing::internal::CaptureStderr();
-        EXPECT_EQ(verb.run(), kRefused);
+        EXPECT_EQ(verb.run(), kWrongUsage);
         EXPECT_NE(testing::internal::GetCapturedStderr().find("-DPELAGIC_PREVIEW=ON"), std::string::npos);
         EXPECT_NE(program.help().find("preview"), std::string::npos);
         EXPECT_NE(verb.command->help().find("-DPELAGIC_PREVIEW=ON"), std::string::npos);

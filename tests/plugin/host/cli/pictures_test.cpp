@@ -267,9 +267,9 @@ TEST_F(Pictures, RenderRefusesWhatItCannotDoBeforeItBegins) {
     refused({"render"}, 2, {"SHOT.toml is required", "pelagic render --help"});
     refused({"render", "small.toml", "--sample", "2"}, 2, {"'--sample' is not an option", "--samples?"});
     // 65536 · 16 samples on a side exceed the limit.
-    refused({"render", "small.toml", "--size", "65536x1", "--samples", "16"}, 1,
+    refused({"render", "small.toml", "--size", "65536x1", "--samples", "16"}, 2,
             {"small.toml: ", "fewer samples"});
-    refused({"render", "missing.toml"}, 1, {"missing.toml: the shot file does not exist"});
+    refused({"render", "missing.toml"}, 2, {"missing.toml: the shot file does not exist"});
 }
 
 // A lat-long picture of halves, grey; `wrong` is the value of one pixel of the upper half.
@@ -308,7 +308,7 @@ TEST_F(Pictures, ASkyThatIsNoneIsRefusedByEveryVerbWithItsPlace) {
                                                    {"bake", "small.toml", "--out", "out"},
                                                    {"render", "small.toml", "--out", "out"},
                                                    {"preview", "small.toml", "--offscreen", "new/a.png"}})
-            refused(verb, 1, {place + problem, "; accepted: a whole file"});
+            refused(verb, 2, {place + problem, "; accepted: a whole file"});
     }
     write_file(folder() / "torn.exr", whole);
     EXPECT_EQ(cli({"validate", "small.toml"}).status, 0);
@@ -322,8 +322,8 @@ TEST_F(Pictures, ASkyThatIsNoRadianceIsRefusedBeforeAnythingIsWritten) {
         const std::vector<std::string> says{
             "light.sky = \"odd.exr\": R of the pixel in column 5, row 3 from the top is ",
             "; accepted: radiances from 0 to 1e30"};
-        refused({"render", "small.toml", "--out", "out"}, 1, says);
-        refused({"preview", "small.toml", "--offscreen", "new/a.png"}, 1, says);
+        refused({"render", "small.toml", "--out", "out"}, 2, says);
+        refused({"preview", "small.toml", "--offscreen", "new/a.png"}, 2, says);
     }
 }
 
@@ -332,7 +332,7 @@ TEST_F(Pictures, WhatAPreviewCantWriteIsAnsweredWithoutAnotherVerbsOption) {
     write_file(folder() / "small.toml", small_shot());
     write_file(folder() / "file", "");
     const Ended ended = cli({"preview", "small.toml", "--offscreen", "file/a.png"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find("a part of the path is a file"), std::string::npos) << ended.err;
     EXPECT_EQ(ended.err.find("--out"), std::string::npos) << ended.err;
 }
@@ -426,7 +426,7 @@ TEST_F(Pictures, AFolderThatCantBeMadeIsSaid) {
           std::vector<std::string>{"preview", "small.toml", "--offscreen", "in-the-way/a.png"}}) {
         if (arguments.front() == "preview" && !kHasPreview) continue;
         const Ended ended = cli(arguments);
-        EXPECT_EQ(ended.status, 1) << ended.err;
+        EXPECT_EQ(ended.status, 2) << ended.err;
         EXPECT_EQ(ended.out, "");
         EXPECT_TRUE(has(ended.err, "in-the-way")) << ended.err;
     }
@@ -439,7 +439,7 @@ TEST_F(Pictures, AFullDiskIsSaidAndWhatIsThereIsWhole) {
     const std::string problem = mount_disk({.folder = folder() / "disk", .size = "64k"});
     if (!problem.empty()) GTEST_SKIP() << "this machine lets us mount nothing: " << problem;
     const Ended ended = cli({"render", "small.toml", "--out", "disk", "--size", "96x54"});
-    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.status, 75);
     EXPECT_TRUE(has(ended.err, "disk is full") || has(ended.err, "space")) << ended.err;
     EXPECT_EQ(torn_files(folder() / "disk"), "");
     EXPECT_TRUE(leftovers(folder() / "disk").empty());
@@ -481,11 +481,11 @@ TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
     write_file(folder() / "diving.toml",
                with_camera("keys = [ { frame = 1, position_m = [0, -60, 9], look_at_m = [0, 0, 0] }, "
                            "{ frame = 4, position_m = [0, -60, -9], look_at_m = [0, 0, 0] } ]\n"));
-    refused({"render", "below.toml"}, 1,
+    refused({"render", "below.toml"}, 2,
             {"below.toml: camera.position_m: at frame 1 the camera is under water: it is at z = -9 m",
              "the surface there", "water.body = true"});
-    refused({"render", "diving.toml"}, 1, {"diving.toml: camera.keys: at frame ", "raise the camera"});
-    refused({"render", "diving.toml", "--frames", "4"}, 1,
+    refused({"render", "diving.toml"}, 2, {"diving.toml: camera.keys: at frame ", "raise the camera"});
+    refused({"render", "diving.toml", "--frames", "4"}, 2,
             {"at frame 4 the camera is under water: it is at z = -9 m"});
     EXPECT_EQ(cli({"render", "diving.toml", "--frames", "1"}).status, 0);
     EXPECT_EQ(cli({"bake", "below.toml"}).status, 0);
@@ -494,7 +494,7 @@ TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
     write_file(folder() / "below.toml", below.substr(0, below.find("[water]")));
     EXPECT_EQ(cli({"render", "below.toml"}).status, 0);
     write_file(folder() / "floor.toml", below.substr(0, below.find("[water]")) + "[sea]\ndepth_m = 8\n");
-    refused({"render", "floor.toml"}, 1,
+    refused({"render", "floor.toml"}, 2,
             {"floor.toml: camera.position_m: at frame 1 the camera is in the sea's floor: it is at z = -9 m",
              "sea.depth_m"});
 }
@@ -508,7 +508,7 @@ TEST_F(Pictures, PreviewLooksThroughWaterThatHasABody) {
                water;
     };
     write_file(folder() / "below.toml", shot_at("-9", "[water]\nbody = false\n"));
-    refused({"preview", "below.toml", "--offscreen", "new/x.png"}, 1,
+    refused({"preview", "below.toml", "--offscreen", "new/x.png"}, 2,
             {"below.toml: camera.position_m: at frame 1 the camera is under water", "water.body = true"});
     write_file(folder() / "among.toml", shot_at("-2", ""));
     write_file(folder() / "deep.toml", shot_at("-9", ""));

@@ -1,0 +1,348 @@
+// pelagic farm SHOT.toml
+#include "plugin/host/cli/farm.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/text.h"
+#include "core/plan/plan.h"
+#include "core/scene/budget.h"
+#include "plugin/bake/bake.h"
+#include "plugin/files/files.h"
+#include "plugin/format/shot/shot.h"
+#include "plugin/host/cli/account.h"
+#include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/help.h"
+#include "plugin/host/cli/json_output.h"
+#include "plugin/host/cli/render_order.h"
+#include "plugin/host/cli/text.h"
+#include "plugin/host/cli/verb.h"
+#include "plugin/light/light.h"
+#include "plugin/run/part.h"
+
+namespace pelagic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostTasks = 1000;  // Slurm's default MaxArraySize takes no more
+
+struct FarmArguments : RenderArguments {
+    std::string verb = "bake", status;
+    std::optional<int> tasks;
+    double minutes = 10.0;
+    bool submit = false;
+    std::vector<std::string> sbatch;
+    std::vector<std::string> passed;  // to each task, as words of a shell
+};
+
+// What a task asks the queue for.
+struct TaskNeed {
+    int threads = 1;
+    FrameAccount frame;
+    std::size_t memory_bytes = 0;
+};
+
+std::string shell_word(const std::string& text) {
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
+
+// A path in a line of #SBATCH, where Slurm takes % for itself.
+std::string sbatch_path(const fs::path& path, std::string_view pattern = {}) {
+    std::string word = "\"";
+    for (const char c : path.string()) {
+        if (c == '"' || c == '\\') word += '\\';
+        if (c == '%') word += '%';
+        word += c;
+    }
+    return word + std::string(pattern) + '"';
+}
+
+std::vector<std::vector<int>> split(const std::vector<int>& frames, std::size_t tasks) {
+    std::vector<std::vector<int>> parts(tasks);
+    for (std::size_t i = 0; i < tasks; ++i)
+        parts[i].assign(frames.begin() + static_cast<std::ptrdiff_t>(i * frames.size() / tasks),
+                        frames.begin() + static_cast<std::ptrdiff_t>((i + 1) * frames.size() / tasks));
+    return parts;
+}
+
+// A core for each part of the memory that farms have beside one; then the frame again, on so many.
+template <class Account>
+TaskNeed need_of(int asked_threads, const Account& account) {
+    constexpr std::size_t kBytesOfACore = std::size_t{4} << 30;
+    constexpr std::size_t kMostCores = 64;
+    // The program itself, its libraries, and what no plan counts.
+    constexpr std::size_t kBeside = std::size_t{256} << 20;
+    const auto of = [&](int threads) {
+        TaskNeed need{.threads = threads, .frame = account(threads)};
+        need.memory_bytes = need.frame.memory_bytes + need.frame.memory_bytes / 5 + kBeside;
+        return need;
+    };
+    if (asked_threads > 0) return of(asked_threads);
+    const std::size_t cores = of(1).memory_bytes / kBytesOfACore + 1;
+    return of(static_cast<int>(std::min(cores, kMostCores)));
+}
+
+std::size_t tasks_for(const FarmArguments& arguments, std::size_t frames, double seconds_a_frame) {
+    constexpr double kBesideComputing = 1.5;  // encoding and writing, about
+    double tasks = arguments.tasks.value_or(0);
+    if (!arguments.tasks)
+        tasks = std::ceil(static_cast<double>(frames) * kBesideComputing * seconds_a_frame /
+                          (60.0 * arguments.minutes));
+    return std::min({static_cast<std::size_t>(std::clamp(tasks, 1.0, static_cast<double>(kMostTasks))),
+                     frames, kMostTasks});
+}
+
+std::string header(const FarmArguments& arguments, const std::string& name, int threads,
+                   std::size_t memory_bytes) {
+    std::string text = "#!/bin/bash\n#SBATCH --job-name=" + sbatch_path(name) +
+                       "\n#SBATCH --nodes=1 --ntasks=1\n#SBATCH --cpus-per-task=" + std::to_string(threads) +
+                       "\n#SBATCH --mem=" + std::to_string((memory_bytes >> 20) + 1) +
+                       "M\n#SBATCH --requeue\n#SBATCH --open-mode=append\n";
+    for (const std::string& option : arguments.sbatch) text += "#SBATCH " + option + '\n';
+    return text;
+}
+
+// Each task's own script: bash FILE N makes task N wherever it is called.
+std::string array_script(const FarmArguments& arguments, const FarmJob& job, const TaskNeed& need,
+                         const fs::path& program, const fs::path& out, double seconds) {
+    constexpr double kLeast_s = 3600.0, kTimes = 10.0;  // of what the plan says, which is of another machine
+    const fs::path folder = out / "farm";
+    std::string text = header(arguments, job.of.name + ' ' + job.verb, need.threads, need.memory_bytes);
+    text += "#SBATCH --time=" + std::to_string(std::lround(std::max(kLeast_s, kTimes * seconds) / 60.0)) +
+            "\n#SBATCH --array=0-" + std::to_string(job.tasks.size() - 1) +
+            "\n#SBATCH --output=" + sbatch_path(folder / (job.of.name + '.' + job.verb), ".%a.slurm") +
+            "\n# By pelagic farm. Without Slurm: bash THIS N makes task N, 0 to " +
+            std::to_string(job.tasks.size() - 1) + ".\nframes=(";
+    for (const FarmTask& task : job.tasks) text += "\n    " + task.frames;
+    text += "\n)\nlogs=(";
+    for (const FarmTask& task : job.tasks) text += "\n    " + shell_word(task.log);
+    text += "\n)\nn=${1:-${SLURM_ARRAY_TASK_ID:?\"the number of a task is missing\"}}\ncd " +
+            shell_word(fs::current_path().string()) + " || exit 75\nexec >>" + shell_word(folder.string()) +
+            "/\"${logs[n]}\" 2>&1 || exit 75\n"
+            "id=${SLURM_ARRAY_JOB_ID:-$(hostname -s)-$$}_$n\n"
+            "echo \"" +
+            kFarmBegun +
+            "$id on ${SLURMD_NODENAME:-$(hostname -s)}, $(date '+%F %T')\"\n"
+            "trap : TERM INT HUP # the program ends at its file's end, and then this\n" +
+            shell_word(program.string()) + ' ' + job.verb + ' ' + shell_word(job.shot) + " --out " +
+            shell_word(out.string()) + " --frames \"${frames[n]}\" --threads \"${SLURM_CPUS_PER_TASK:-" +
+            std::to_string(need.threads) + "}\"";
+    for (const std::string& word : arguments.passed) text += ' ' + word;
+    text +=
+        "\nstatus=$?\n"
+        "# Before the word that it has ended: from then on nobody looks whether it runs.\n"
+        "if [[ $status = 75 || $status = 137 ]] && [ -n \"${SLURM_ARRAY_JOB_ID:-}\" ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 3 ]; then\n"
+        "    echo \"" +
+        std::string(kFarmEnded) + "$id with status $status" + kFarmAgain +
+        "\"\n"
+        "    scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\" && sleep 60\n"
+        "else\n"
+        "    echo \"" +
+        kFarmEnded +
+        "$id with status $status, $(date '+%F %T')\"\n"
+        "fi\n"
+        "exit $status\n";
+    return text;
+}
+
+std::string verify_script(const FarmArguments& arguments, const FarmJob& job, const fs::path& program,
+                          const fs::path& out) {
+    constexpr std::size_t kMemory = std::size_t{1} << 30;
+    const std::string name = job.of.name + '.' + job.verb;
+    return header(arguments, job.of.name + " verify", 1, kMemory) +
+           "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") +
+           "\n# By pelagic farm: the last job, after all tasks of " + name + ".sh.\nexec " +
+           shell_word(program.string()) + " verify " + shell_word(out.string()) +
+           " --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
+}
+
+// The job's number.
+std::string submitted(const std::string& options, const fs::path& script) {
+    const std::string command = "sbatch --parsable " + options + ' ' + shell_word(script.string()) + " 2>&1";
+    std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), [](FILE*) { return 0; });
+    if (!pipe) throw std::system_error(errno, std::generic_category(), "sbatch can't be called");
+    std::string said;
+    std::array<char, 256> piece{};
+    while (std::fgets(piece.data(), static_cast<int>(piece.size()), pipe.get())) said += piece.data();
+    const int status = pclose(pipe.release());
+    while (said.ends_with('\n')) said.pop_back();
+    constexpr int kNoSuchCommand = 127;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kNoSuchCommand)
+        throw WrongUsage("--submit: there is no sbatch here; submit " + line_text(script.string()) +
+                         " where there is one");
+    if (status != 0)
+        throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again),
+                                "sbatch refuses " + line_text(script.string()) + ": " + line_text(said));
+    return said.substr(0, said.find(';'));  // what follows is the cluster's name
+}
+
+void submit(const fs::path& array, const fs::path& verify) {
+    const std::string job = submitted("", array);
+    const std::string last = submitted("--dependency=afterany:" + job, verify);
+    std::cout << "submitted: array " << job << ", and " << last << " after it\n";
+    tell_json({{"event", "submitted"}, {"array", job}, {"verify", last}});
+}
+
+// What is settled once for all tasks, and what a task then needs.
+TaskNeed settle_job(FarmArguments& arguments, const RunOptions& options, const Scene& asked,
+                    FixedSettings fixed, const PictureOrder& order, Session& session) {
+    RunOptions whole = options;
+    whole.frames.clear();  // settled for the whole shot
+    whole.cancel = nullptr;
+    const auto chosen = [&](const Settled& settled) {
+        if (!settled.chosen().empty()) arguments.passed.push_back("--chosen=" + shell_word(settled.chosen()));
+    };
+    const auto frames = static_cast<int>(options.frames.size());
+    const int threads = arguments.threads.empty() ? 0 : session.threads.count();
+    if (arguments.verb == "bake") {
+        const Settled settled = settled_for(whole, asked, Purpose::Mesh, session);
+        chosen(settled);
+        const Plan plan = plan_bake(settled.scene);
+        return need_of(threads, [&](int on) { return bake_account(plan, frames, on, rates_on(on)); });
+    }
+    PictureOrder pictures = order;
+    const Settled settled = settled_for(whole, order.scene, Purpose::Pictures, session, fixed);
+    settled.apply(pictures);
+    chosen(settled);
+    return need_of(threads, [&](int on) {
+        return picture_account(without_budget(pictures.scene), pictures.options, on, rates_on(on));
+    });
+}
+
+int run(FarmArguments arguments) {
+    if (!arguments.status.empty()) return print_farm_status(arguments.status);
+    if (arguments.shot.empty()) throw WrongUsage("SHOT.toml is required, or --status DIR");
+    const bool is_bake = arguments.verb == "bake";
+    FixedSettings fixed;
+    PictureOrder order;
+    if (!is_bake) order = order_of(arguments, fixed);
+    const Scene scene = is_bake ? load_shot(arguments.shot, check_scene) : order.scene;
+    RunOptions options = run_options(arguments, scene.shot);
+    if (options.frames.empty())
+        for (std::int64_t frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame)
+            options.frames.push_back(static_cast<int>(frame));
+    const fs::path out = fs::absolute(options.out).lexically_normal();
+    const auto has_line = [](const std::string& text) { return text.find('\n') != std::string::npos; };
+    if (has_line(out.string()) || std::ranges::any_of(arguments.sbatch, has_line))
+        throw WrongUsage("a script of Slurm's takes no line's end in a path or an option");
+    return guarded_run(
+        {.shot = arguments.shot, .threads = arguments.threads, .stops = false}, [&](Session& session) {
+            const TaskNeed need = session.threads.execute(
+                [&] { return settle_job(arguments, options, scene, fixed, order, session); });
+            session.progress.clear();
+            FarmJob job{.verb = arguments.verb,
+                        .shot = fs::absolute(arguments.shot).lexically_normal().string(),
+                        .of = scene.shot};
+            nlohmann::ordered_json told{
+                {"verb", job.verb},
+                {"shot", job.shot},
+                {"name", job.of.name},
+                {"frame_range", {job.of.first_frame, job.of.last_frame}},
+                {"threads", need.threads},
+                {"task_memory_bytes", need.memory_bytes},
+                {"frame", json_of(need.frame)},
+                {"tasks", nlohmann::ordered_json::array()},
+            };
+            const std::size_t tasks = tasks_for(arguments, options.frames.size(), need.frame.seconds);
+            const std::string name = job.of.name + '.' + job.verb;
+            for (const std::vector<int>& part : split(options.frames, tasks)) {
+                std::string frames = frames_text(part);
+                std::erase(frames, ' ');
+                const std::string log = FilePattern{name + '.', ""}.file(part.front()) +
+                                        FilePattern{"-", ".log"}.file(part.back());
+                job.tasks.push_back({.frames = frames,
+                                     .log = log,
+                                     .slurm = name + '.' + std::to_string(job.tasks.size()) + ".slurm"});
+                told["tasks"].push_back(
+                    {{"frames", frames}, {"log", log}, {"slurm", job.tasks.back().slurm}});
+            }
+            const fs::path folder = out / "farm", array = folder / (name + ".sh"),
+                           last = folder / (name + ".verify.sh");
+            const fs::path program = fs::read_symlink("/proc/self/exe");
+            files::ensure_folder(folder);
+            const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
+                                                                  static_cast<double>(tasks));
+            files::write_atomically(array, array_script(arguments, job, need, program, out, seconds));
+            files::write_atomically(last, verify_script(arguments, job, program, out));
+            files::write_atomically(folder / (name + ".json"),
+                                    told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
+            std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
+                      << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
+                      << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)
+                      << ", about " << duration_text(need.frame.seconds) << " a frame by the plan\n"
+                      << "array:  " << line_text(array.string()) << "\nverify: " << line_text(last.string())
+                      << '\n';
+            told["event"] = "result";
+            told["array"] = array.string();
+            told["verify"] = last.string();
+            tell_json(told);
+            if (arguments.submit)
+                submit(array, last);
+            else
+                std::cout << "submit: job=$(sbatch --parsable " << line_text(shell_word(array.string()))
+                          << ") && sbatch --dependency=afterany:$job " << line_text(shell_word(last.string()))
+                          << '\n';
+            std::cout << std::flush;
+            return int{kDone};
+        });
+}
+
+}  // namespace
+
+Verb add_farm(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("farm", help::kFarm)->footer(help::kFarmFooter);
+    auto arguments = std::make_shared<FarmArguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->type_name("");
+    command->add_option("--verb", arguments->verb, help::kFarmVerb)
+        ->type_name("VERB")
+        ->check(CLI::IsMember({"bake", "render"}).description(""));
+    command->add_flag("--submit", arguments->submit, help::kFarmSubmit);
+    command->add_option("--status", arguments->status, help::kFarmStatus)->type_name("DIR");
+    command->add_option("--tasks", arguments->tasks, help::kFarmTasks)
+        ->type_name("N")
+        ->check(CLI::Range(1, static_cast<int>(kMostTasks)).description(""));
+    command->add_option("--minutes", arguments->minutes, help::kFarmMinutes)
+        ->type_name("MINUTES")
+        ->check(CLI::Range(0.1, 1440.0).description(""));
+    command->add_option("--sbatch", arguments->sbatch, help::kFarmSbatch)
+        ->type_name("OPTION")
+        ->allow_extra_args(false);
+    add_json(*command);
+    const std::size_t own = command->get_options().size();
+    add_run_options(*command, *arguments, help::kTrustTimes);
+    command->get_option("--out")->description(help::kFarmOut);
+    command->get_option("--threads")->description(help::kFarmThreads);
+    const std::size_t of_runs = command->get_options().size();
+    add_picture_options(*command, *arguments);
+    return {command, [arguments, command, own, of_runs] {
+                const std::vector<CLI::Option*> options = command->get_options();
+                for (std::size_t i = own; i < options.size(); ++i) {
+                    const std::string name = "--" + options[i]->get_lnames().front();
+                    if (options[i]->count() == 0 || name == "--out" || name == "--frames" ||
+                        name == "--threads" || name == "--chosen")
+                        continue;
+                    if (i >= of_runs && arguments->verb != "render")
+                        throw WrongUsage(name + " is of pictures: --verb render makes them");
+                    for (const std::string& value : options[i]->results())
+                        arguments->passed.push_back(options[i]->get_items_expected_max() == 0
+                                                        ? name
+                                                        : name + '=' + shell_word(value));
+                }
+                return run(*arguments);
+            }};
+}
+
+}  // namespace pelagic::cli

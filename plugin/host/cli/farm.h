@@ -1,0 +1,32 @@
+// What `pelagic farm` writes into DIR/farm, and reads there again: NAME.VERB.json beside the scripts says which task makes what.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pelagic/scene.h"
+
+namespace pelagic::cli {
+
+struct FarmTask {
+    std::string frames;  // as of --frames
+    std::string log;     // below DIR/farm
+    std::string slurm;   // what Slurm itself says of it, below DIR/farm
+};
+
+struct FarmJob {
+    std::string verb, shot;  // "bake" or "render", and the path of the shot file
+    Shot of{};               // its name and frames alone
+    std::vector<FarmTask> tasks{};
+};
+
+// The lines with which a task's log tells when it begins and ends: "pelagic farm: begun ID on HOST", "… ended ID with status N".
+inline constexpr const char* kFarmBegun = "pelagic farm: begun ";
+inline constexpr const char* kFarmEnded = "pelagic farm: ended ";
+inline constexpr const char* kFarmAgain = ", and is begun again";  // at the end of the latter
+
+// --status: prints it; the exit status.
+int print_farm_status(const std::filesystem::path& out);
+
+}  // namespace pelagic::cli

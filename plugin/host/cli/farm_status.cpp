@@ -1,0 +1,258 @@
+// pelagic farm --status DIR
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/text.h"
+#include "plugin/files/files.h"
+#include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/farm.h"
+#include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/json_output.h"
+#include "plugin/host/cli/text.h"
+#include "plugin/render/picture_files.h"
+#include "plugin/run/fragments.h"
+
+namespace pelagic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+FarmJob read_job(const fs::path& file) {
+    try {
+        std::ifstream stream(file);
+        const auto json = nlohmann::json::parse(stream);
+        FarmJob job{.verb = json.at("verb"), .shot = json.at("shot")};
+        job.of.name = json.at("name");
+        job.of.first_frame = json.at("frame_range").at(0);
+        job.of.last_frame = json.at("frame_range").at(1);
+        for (const auto& task : json.at("tasks"))
+            job.tasks.push_back({task.at("frames"), task.at("log"), task.at("slurm")});
+        return job;
+    } catch (const nlohmann::json::exception&) {
+        throw WrongUsage(line_text(file.string()) +
+                         " is no job of pelagic farm's, or damaged: share the shot out again");
+    }
+}
+
+// By the record and its fragments, or the pictures: verify reads the files.
+std::set<int> frames_there(const FarmJob& job, const fs::path& out) {
+    std::set<int> there;
+    if (job.verb == "bake") {
+        read_records(out / (job.of.name + ".json"), [&](int number, const FrameRecord& frame) {
+            if (!frame.is_stale) there.insert(number);
+        });
+        return there;
+    }
+    for (const FarmTask& task : job.tasks)
+        for (const int frame : parse_frames(task.frames, job.of))
+            if (fs::exists(out / picture_file(job.of, frame, "exr")) &&
+                fs::exists(out / picture_file(job.of, frame, "png")))
+                there.insert(frame);
+    return there;
+}
+
+// What its log says of a task.
+struct Log {
+    std::optional<std::string> running;  // who has begun and not ended
+    std::string host;
+    std::string message;        // the last one since it began
+    std::optional<int> status;  // with which the last one ended
+    std::string again;          // who that is, if it has asked Slurm to begin again
+    double silent_s = 0.0;      // since its last word
+};
+
+Log read_log(const fs::path& file) {
+    Log log;
+    std::ifstream stream(file);
+    std::map<std::string, std::string> begun;  // host, by who
+    std::string last;
+    for (std::string line; std::getline(stream, line);) {
+        std::string_view rest = line;
+        const auto word = [&] {
+            const std::size_t end = std::min(rest.find_first_of(" ,"), rest.size());
+            const std::string taken(rest.substr(0, end));
+            rest.remove_prefix(std::min(rest.size(), end + 1));
+            return taken;
+        };
+        if (line.starts_with(kFarmBegun)) {
+            rest.remove_prefix(std::string_view(kFarmBegun).size());
+            const std::string id = word();
+            word();  // "on"
+            begun[id] = log.host = word();
+            last = id;
+            log.message.clear();
+        } else if (line.starts_with(kFarmEnded)) {
+            rest.remove_prefix(std::string_view(kFarmEnded).size());
+            const std::string id = word();
+            begun.erase(id);
+            log.again = line.ends_with(kFarmAgain) ? id : std::string();
+            word(), word();  // "with status"
+            int status = 0;
+            const std::string number = word();
+            if (std::from_chars(number.data(), number.data() + number.size(), status).ec == std::errc())
+                log.status = status;
+        } else if (line.starts_with("pelagic: ") || line.find(": ") != std::string::npos) {
+            // A message, rather than a line of progress.
+            if (!line.starts_with("frame ") && !line.starts_with("building ")) log.message = line;
+        }
+    }
+    if (!begun.empty()) {
+        const auto at = begun.contains(last) ? begun.find(last) : begun.begin();
+        log.running = at->first;
+        log.host = at->second;
+    }
+    std::error_code error;
+    const auto heard = fs::last_write_time(file, error);
+    if (!error)
+        log.silent_s = std::chrono::duration<double>(fs::file_time_type::clock::now() - heard).count();
+    return log;
+}
+
+std::string last_line(const fs::path& file) {
+    std::ifstream stream(file);
+    std::string last;
+    for (std::string line; std::getline(stream, line);)
+        if (!line.empty()) last = line;
+    return last;
+}
+
+// The tasks that Slurm knows of, ARRAY_NUMBER, with their states.
+using Queue = std::map<std::string, std::string>;
+// Nothing where it doesn't answer.
+std::optional<Queue> queued() {
+    FILE* pipe = popen("timeout 10 squeue -h -r -o '%F_%K %T' 2>/dev/null", "r");
+    if (!pipe) return {};
+    Queue states;
+    std::array<char, 256> line{};
+    while (std::fgets(line.data(), static_cast<int>(line.size()), pipe)) {
+        std::string_view text = line.data();
+        while (text.ends_with('\n')) text.remove_suffix(1);
+        const std::size_t space = text.find(' ');
+        if (space != std::string_view::npos)
+            states[std::string(text.substr(0, space))] = text.substr(space + 1);
+    }
+    if (pclose(pipe) != 0) return {};
+    return states;
+}
+
+// Whether a task that said that it has begun surely doesn't run any more: by Slurm, or as a process of this machine (HOST-PROCESS_NUMBER).
+bool is_gone(const std::string& id, const std::optional<Queue>& queue) {
+    if (id.find_first_not_of("0123456789_") == std::string::npos) {
+        if (!queue) return false;
+        const auto at = queue->find(id);
+        return at == queue->end() || (at->second != "RUNNING" && at->second != "COMPLETING");
+    }
+    std::array<char, 256> host{};
+    gethostname(host.data(), host.size() - 1);
+    std::string here = host.data();
+    here = here.substr(0, here.find('.')) + '-';
+    if (!id.starts_with(here)) return false;
+    int process = 0;
+    std::from_chars(id.data() + here.size(), id.data() + id.size(), process);
+    return process > 0 && kill(process, 0) != 0 && errno == ESRCH;
+}
+
+constexpr int kKilledFrom = 128;
+
+struct Counted {
+    int frames = 0, whole = 0;
+};
+
+Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Queue>& queue) {
+    const std::set<int> there = frames_there(job, out);
+    std::vector<int> whole, missing;
+    std::string running, failed;
+    nlohmann::ordered_json told{
+        {"event", "result"}, {"verb", "farm"}, {"name", job.of.name}, {"of", job.verb}};
+    told["running"] = told["failed"] = nlohmann::ordered_json::array();
+    Counted counted;
+    for (const FarmTask& task : job.tasks) {
+        std::vector<int> lacking;
+        for (const int frame : parse_frames(task.frames, job.of)) {
+            ++counted.frames;
+            (there.contains(frame) ? whole : lacking).push_back(frame);
+        }
+        if (lacking.empty()) continue;
+        const std::string frames = frames_text(lacking);
+        const Log log = read_log(out / "farm" / task.log);
+        std::string message = log.message;
+        // Slurm's word counts: on a full disk a task's own last words may be lost.
+        if (const auto at = queue ? queue->find(log.running.value_or(log.again)) : Queue::const_iterator();
+            queue && at != queue->end() && at->second == "PENDING") {
+            running += "\n  " + frames + ": is begun again soon" +
+                       (message.empty() ? "" : ", after: " + line_text(message));
+            told["running"].push_back({{"frames", frames}, {"message", message}});
+            continue;
+        }
+        if (log.running && !is_gone(*log.running, queue)) {
+            running += "\n  " + frames + ": on " + line_text(log.host) + ", last heard of " +
+                       duration_text(log.silent_s) + " ago";
+            told["running"].push_back({{"frames", frames}, {"host", log.host}, {"silent_s", log.silent_s}});
+            continue;
+        }
+        if (log.running) {
+            message = "lost, on " + log.host;
+            if (const std::string said = last_line(out / "farm" / task.slurm); !said.empty())
+                message += ": " + said;
+        } else if (!log.status) {
+            missing.insert(missing.end(), lacking.begin(), lacking.end());
+            continue;
+        } else if (*log.status > kKilledFrom) {
+            message = "stopped by signal " + std::to_string(*log.status - kKilledFrom);
+        } else if (*log.status == kDone) {
+            message = "made, and not there any more, or of another version of the shot";
+        }
+        failed += "\n  " + frames + ": " + line_text(message);
+        if (log.status) failed += " (status " + std::to_string(*log.status) + ')';
+        told["failed"].push_back({{"frames", frames}, {"message", message}});
+        if (log.status) told["failed"].back()["status"] = *log.status;
+    }
+    counted.whole = static_cast<int>(whole.size());
+    std::cout << line_text(job.of.name) << ", " << job.verb << ": " << counted.whole << " of "
+              << count_text(counted.frames, "frame", "frames") << " whole, in "
+              << count_text(static_cast<long>(job.tasks.size()), "task", "tasks") << '\n';
+    if (!whole.empty()) std::cout << "whole: " << frames_text(whole) << '\n';
+    if (!running.empty()) std::cout << "running:" << running << '\n';
+    if (!failed.empty()) std::cout << "failed:" << failed << '\n';
+    if (!missing.empty()) std::cout << "missing, not begun: " << frames_text(missing) << '\n';
+    std::cout << std::flush;
+    told["frames"] = counted.frames;
+    told["whole"] = frames_text(whole);
+    told["missing"] = frames_text(missing);
+    tell_json(told);
+    return counted;
+}
+
+}  // namespace
+
+int print_farm_status(const fs::path& out) {
+    std::set<fs::path> jobs;
+    std::error_code error;
+    for (fs::directory_iterator entry(out / "farm", error), end; !error && entry != end;
+         entry.increment(error))
+        if (entry->path().extension() == ".json") jobs.insert(entry->path());
+    if (jobs.empty())
+        throw WrongUsage("--status " + quoted_text(out.string()) +
+                         ": pelagic farm has written no job into this folder");
+    const auto queue = queued();
+    int status = kDone;
+    for (const fs::path& file : jobs) {
+        const Counted counted = print_job(read_job(file), out, queue);
+        if (counted.whole < counted.frames) status = kNotWhole;
+    }
+    return status;
+}
+
+}  // namespace pelagic::cli

@@ -1,0 +1,221 @@
+// A shot shared out among tasks, without a queue: what `pelagic farm` writes, what its tasks leave, and what it says of them; and
+// the words for programs. On a real Slurm: tests/farm.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/plugin/host/cli/program.h"
+#include "tests/plugin/host/cli/small_shot.h"
+
+namespace pelagic::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Farm : public ::testing::Test {
+  protected:
+    void SetUp() override { write_file(folder() / "small.toml", text_of({.frames = 12})); }
+    const fs::path& folder() const { return folder_.path(); }
+    // Of bash, in which $P is the program.
+    Ended shell(const std::string& line) const {
+        return run({.arguments = {"-c", "P='" PELAGIC_PROGRAM "'; " + line},
+                    .folder = folder(),
+                    .program = "/bin/bash"});
+    }
+    // Its events.
+    std::vector<Json> told(const std::string& line, int status = 0) const {
+        const Ended ended = shell(line);
+        EXPECT_EQ(ended.status, status) << ended.err;
+        std::vector<Json> events;
+        std::istringstream lines(ended.out);
+        for (std::string text; std::getline(lines, text);) {
+            events.push_back(Json::parse(text, nullptr, false));
+            EXPECT_TRUE(events.back().is_object()) << text;
+        }
+        EXPECT_FALSE(events.empty());
+        if (events.empty()) return {Json::object()};
+        EXPECT_EQ(events.back().value("event", ""), "end");
+        EXPECT_EQ(events.back().value("status", -1), status);
+        return events;
+    }
+    // The event "result", of which there is one.
+    Json result(const std::string& line, int status = 0) const {
+        Json found;
+        for (const Json& event : told(line, status))
+            if (event.value("event", "") == "result") {
+                EXPECT_TRUE(found.is_null()) << line;
+                found = event;
+            }
+        EXPECT_FALSE(found.is_null()) << line;
+        return found;
+    }
+    std::string without_farm(const std::string& a, const std::string& b) const {
+        fs::remove_all(folder() / a / "farm");
+        return differences(folder() / a, folder() / b);
+    }
+
+  private:
+    TempFolder folder_;
+};
+
+TEST_F(Farm, ItsTasksLeaveWhatOneBakeLeaves) {
+    const std::string out = "a shot's 100% \\\"folder\\\"";
+    ASSERT_EQ(shell("$P farm --sbatch=--partition=night --sbatch=--nice small.toml --out \"" + out +
+                    "\" --tasks 3 --frames 1-12")
+                  .status,
+              0);
+    const Ended tasks = shell("for n in 2 0 1; do bash \"" + out + "\"/farm/small.bake.sh $n || exit; done");
+    EXPECT_EQ(tasks.status, 0) << tasks.err;
+    EXPECT_EQ(shell("$P bake small.toml --out whole").status, 0);
+    const std::string name = "a shot's 100% \"folder\"";
+    const std::string script = files_below(folder() / name).at("farm/small.bake.sh");
+    for (const char* part : {"#SBATCH --array=0-2\n", "#SBATCH --requeue\n", "#SBATCH --partition=night\n",
+                             "#SBATCH --nice\n", "\n    5-8\n", "#SBATCH --mem=", "#SBATCH --cpus-per-task=",
+                             "/a shot's 100%% \\\"folder\\\"/farm/small.bake.%a.slurm\"\n"})
+        EXPECT_TRUE(has(script, part)) << part << script;
+    for (const char* log : {"farm/small.bake.0001-0004.log", "farm/small.bake.0009-0012.log"})
+        EXPECT_TRUE(has(files_below(folder() / name).at(log), "with status 0")) << log;
+    EXPECT_EQ(without_farm(name, "whole"), "");
+}
+
+TEST_F(Farm, TasksTakeMinutesAndWhatThePlanCounts) {
+    write_file(folder() / "long.toml", text_of({.name = "long", .frames = 1000, .quads = 512}));
+    for (const double minutes : {0.1, 0.5, 1000.0}) {
+        const Json job = result("$P farm long.toml --out out --json --minutes " + std::to_string(minutes));
+        // Half as much again for encoding and writing.
+        const double seconds = 1000 * 1.5 * job.at("frame").at("seconds_a_frame").get<double>();
+        EXPECT_EQ(static_cast<double>(job.at("tasks").size()), std::ceil(seconds / (60.0 * minutes)))
+            << seconds;
+        EXPECT_EQ(job.at("threads"), 1);
+        EXPECT_GT(job.at("task_memory_bytes"), job.at("frame").at("memory_bytes"));
+    }
+    write_file(
+        folder() / "large.toml",
+        "[waves]\ncascades = [ { size_m = 150.0, resolution = 8192 }, { size_m = 5.0, resolution = 8192 } ]\n"
+        "[surface]\nresolution = 8192\nsize_m = 5\n[output]\nmaps = [\"displacement\"]\nmap_resolution = 4000\n");
+    const Json large = result("$P farm large.toml --out out --json");
+    const double memory = large.at("task_memory_bytes").get<double>();
+    EXPECT_GT(memory, 4.0 * (1 << 30)) << "the test needs a large shot";
+    EXPECT_GE(large.at("threads").get<double>(), std::floor(memory / (4.0 * (1 << 30)))) << memory;
+    EXPECT_EQ(result("$P farm large.toml --out out --json --threads 7").at("threads"), 7);
+    EXPECT_EQ(shell("$P farm small.toml --out out --tasks 1001").status, 2);
+    EXPECT_EQ(result("$P farm small.toml --out out --json --tasks 1000").at("tasks").size(), 12u)
+        << "a frame each";
+}
+
+TEST_F(Farm, StatusSaysWhatIsWholeRunningFailedAndMissing) {
+    const Json job = result("$P farm small.toml --out out --tasks 4 --json");
+    EXPECT_EQ(job.at("tasks").size(), 4u);
+    EXPECT_GT(job.at("frame").at("seconds_a_frame").get<double>(), 0.0);
+    EXPECT_GT(job.at("frame").at("bytes_a_frame").get<double>(), 0.0);
+    EXPECT_EQ(result("$P farm --status out --json", 3).at("missing"), "1-12");
+    ASSERT_EQ(shell("bash out/farm/small.bake.sh 0").status, 0);
+    // One that fails, one that is at work, and one that was killed with its shell.
+    fs::create_directories(folder() / "out/mesh/small.0005.usda");
+    EXPECT_EQ(shell("bash out/farm/small.bake.sh 1").status, 2);
+    const std::string log = "log=out/farm/small.bake.0007-0009.log; host=$(hostname -s); ";
+    const auto status = [&](const std::string& words, int end = 3) {
+        return result(words + "$P farm --status out --json", end);
+    };
+    const Json found = status(log + "echo \"pelagic farm: begun $host-$$" + "_2 on $host, now\" > $log; ");
+    EXPECT_EQ(found.at("whole"), "1-4");
+    EXPECT_EQ(found.at("missing"), "10-12");
+    ASSERT_EQ(found.at("running").size(), 1u) << found;
+    EXPECT_EQ(found.at("running")[0].at("frames"), "7-9");
+    ASSERT_EQ(found.at("failed").size(), 1u) << found;
+    EXPECT_EQ(found.at("failed")[0].at("frames"), "5-6");
+    EXPECT_EQ(found.at("failed")[0].at("status"), 2);
+    EXPECT_TRUE(has(found.at("failed")[0].at("message"), "small.0005.usda")) << found;
+    const Json lost = status(log + "echo \"pelagic farm: begun $host-2147483646_2 on $host, now\" > $log; ");
+    EXPECT_EQ(lost.at("failed").size(), 2u) << lost;
+    EXPECT_EQ(lost.at("running").size(), 0u) << lost;
+    const Ended words = shell("$P farm --status out");
+    for (const char* part : {"small, bake: 4 of 12 frames whole, in 4 tasks\n", "whole: 1-4\n",
+                             "\n  5-6: ", "missing, not begun: 10-12\n"})
+        EXPECT_TRUE(has(words.out, part)) << part << words.out;
+    fs::remove(folder() / "out/mesh/small.0005.usda");
+    ASSERT_EQ(shell("for n in 1 2 3; do bash out/farm/small.bake.sh $n || exit; done").status, 0);
+    EXPECT_EQ(status("", 0).at("whole"), "1-12");
+}
+
+TEST_F(Farm, ABudgetIsSettledOnceForAllTasks) {
+    write_file(folder() / "budget.toml", text_of({.frames = 4}) + "[quality]\nmax_error = 0.3\n");
+    EXPECT_EQ(shell("$P bake budget.toml --out out --frames 2").status, 2) << "a part alone is refused";
+    ASSERT_EQ(shell("$P farm budget.toml --out out --tasks 2").status, 0);
+    EXPECT_TRUE(
+        has(files_below(folder() / "out").at("farm/small.bake.sh"), "--chosen='quality.max_error = 0.3: "));
+    const Ended tasks =
+        shell("for n in 1 0; do bash out/farm/small.bake.sh $n || exit; done; cat out/farm/*.log >&2");
+    ASSERT_EQ(tasks.status, 0) << tasks.err;
+    ASSERT_EQ(shell("$P bake budget.toml --out whole").status, 0);
+    EXPECT_EQ(without_farm("out", "whole"), "");
+}
+
+TEST_F(Farm, PicturesToo) {
+    ASSERT_EQ(
+        shell(
+            "$P farm small.toml --out out --tasks 2 --verb render --size 32x18 --samples 1 --layers none --frames 1-4")
+            .status,
+        0);
+    EXPECT_EQ(result("$P farm --status out --json", 3).at("missing"), "1-4");
+    ASSERT_EQ(shell("for n in 0 1; do bash out/farm/small.render.sh $n || exit; done").status, 0);
+    EXPECT_EQ(result("$P farm --status out --json").at("whole"), "1-4");
+    ASSERT_EQ(
+        shell("$P render small.toml --out whole --size 32x18 --samples 1 --layers none --frames 1-4").status,
+        0);
+    EXPECT_EQ(without_farm("out", "whole"), "");
+}
+
+// As where the two tasks that end last miss each other's, on a file system that shows new files late.
+TEST_F(Farm, VerifyTakesWhatLiesBesideTheRecordOfAWholeShotIntoIt) {
+    ASSERT_EQ(
+        shell("$P bake small.toml --out whole && $P bake small.toml --out out --frames 1-7 && "
+              "$P bake small.toml --out other --frames 8-12 && cp -rn other/* out && mkdir out/record && "
+              "cp other/small.json out/record/small.8-12.5.0123456789abcdef.json")
+            .status,
+        0);
+    ASSERT_NE(differences(folder() / "out", folder() / "whole"), "");
+    fs::rename(folder() / "out/mesh/small.0003.usda", folder() / "kept");
+    EXPECT_EQ(shell("$P verify out").status, 3);
+    EXPECT_TRUE(fs::exists(folder() / "out/record")) << "what isn't whole stays as it is";
+    fs::rename(folder() / "kept", folder() / "out/mesh/small.0003.usda");
+    EXPECT_EQ(result("$P verify out --json").at("merged"), Json({"small.json"}));
+    EXPECT_EQ(differences(folder() / "out", folder() / "whole"), "");
+    EXPECT_EQ(result("$P verify out --json").at("merged"), Json::array());
+}
+
+TEST_F(Farm, ProgramsReadWhatIsSaid) {
+    const std::vector<Json> baked = told("$P bake small.toml --out out --json");
+    int most = 0;
+    for (const Json& event : baked)
+        if (event.at("event") == "progress" && event.at("stage") == "frames") {
+            EXPECT_GE(event.at("done").get<int>(), most);
+            most = event.at("done");
+        }
+    EXPECT_EQ(most, 12);
+    const Json explained = result("$P explain small.toml --json");
+    for (const char* of : {"bake", "pictures"})
+        for (const char* key : {"seconds_a_frame", "bytes_a_frame", "memory_bytes"})
+            EXPECT_GT(explained.at(of).at(key).get<double>(), 0.0) << of << key;
+    fs::remove(folder() / "out/mesh/small.0002.usda");
+    const Json verified = result("$P verify out --json", 3);
+    ASSERT_EQ(verified.at("findings").size(), 1u);
+    EXPECT_EQ(verified.at("findings")[0].at("path"), "mesh/small.0002.usda");
+    EXPECT_EQ(verified.at("findings")[0].at("flaw"), "missing");
+    write_file(folder() / "wrong.toml", "[sea]\nwind_speed_mps = -1\n");
+    for (const char* line : {"$P bake wrong.toml --json", "$P explain wrong.toml --json"})
+        EXPECT_TRUE(has(told(line, 2).back().at("error"), "wrong.toml:2:18: ")) << line;
+    EXPECT_TRUE(has(told("$P bake small.toml --json --frame 3", 2).back().at("error"), "--frame"));
+    EXPECT_TRUE(
+        has(told("$P bake small.toml --out full --max-memory 1K --json", 75).back().at("error"), "memory"));
+    EXPECT_EQ(shell("$P bake small.toml --out out --json > /dev/full").status, 75);
+}
+
+}  // namespace
+}  // namespace pelagic::test

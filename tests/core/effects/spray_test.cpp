@@ -128,10 +128,14 @@ TEST(Spray, RibbonsAreWhatBreaksUpwind) {
     std::vector<float> breaking(points.count);
     Results<float> results;
     results.set(Product::Breaking, {breaking.data()});
+    std::vector<glm::vec3> displacement_m(points.count);
+    results.set(Product::Displacement, {displacement_m.data()});
     evaluate_at(query, points, {.tolerance_m = 0.05}, results);
     const SprayVeil veil(frame);
     std::vector<glm::dvec3> shares(points.count);
-    veil.shares<float>(query, points, breaking, std::vector<double>(points.count, 5.9), shares);
+    std::vector<double> lifts_m(points.count);
+    veil.shares<float>(query, points, breaking, displacement_m, std::vector<double>(points.count, 5.9),
+                       shares, lifts_m);
     glm::dvec3 sum(0.0);
     double broken = 0.0, downwind = 0.0, upwind = 0.0;
     for (int j = 0; j < kSide; ++j)

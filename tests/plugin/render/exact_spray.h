@@ -66,7 +66,9 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
     results.set(Product::Breaking, {coverage.data()});
     evaluate_at(query, points, {}, results);
     std::vector<glm::dvec3> shares(places.size());
-    veil.shares<float>(query, points, coverage, std::vector<double>(places.size(), cell_m), shares);
+    std::vector<double> lifts_m(places.size());
+    veil.shares<float>(query, points, coverage, displacement, std::vector<double>(places.size(), cell_m),
+                       shares, lifts_m);
     std::vector<SprayRay> met;
     for (std::size_t i = 0; i < steps.size();) {
         SprayRay ray{.direction = rays[steps[i].ray].direction};
@@ -79,7 +81,8 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
             const double density =
                 law.over_foam.extinction_per_m * shares[i].x * std::exp(-z_over_m / law.over_foam.scale_m) +
                 law.haze.extinction_per_m * std::exp(-z_over_m / law.haze.scale_m) +
-                law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], z_over_m, z_over_m + 1e-3);
+                law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], z_over_m, z_over_m + 1e-3,
+                                 lifts_m[i]);
             if (z_m > 0.0) {
                 ray.thickness += density * steps[i].length_m;
                 before_m = steps[i].at_m;

@@ -65,7 +65,7 @@ const float kSprayHigh = 12.0f;     // scale heights above which there is none t
 const float kSprayLowSun = 0.1f;    // the sine of the lowest elevation that counts: farther off there are other crests
 // The largest threads at birth, and how far apart places along a ray are where they count [m].
 const float kThreadHigh_m = 1.0f;
-const float kThreadStep_m = 0.6f;
+const float kThreadStep_m = 0.8f;
 const float kThreadLip_m = 0.7f;  // the lips that threads come from shelter what is lower
 
 // A place along the ray.
@@ -184,7 +184,7 @@ float spray_thread(vec2 place_m, float height_m, float extinction, float pixel_m
     vec4 seen = shares * vec4(smoothstep(1.0f, 3.0f, kThreadHigh_m / pixel_m), smoothstep(1.0f, 3.0f, 0.5f * kThreadHigh_m / pixel_m),
                               smoothstep(1.0f, 3.0f, 0.25f * kThreadHigh_m / pixel_m), smoothstep(1.0f, 3.0f, 0.125f * kThreadHigh_m / pixel_m));
     float variance = dot(seen, seen);
-    if (!(variance > 1.0e-4f)) return 1.0f;
+    if (!(variance > 1.0e-4f) || !(threads.per_m > 0.0f)) return 1.0f;
     vec2 wind = vec2(threads.wind.x, threads.wind.y);
     float along_m = dot(place_m, wind);
     float across_m = place_m.y * wind.x - place_m.x * wind.y;
@@ -234,7 +234,7 @@ float spray_mean_of(SprayPlace a, SprayPlace b, vec2 from_m, vec2 to_m, SprayVie
     }
     float length_m = length(to_m - from_m);
     if (!(spray.threads.per_m > 0.0f) || ribbons * length_m < 1.0e-3f) return mean + ribbons;
-    int count = clamp(int(length_m / kThreadStep_m) + 1, 1, 5);
+    int count = clamp(int(length_m / kThreadStep_m) + 1, 1, 4);
     float all = 0.0f;
     float threads = 0.0f;
     for (int i = 0; i < count; ++i) {

@@ -119,7 +119,10 @@ SprayMapSize spray_map_size(int picture_width) {
     constexpr double kColumns = 0.25, kRows = 0.4;  // of the picture's width
     constexpr int kNarrowest = 160, kWidest = 1280;
     const int width = std::clamp(picture_width, kNarrowest, kWidest);
-    return {.columns = static_cast<int>(kColumns * width), .rows = static_cast<int>(kRows * width)};
+    // With fewer, a ribbon that lies aslant is a comb.
+    constexpr int kFewestRows = 320;
+    return {.columns = static_cast<int>(kColumns * width),
+            .rows = std::max(static_cast<int>(kRows * width), kFewestRows)};
 }
 
 std::size_t spray_map_bytes(SprayMapSize size) {
@@ -185,8 +188,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     std::vector<T> widths(count), spreads(count), breaking(count);
     std::vector<double> cells(count);
     std::vector<double> thicker(static_cast<std::size_t>(size.rows), veil.law().with_drops());
-    // A ribbon that lies aslant between rows would be a comb if it were much narrower than they are apart.
-    constexpr double kSmoothest_m = 2.0, kOblique = 0.5;
+    constexpr double kSmoothest_m = 2.0;
     std::vector<glm::vec<3, T>> displacement(count);
     double finest_m = 0.0;
     if (frame.sea().plan().queries[kQuery].query.cell_m.size() > 1) {
@@ -209,7 +211,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
             const std::size_t i = static_cast<std::size_t>(row) * size.columns + column;
             places[i] = static_cast<T>(arc_m) * away;
             widths[i] = width;
-            spreads[i] = std::max({width, static_cast<T>(kSmoothest_m), static_cast<T>(kOblique * away_m)});
+            spreads[i] = std::max(width, static_cast<T>(kSmoothest_m));
             cells[i] = std::max(away_m, beside_m);  // what is finer along one side alone would be pillars
             axes[i] = away_m >= beside_m ? static_cast<T>(away_m) * away
                                          : static_cast<T>(beside_m) * Vec(-away.y, away.x);

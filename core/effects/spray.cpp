@@ -20,9 +20,9 @@ struct Age {
     int height;
     double age_s, weight;
 };
-constexpr std::array kAges{Age{0, 0.0, 0.35}, Age{0, 0.5, 0.3}, Age{0, 1.1, 0.2},  Age{0, 1.8, 0.15},
-                           Age{1, 0.8, 0.3}, Age{1, 1.6, 0.4}, Age{1, 2.6, 0.3},  Age{2, 2.0, 0.3},
-                           Age{2, 3.2, 0.3}, Age{2, 4.5, 0.25}, Age{2, 6.0, 0.15}};
+constexpr std::array kAges{Age{0, 0.0, 0.35}, Age{0, 0.5, 0.3},  Age{0, 1.1, 0.2}, Age{0, 1.8, 0.15},
+                           Age{1, 0.8, 0.3},  Age{1, 1.6, 0.4},  Age{1, 2.6, 0.3}, Age{2, 2.0, 0.3},
+                           Age{2, 3.2, 0.3},  Age{2, 4.5, 0.25}, Age{2, 6.0, 0.15}};
 // How fast wind and crest come apart: crests that break run at half the wind's speed, more or less.
 constexpr double kApart = 0.5;
 // How fast it falls: drops of some 60 µm (settling_mps()).
@@ -219,9 +219,9 @@ void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, s
         }
     }
     for (std::size_t i = 0; i < count; ++i)
-        lifts_m[i] = thickness[i] > 0.0 ? std::min(lifts_m[i] / thickness[i],
-                                                   SprayRibbons::kMostLift * law_.ribbons.step_m)
-                                        : 0.0;
+        lifts_m[i] = thickness[i] > 0.0
+                         ? std::min(lifts_m[i] / thickness[i], SprayRibbons::kMostLift * law_.ribbons.step_m)
+                         : 0.0;
 }
 
 template double mean_breaking(const Sea<float>&);

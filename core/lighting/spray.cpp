@@ -26,7 +26,8 @@ struct Shading {
         return map.texels[static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column)];
     }
     float spray_lift(int column, int row) const {
-        const std::size_t at = static_cast<std::size_t>(map.rows + row) * map.columns + static_cast<std::size_t>(column);
+        const std::size_t at =
+            static_cast<std::size_t>(map.rows + row) * map.columns + static_cast<std::size_t>(column);
         return at < map.texels.size() ? map.texels[at].x : 0.0f;
     }
 
@@ -43,11 +44,13 @@ spray_shading::Shading::SprayThreads threads_of(const SprayThreads& threads) {
 }
 
 spray_shading::Shading::SprayView view_of(const Spray& spray) {
-    return {spray.columns,  spray.rows,    spray.azimuth,   spray.columns_per_rad, spray.first_m,
-            spray.row_step, spray.is_torn, spray.scale_m,   spray.step_m,          spray.haze_per_m,
-            spray.forward,  spray.eye_m,   spray.top_m,     spray.to_sun,          spray.sun,
-            spray.above,    spray.below,   spray.low_ahead, spray.low_beside,      spray.low_behind,
-            threads_of(spray.threads)};
+    return {spray.columns,         spray.rows,       spray.azimuth,
+            spray.columns_per_rad, spray.first_m,    spray.row_step,
+            spray.is_torn,         spray.scale_m,    spray.step_m,
+            spray.haze_per_m,      spray.forward,    spray.eye_m,
+            spray.top_m,           spray.to_sun,     spray.sun,
+            spray.above,           spray.below,      spray.low_ahead,
+            spray.low_beside,      spray.low_behind, threads_of(spray.threads)};
 }
 
 void take(SeaRadiance& radiance, const spray_shading::Shading::SprayPath& path) {

@@ -221,9 +221,9 @@ class SprayPart final : public VolumePart {
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 const double top_m =
                     (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
-                spray.optical_thickness += mean_over(extinction, 0.0, top_m,
-                                                     static_cast<double>(slot.lifts_m[y * columns() + x])) *
-                                           top_m;
+                spray.optical_thickness +=
+                    mean_over(extinction, 0.0, top_m, static_cast<double>(slot.lifts_m[y * columns() + x])) *
+                    top_m;
             }
         spray.breaking_over_mean /= area;
         spray.optical_thickness /= area;

@@ -138,7 +138,8 @@ TEST(FoamStructure, PatchesEndInLace) {
             float sum = 0.0f;
             for (int j = 0; j < 3; ++j)
                 for (int k = -2; k <= 2; ++k)
-                    sum += at(m + (from_m + 0.12f * static_cast<float>(j)) * ahead + 0.15f * static_cast<float>(k) * aside);
+                    sum += at(m + (from_m + 0.12f * static_cast<float>(j)) * ahead +
+                              0.15f * static_cast<float>(k) * aside);
             return sum / 15.0f;
         };
         if (mean(-0.3f) < 0.75f) continue;

@@ -227,7 +227,8 @@ TEST(SprayBefore, LiftedRibbonsAreAsThickAndHigher) {
         }
         spray.eye_m = static_cast<float>(0.35 * kStep_m);
         const double level = seen_thickness(spray, 0.0, 10.0) - 10.0 * kHaze_per_m;
-        EXPECT_NEAR(level, 10.0 * ribbons.mean(law, 0.35 * kStep_m - 1e-3, 0.35 * kStep_m + 1e-3, lift * kStep_m),
+        EXPECT_NEAR(level,
+                    10.0 * ribbons.mean(law, 0.35 * kStep_m - 1e-3, 0.35 * kStep_m + 1e-3, lift * kStep_m),
                     2e-3)
             << lift;
         if (lift > 0.5) {

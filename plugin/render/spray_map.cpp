@@ -119,10 +119,7 @@ SprayMapSize spray_map_size(int picture_width) {
     constexpr double kColumns = 0.25, kRows = 0.4;  // of the picture's width
     constexpr int kNarrowest = 160, kWidest = 1280;
     const int width = std::clamp(picture_width, kNarrowest, kWidest);
-    // With fewer, a ribbon that lies aslant is a comb.
-    constexpr int kFewestRows = 320;
-    return {.columns = static_cast<int>(kColumns * width),
-            .rows = std::max(static_cast<int>(kRows * width), kFewestRows)};
+    return {.columns = static_cast<int>(kColumns * width), .rows = static_cast<int>(kRows * width)};
 }
 
 std::size_t spray_map_bytes(SprayMapSize size) {
@@ -211,8 +208,10 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
             const std::size_t i = static_cast<std::size_t>(row) * size.columns + column;
             places[i] = static_cast<T>(arc_m) * away;
             widths[i] = width;
-            spreads[i] = std::max(width, static_cast<T>(kSmoothest_m));
-            cells[i] = std::max(away_m, beside_m);  // what is finer along one side alone would be pillars
+            // Ribbons lie aslant: finer than rows are apart they would be combs and pillars.
+            const double finest_ribbon_m = veil.is_torn() ? std::max(away_m, beside_m) : 0.0;
+            spreads[i] = std::max({width, static_cast<T>(kSmoothest_m), static_cast<T>(finest_ribbon_m)});
+            cells[i] = 1.5 * finest_ribbon_m;
             axes[i] = away_m >= beside_m ? static_cast<T>(away_m) * away
                                          : static_cast<T>(beside_m) * Vec(-away.y, away.x);
         }

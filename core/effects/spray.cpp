@@ -20,10 +20,13 @@ struct Age {
     int height;
     double age_s, weight;
 };
-constexpr std::array kAges{Age{0, 0.0, 0.5}, Age{0, 0.6, 0.5},  Age{1, 0.8, 0.5}, Age{1, 1.8, 0.5},
-                           Age{2, 2.2, 0.4}, Age{2, 3.5, 0.35}, Age{2, 5.5, 0.25}};
+constexpr std::array kAges{Age{0, 0.0, 0.35}, Age{0, 0.5, 0.3},  Age{0, 1.1, 0.2}, Age{0, 1.8, 0.15},
+                           Age{1, 0.8, 0.3},  Age{1, 1.6, 0.4},  Age{1, 2.6, 0.3}, Age{2, 2.0, 0.3},
+                           Age{2, 3.2, 0.3},  Age{2, 4.5, 0.25}, Age{2, 6.0, 0.15}};
 // How fast wind and crest come apart: crests that break run at half the wind's speed, more or less.
 constexpr double kApart = 0.5;
+// How fast it falls: drops of some 60 µm (settling_mps()).
+constexpr double kFalls_mps = 0.35;
 
 struct Tear {
     double across_m, along_m, lasts_s, strength, of_wind;
@@ -31,7 +34,7 @@ struct Tear {
 };
 constexpr std::array kTears{Tear{3.0, 14.0, 1.0, 1.8, 0.6, 4.0}, Tear{4.0, 24.0, 1.5, 2.0, 0.75, 8.0},
                             Tear{6.0, 40.0, 2.5, 2.2, 0.9, 14.0}};
-constexpr int kOctaves = 2;
+constexpr int kOctaves = 3;
 constexpr double kFiner = 0.5, kWeaker = 0.75;  // from octave to octave
 
 }  // namespace
@@ -117,7 +120,7 @@ SprayVeil::Torn SprayVeil::torn(int height, glm::dvec2 place_m, double cell_m) c
         const auto add = [&](double time_s, double part) {
             const Torn more = drawn(height, i, place_m, time_s, strength * part);
             torn.factor *= more.factor;
-            if (i == 0) torn.strayed_m += part * more.strayed_m;
+            torn.strayed_m += part * (strength / of.strength) * more.strayed_m;
         };
         // In a loop the end fades into what was before the beginning.
         const double over = loop_s_ > 0.0 ? time_s_ / loop_s_ : 0.0;
@@ -127,10 +130,28 @@ SprayVeil::Torn SprayVeil::torn(int height, glm::dvec2 place_m, double cell_m) c
     return torn;
 }
 
+std::array<SprayVeil::Generation, 2> SprayVeil::generations() const {
+    constexpr double kHalfALife_s = 1.6;  // chosen by eye: as long as ribbons are old
+    const double in_loop = loop_s_ > 0.0 ? std::max(std::round(loop_s_ / kHalfALife_s), 2.0) : 0.0;
+    const double half_s = in_loop > 0.0 ? loop_s_ / in_loop : kHalfALife_s;
+    const double halves = std::floor(time_s_ / half_s), part = time_s_ / half_s - halves;
+    const auto name = [&](double birth) {
+        if (in_loop > 0.0) birth -= in_loop * std::floor(birth / in_loop);
+        constexpr std::uint32_t kStream = 0x73707468u;  // of the shot's random numbers
+        return philox({static_cast<std::uint32_t>(static_cast<std::int64_t>(birth)), 0, 0, kStream},
+                      seed_)[0] &
+               0xffffffu;
+    };
+    return {Generation{part * half_s, std::sin(0.5 * kPi * part), name(halves)},
+            Generation{(1.0 + part) * half_s, std::cos(0.5 * kPi * part), name(halves - 1.0)}};
+}
+
 template <class T>
 void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, std::span<const T> breaking,
-                       std::span<const double> mean_cell_m, std::span<glm::dvec3> shares) const {
+                       std::span<const glm::vec<3, T>> displacement_m, std::span<const double> mean_cell_m,
+                       std::span<glm::dvec3> shares, std::span<double> lifts_m) const {
     std::fill(shares.begin(), shares.end(), glm::dvec3(0.0));
+    std::fill(lifts_m.begin(), lifts_m.end(), 0.0);
     if (empty()) return;
     if (!is_torn()) {
         for (std::size_t i = 0; i < breaking.size(); ++i)
@@ -148,6 +169,9 @@ void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, s
     std::vector<std::size_t> moved;
     std::vector<Vec> places_m, cell_axes, pixel_axes;
     std::vector<T> cells, pixels, there;
+    std::vector<glm::vec<3, T>> came_from;
+    std::vector<double> thickness(count, 0.0);
+    const glm::dvec3 counts = law_.ribbons.extinction_per_m * glm::dvec3(0.5, 1.25, 2.0);
     const auto gather = [&]<class V>(const Strided<const V>& from, std::vector<V>& to,
                                      Strided<const V>& view) {
         if (!from) return;
@@ -176,17 +200,28 @@ void SprayVeil::shares(const PreparedQuery<T>& query, const Points<T>& places, s
         gather(places.pixel_axis_m, pixel_axes, upwind.pixel_axis_m);
         Results<T> results;
         results.set(Product::Breaking, {there.data()});
+        came_from.resize(moved.size());
+        results.set(Product::Displacement, {came_from.data()});
         constexpr PlaceSearch kSearch{.tolerance_m = 0.2, .most_steps = 16};
         if (!moved.empty()) evaluate_at(query, upwind, kSearch, results);
         std::size_t next = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const bool is_moved = next < moved.size() && moved[next] == i;
-            shares[i][each.height] += each.weight * torn[3 * i + height].factor *
-                                      static_cast<double>(is_moved ? there[next] : breaking[i]) /
-                                      mean_breaking_;
+            const double share = each.weight * torn[3 * i + height].factor *
+                                 static_cast<double>(is_moved ? there[next] : breaking[i]) / mean_breaking_;
+            shares[i][each.height] += share;
+            const double up_m = is_moved ? static_cast<double>(came_from[next].z - displacement_m[i].z) -
+                                               kFalls_mps * each.age_s
+                                         : 0.0;
+            thickness[i] += share * counts[each.height];
+            lifts_m[i] += share * counts[each.height] * std::max(up_m, 0.0);
             next += is_moved ? 1 : 0;
         }
     }
+    for (std::size_t i = 0; i < count; ++i)
+        lifts_m[i] = thickness[i] > 0.0
+                         ? std::min(lifts_m[i] / thickness[i], SprayRibbons::kMostLift * law_.ribbons.step_m)
+                         : 0.0;
 }
 
 template double mean_breaking(const Sea<float>&);
@@ -194,8 +229,10 @@ template double mean_breaking(const Sea<double>&);
 template SprayVeil::SprayVeil(const Frame<float>&);
 template SprayVeil::SprayVeil(const Frame<double>&);
 template void SprayVeil::shares(const PreparedQuery<float>&, const Points<float>&, std::span<const float>,
-                                std::span<const double>, std::span<glm::dvec3>) const;
+                                std::span<const glm::vec3>, std::span<const double>, std::span<glm::dvec3>,
+                                std::span<double>) const;
 template void SprayVeil::shares(const PreparedQuery<double>&, const Points<double>&, std::span<const double>,
-                                std::span<const double>, std::span<glm::dvec3>) const;
+                                std::span<const glm::dvec3>, std::span<const double>, std::span<glm::dvec3>,
+                                std::span<double>) const;
 
 }  // namespace pelagic

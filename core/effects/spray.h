@@ -22,7 +22,7 @@ double mean_breaking(const Sea<T>& sea);
 //
 // Spray of some age was over a crest that breaks: the wind has carried it on, the crest has followed. So a place has what breaks now so far
 // upwind as wind and crest have come apart, of some ages together: ribbons that begin at crests. The older is the higher: ribbons lean
-// downwind. A noise of two octaves tears them, at each height its own: drawn out along the wind, moving with it; it also shifts from where spray
+// downwind. They fall slowly: where the sea falls off in front of a crest they stay up. A noise of two octaves tears them, at each height its own: drawn out along the wind, moving with it; it also shifts from where spray
 // came. It is lognormal, and its mean is exactly 1 at every place; where a cell doesn't resolve it it is 1. All of that is known
 // from place and time.
 //
@@ -37,12 +37,13 @@ class SprayVeil {
     const SprayLaw& law() const { return law_; }
     bool is_torn() const { return law_.is_torn(); }
 
-    // Writes the places' shares at the three heights, each 1 on average. breaking: the query's there. mean_cell_m:
-    // the side of a place's cell. The query holds Product::Breaking and Displacement, and places are those of the world, as
+    // Writes the places' shares at the three heights, each 1 on average, and how far up ribbons stay there [m] (SprayRibbons). breaking, displacement_m: the
+    // query's there. mean_cell_m: the side of a place's cell. The query holds Product::Breaking and Displacement, and places are those of the world, as
     // evaluate_at() takes them. On all threads of the calling arena.
     template <class T>
     void shares(const PreparedQuery<T>& query, const Points<T>& places, std::span<const T> breaking,
-                std::span<const double> mean_cell_m, std::span<glm::dvec3> shares) const;
+                std::span<const glm::vec<3, T>> displacement_m, std::span<const double> mean_cell_m,
+                std::span<glm::dvec3> shares, std::span<double> lifts_m) const;
 
     // At height 0, 1 or 2, at a place of the world: the noise, mean 1, and how far spray there has strayed [m].
     struct Torn {
@@ -50,6 +51,19 @@ class SprayVeil {
         glm::dvec2 strayed_m{0.0};
     };
     Torn torn(int height, glm::dvec2 place_m, double cell_m) const;
+
+    // What a place would have at the surface that breaks whole, over the sea's mean.
+    double whole() const { return 1.0 / mean_breaking_; }
+    glm::dvec2 downwind() const { return downwind_; }
+    double wind_speed_mps() const { return wind_mps_; }
+
+    // Two generations of a noise that take turns: squares of weights add up to 1, and one that has none is replaced. A loop has a whole number of
+    // them.
+    struct Generation {
+        double age_s = 0.0, weight = 1.0;
+        std::uint32_t name = 0;  // random, less than 2^24
+    };
+    std::array<Generation, 2> generations() const;
 
   private:
     Torn drawn(int height, int octave, glm::dvec2 place_m, double time_s, double strength) const;

@@ -217,18 +217,22 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
     float streaks = min(pattern.look.y * (0.1f + 0.85f * old), 0.65f);
     // What breaks is thick: its edges are torn, and holes come with age.
     float bubbles = 0.11f - 0.07f * young;
-    float lace = (0.6f - 0.5f * young) * (1.0f - kFoamGrain - bubbles - streaks);
+    float lace = (0.6f - 0.43f * young) * (1.0f - kFoamGrain - bubbles - streaks);
     float clouds = 1.0f - kFoamGrain - streaks - bubbles - lace;
 
     FoamNoise noise = FoamNoise(0.0f, 0.0f);
-    // What turbulence bends, in metres.
+    // What turbulence bends, in metres: lace; and patches, whose edges would else be as straight as the grid's cells are long.
     vec2 bent = vec2(0.0f);
+    vec2 ragged = vec2(0.0f);
     if (foam_weight(8.0f, footprint_m) > 0.0f) {
         ivec3 halvings = ivec3(4, 6, 7);  // 2, 1/2 and 1/4 m
         vec3 reach_m = vec3(0.34f, 0.1f, 0.045f);
+        vec3 ragged_m = vec3(0.4f, 0.24f, 0.11f);
         for (int k = 0; k < 3; ++k) {
             FoamCell cell = foam_cell(cells, rest, halvings[k], vec2(0.0f), false);
-            bent += reach_m[k] * vec2(foam_clouds(cell, uint(101 + 2 * k)), foam_clouds(cell, uint(102 + 2 * k)));
+            vec2 by = vec2(foam_clouds(cell, uint(101 + 2 * k)), foam_clouds(cell, uint(102 + 2 * k)));
+            bent += reach_m[k] * by;
+            ragged += ragged_m[k] * by;
         }
     }
     // Holes of one size, and smaller ones between. The largest begin at 1/4 m, and grow by 0.8 octaves for each doubling of
@@ -272,7 +276,7 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
         float part = parts[k];
         float through = foam_weight(size_m, footprint_m);
         if (part * through > 0.0f) {
-            noise.shown += sqrt(part) * through * foam_clouds(foam_cell(cells, rest, halvings[k], bent / size_m, false), uint(54 + k));
+            noise.shown += sqrt(part) * through * foam_clouds(foam_cell(cells, rest, halvings[k], ragged / size_m, (k & 1) == 1), uint(54 + k));
             noise.variance += part * through * through;
         }
     }
@@ -306,18 +310,23 @@ float foam_layer(FoamNoise noise, float mean, float softness) {
 
 // Foam is threads and a film between and around them, through which one sees the water. The film hides at most `thin` of a place, and is
 // there on nearly twice what foam hides of the sea, mean · (2 − mean): the threads hide the rest, so that both together hide `mean`.
-// thin < ½: both grow with the mean everywhere. What is young is dense and ends within a hand's breadth; with age the film takes over.
+// thin < ½: both grow with the mean everywhere. What is young is dense, and ends in lace; with age the film takes over.
 const float kThreadSoftness = 0.25f;
+const float kYoungSoftness = 0.48f;  // full of air: its edges are lace, no cut
 const float kFilmSoftness = 0.8f;
+const float kYoungThin = 0.1f;
+const float kThinner = 0.32f;  // with age
 
 float foam_thin(float age_s) {
-    return 0.1f + 0.32f * age_s / (age_s + 3.0f);
+    return kYoungThin + kThinner * age_s / (age_s + 3.0f);
 }
 
 float foam_opacity_in(FoamNoise noise, float mean, float thin) {
     float film = mean * (2.0f - mean);
     float threads = (mean - thin * film) / (1.0f - thin);
-    return thin * foam_layer(noise, film, kFilmSoftness) + (1.0f - thin) * foam_layer(noise, threads, kThreadSoftness);
+    float young = 1.0f - (thin - kYoungThin) * (1.0f / kThinner);
+    float softness = mix(kThreadSoftness, kYoungSoftness, young * young * young);
+    return thin * foam_layer(noise, film, kFilmSoftness) + (1.0f - thin) * foam_layer(noise, threads, softness);
 }
 
 // Bubbles lie in heaps: thin foam, and hollows, reflect that much less than the mean. So much light the upper part of the pattern has

@@ -25,6 +25,11 @@ struct Shading {
     vec4 spray_texel(int column, int row) const {
         return map.texels[static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column)];
     }
+    float spray_lift(int column, int row) const {
+        const std::size_t at =
+            static_cast<std::size_t>(map.rows + row) * map.columns + static_cast<std::size_t>(column);
+        return at < map.texels.size() ? map.texels[at].x : 0.0f;
+    }
 
 // clang-format off
 #include "core/lighting/air.glsl"
@@ -34,11 +39,18 @@ struct Shading {
 
 }  // namespace spray_shading
 
+spray_shading::Shading::SprayThreads threads_of(const SprayThreads& threads) {
+    return {threads.cell, threads.wind, threads.born, threads.names, threads.per_m, threads.pixel_rad};
+}
+
 spray_shading::Shading::SprayView view_of(const Spray& spray) {
-    return {spray.columns,  spray.rows,    spray.azimuth,   spray.columns_per_rad, spray.first_m,
-            spray.row_step, spray.is_torn, spray.scale_m,   spray.step_m,          spray.haze_per_m,
-            spray.forward,  spray.eye_m,   spray.top_m,     spray.to_sun,          spray.sun,
-            spray.above,    spray.below,   spray.low_ahead, spray.low_beside,      spray.low_behind};
+    return {spray.columns,         spray.rows,       spray.azimuth,
+            spray.columns_per_rad, spray.first_m,    spray.row_step,
+            spray.is_torn,         spray.scale_m,    spray.step_m,
+            spray.haze_per_m,      spray.forward,    spray.eye_m,
+            spray.top_m,           spray.to_sun,     spray.sun,
+            spray.above,           spray.below,      spray.low_ahead,
+            spray.low_beside,      spray.low_behind, threads_of(spray.threads)};
 }
 
 void take(SeaRadiance& radiance, const spray_shading::Shading::SprayPath& path) {
@@ -86,6 +98,12 @@ SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<fl
     if (spray.empty()) return {};
     const auto path = path_of(spray, direction, distance_m, on_sea);
     return {path.transmittance, path.scattered};
+}
+
+float spray_thread(const Spray& spray, glm::vec2 place_m, float height_m, float extinction_per_m,
+                   float pixel_m) {
+    spray_shading::Shading shading{spray};
+    return shading.spray_thread(place_m, height_m, extinction_per_m, pixel_m, threads_of(spray.threads));
 }
 
 glm::vec3 spray_light(const Spray& spray, glm::vec3 direction, float height_m) {

@@ -1,6 +1,7 @@
 // The spray before an eye: droplets over breaking crests, which take light away from a ray and scatter light of the sun, the sky
 // and the sea into it (Darles et al. 2007, §4.2). Needs air.glsl before it. The includer defines
 //   vec4 spray_texel(int column, int row)   the map (spray.h): the surface's height [m], and the extinctions there [1/m]
+//   float spray_lift(int column, int row)   how far up ribbons stay, in steps
 //
 // Rows of the map are circles round the eye's nadir in geometric progression, columns are azimuths: a ray stays between two columns.
 // From row to row both its height above the surface and the extinction there are taken as linear, and extinction falls with that
@@ -12,6 +13,20 @@
 // One scattering is followed, with light that is as in the open: what comes from all sides is scattered to all sides, so that
 // under the same light from everywhere spray isn't seen. The sun is dimmed by the spray above a place, as if that were as thick all
 // round; what it loses comes from all sides.
+//
+// Ribbons are spindrift: threads that a noise in space cuts out of what the map says, which has no detail of less than some metres. A
+// generation of the noise is born unsheared, ten times as long as it is high, and the wind shears it, by u(z) t over what is old, as long as
+// it lives; two generations at a time take turns. Where spray is as thick as over what breaks whole most of it stays as it is; what is
+// thinner is that much fewer threads. So edges fall apart, and don't fade. The mean is the map's everywhere.
+
+struct SprayThreads {
+    vec4 cell;        // of the eye's nadir: whole cells along the wind and across it, modulo 65536; 0 … 1, where in it
+    vec4 wind;        // towards where; the friction velocity over Kármán's constant [m/s]; one over the roughness [1/m]
+    vec4 born;        // of both generations: how long ago [s]; weights whose squares add up to 1
+    vec2 names;       // of both: whole, less than 2^24
+    float per_m;      // extinction over what breaks whole; 0: there are no threads
+    float pixel_rad;  // what a pixel sees
+};
 
 struct SprayView {
     int columns;
@@ -34,6 +49,7 @@ struct SprayView {
     vec3 low_ahead;         // radiance of the low sky: below the sun,
     vec3 low_beside;        // a quarter round,
     vec3 low_behind;        // and opposite
+    SprayThreads threads;
 };
 
 struct SprayPath {
@@ -47,6 +63,10 @@ const float kSprayEndless_m = 1.0e30f;  // the distance where a ray meets nothin
 const float kSprayForward = 0.85f;
 const float kSprayHigh = 12.0f;     // scale heights above which there is none to speak of: 6e-6
 const float kSprayLowSun = 0.1f;    // the sine of the lowest elevation that counts: farther off there are other crests
+// The largest threads at birth, and how far apart places along a ray are where they count [m].
+const float kThreadHigh_m = 1.0f;
+const float kThreadStep_m = 0.8f;
+const float kThreadLip_m = 0.7f;  // the lips that threads come from shelter what is lower
 
 // A place along the ray.
 struct SprayPoint {
@@ -60,22 +80,38 @@ SprayPoint spray_point(float extinction, float z) { return SprayPoint(extinction
 struct SprayPlace {
     SprayPoint point;  // of haze, or of all spray
     vec3 torn;         // the ribbons' extinctions at three heights
-    float steps;       // the height above the surface
+    float steps;       // the height above where ribbons begin
+    float lift;        // how far that is above the surface, in steps
 };
 
 // z: in scale heights.
-SprayPlace spray_place(vec4 texel, float z, SprayView spray) {
-    if (!spray.is_torn) return SprayPlace(spray_point(texel.y, z), vec3(0.0f), 0.0f);
+SprayPlace spray_place(vec4 texel, float lift, float z, SprayView spray) {
+    if (!spray.is_torn) return SprayPlace(spray_point(texel.y, z), vec3(0.0f), 0.0f, 0.0f);
     return SprayPlace(spray_point(spray.haze_per_m, z), vec3(texel.y, texel.z, texel.w),
-                      z * spray.scale_m / spray.step_m);
+                      z * spray.scale_m / spray.step_m - lift, lift);
 }
 
-// The integral of the ribbons' extinction from the surface up to a height, in steps; below the surface they are as at it.
-float torn_below(vec3 torn, float z) {
-    float a = min(z, 1.0f);
+// Below the surface ribbons are as at it, and none where they stay up.
+float torn_under(vec3 torn, float lift) { return torn.x * max(1.0f - 4.0f * lift, 0.0f); }
+
+// The ribbons' extinction at a height above where they begin, in steps. Below that they fade over half their lift.
+float torn_at(vec3 torn, float z, float lift) {
+    if (z < -lift) return torn_under(torn, lift);
+    if (z < 0.0f) return torn.x * max(1.0f + z / max(0.5f * lift, 1.0e-6f), 0.0f);
+    if (z < 1.0f) return mix(torn.x, torn.y, z);
+    if (z < 2.5f) return mix(torn.y, torn.z, (z - 1.0f) * (1.0f / 1.5f));
+    return torn.z * max((5.0f - z) * 0.4f, 0.0f);
+}
+
+// Its integral from there up.
+float torn_below(vec3 torn, float z, float lift) {
+    float foot = 0.5f * lift;
+    float under = min(-min(z, 0.0f), foot);
+    float a = clamp(z, 0.0f, 1.0f);
     float b = clamp(z - 1.0f, 0.0f, 1.5f);
     float c = clamp(z - 2.5f, 0.0f, 2.5f);
-    return torn.x * a + (torn.y - torn.x) * 0.5f * max(a, 0.0f) * a + b * (torn.y + (torn.z - torn.y) * b * (1.0f / 3.0f)) +
+    return min(z + lift, 0.0f) * torn_under(torn, lift) - torn.x * under * (1.0f - 0.5f * under / max(foot, 1.0e-6f)) +
+           a * (torn.x + (torn.y - torn.x) * 0.5f * a) + b * (torn.y + (torn.z - torn.y) * b * (1.0f / 3.0f)) +
            c * torn.z * (1.0f - 0.2f * c);
 }
 
@@ -83,7 +119,7 @@ float torn_below(vec3 torn, float z) {
 float spray_column(SprayPlace at, SprayView spray) {
     float column = at.point.extinction * at.point.thinner * spray.scale_m;
     if (!spray.is_torn) return column;
-    return column + spray.step_m * (torn_below(at.torn, 5.0f) - torn_below(at.torn, max(at.steps, 0.0f)));
+    return column + spray.step_m * (torn_below(at.torn, 5.0f, at.lift) - torn_below(at.torn, max(at.steps, -at.lift), at.lift));
 }
 
 // The mean of the extinction between two places above the surface. The first integral of exp(−z), by the height's own difference, has no
@@ -114,19 +150,103 @@ float spray_mean(SprayPoint a, SprayPoint b) {
     return mix(behind, before, part);
 }
 
-float spray_mean_of(SprayPlace a, SprayPlace b, SprayView spray) {
+// Normal, variance 1: sums of four bytes at the corners of cells, and their smooth mean between, scaled to keep the variance. cell: of
+// the origin of the place, by numbers up to `most`.
+float spray_clouds(vec3 place, uint cell_x, uint cell_y, uint most, uint layer) {
+    vec3 low = floor(place);
+    vec3 t = place - low;
+    t = t * t * (3.0f - 2.0f * t);
+    uint x = cell_x + uint(int(low.x));
+    uint y = cell_y + uint(int(low.y));
+    uint z = uint(int(low.z)) * 0x27D4EB2Fu + layer * 0xC2B2AE3Du;
+    float sum = 0.0f;
+    float squares = 0.0f;
+    for (int corner = 0; corner < 8; ++corner) {
+        uint right = uint(corner & 1);
+        uint beside = uint((corner >> 1) & 1);
+        uint up = uint(corner >> 2);
+        uint h = (((x + right) & most) * 0x9E3779B1u) ^ (((y + beside) & most) * 0x85EBCA77u + z + up * 0x27D4EB2Fu);
+        h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
+        h = (h ^ (h >> 12u)) * 0x297A2D39u;
+        h ^= h >> 15u;
+        float weight = (right == 1u ? t.x : 1.0f - t.x) * (beside == 1u ? t.y : 1.0f - t.y) * (up == 1u ? t.z : 1.0f - t.z);
+        float bytes = float((h & 255u) + ((h >> 8u) & 255u) + ((h >> 16u) & 255u) + (h >> 24u));
+        sum += weight * (bytes - 510.0f);
+        squares += weight * weight;
+    }
+    return sum * inversesqrt(squares * 21845.0f);
+}
+
+// What spray has at a place over what the map says there, 1 on average over generations. place_m: from the eye's nadir; height_m: above where ribbons begin;
+// extinction: the map's; pixel_m: what the pixel sees there.
+float spray_thread(vec2 place_m, float height_m, float extinction, float pixel_m, SprayThreads threads) {
+    vec4 shares = vec4(0.56f, 0.56f, 0.46f, 0.4f);  // of octaves, squares' sum 1
+    vec4 seen = shares * vec4(smoothstep(1.0f, 3.0f, kThreadHigh_m / pixel_m), smoothstep(1.0f, 3.0f, 0.5f * kThreadHigh_m / pixel_m),
+                              smoothstep(1.0f, 3.0f, 0.25f * kThreadHigh_m / pixel_m), smoothstep(1.0f, 3.0f, 0.125f * kThreadHigh_m / pixel_m));
+    float variance = dot(seen, seen);
+    if (!(variance > 1.0e-4f) || !(threads.per_m > 0.0f)) return 1.0f;
+    vec2 wind = vec2(threads.wind.x, threads.wind.y);
+    float along_m = dot(place_m, wind);
+    float across_m = place_m.y * wind.x - place_m.x * wind.y;
+    float speed = threads.wind.z * log(1.0f + max(height_m + kThreadLip_m, 0.1f) * threads.wind.w);
+    float sum = 0.0f;
+    for (int generation = 0; generation < 2; ++generation) {
+        float age_s = generation == 0 ? threads.born.x : threads.born.y;
+        float weight = generation == 0 ? threads.born.z : threads.born.w;
+        uint name = uint(generation == 0 ? threads.names.x : threads.names.y);
+        vec3 place = vec3(threads.cell.z + (along_m - speed * age_s) / float(kThreadLong_m), threads.cell.w + across_m / float(kThreadBroad_m), height_m / kThreadHigh_m);
+        vec3 bent = vec3(0.0f);
+        for (int k = 0; k < 4; ++k) {
+            if (!(seen[k] > 0.0f)) break;
+            float finer = float(1 << k);
+            // Larger ones bend smaller ones: they meander.
+            float cloud = spray_clouds(finer * (place + bent) + float(3 * k + generation) * vec3(0.37f, 0.618f, 0.29f), uint(threads.cell.x) << uint(k), uint(threads.cell.y) << uint(k),
+                                       (65536u << uint(k)) - 1u, 4u * name + uint(k));
+            sum += weight * seen[k] * cloud;
+            bent += vec3(0.03f, 0.2f, 0.15f) * (cloud / finer);
+        }
+    }
+    sum *= inversesqrt(variance);
+    // Its rank, even over 0 … 1: the normal distribution within 2e-4.
+    float rank = 1.0f / (1.0f + exp(-sum * (1.5976f + 0.070566f * sum * sum)));
+    float part = clamp(extinction / (extinction + threads.per_m), 0.1f, 0.85f);
+    float soft = 0.8f * min(part, 1.0f - part);
+    float thread = smoothstep(1.0f - part - soft, 1.0f - part + soft, rank) / part;
+    return mix(1.0f, thread, sqrt(variance));
+}
+
+// The mean of ribbons and haze between two places. from, to: from the eye's nadir. Threads count at some places between.
+float spray_mean_of(SprayPlace a, SprayPlace b, vec2 from_m, vec2 to_m, SprayView spray) {
     float mean = spray_mean(a.point, b.point);
     if (!spray.is_torn) return mean;
     // The ribbons are taken as half those of either place. A ray that hardly rises stays at its height.
     vec3 torn = 0.5f * (a.torn + b.torn);
+    float lift = 0.5f * (a.lift + b.lift);
     float low = min(a.steps, b.steps);
     if (low >= 5.0f) return mean;
     float high = max(a.steps, b.steps);
-    if (high <= 0.0f) return mean + torn.x;
-    float wider = max(0.005f - 0.5f * (high - low), 0.0f);
-    low -= wider;
-    high += wider;
-    return mean + (torn_below(torn, high) - torn_below(torn, low)) / (high - low);
+    float ribbons = torn_under(torn, lift);
+    if (high > -lift) {
+        float wider = max(0.005f - 0.5f * (high - low), 0.0f);
+        low -= wider;
+        high += wider;
+        ribbons = max((torn_below(torn, high, lift) - torn_below(torn, low, lift)) / (high - low), 0.0f);
+    }
+    float length_m = length(to_m - from_m);
+    if (!(spray.threads.per_m > 0.0f) || ribbons * length_m < 1.0e-3f) return mean + ribbons;
+    int count = clamp(int(length_m / kThreadStep_m) + 1, 1, 4);
+    float all = 0.0f;
+    float threads = 0.0f;
+    for (int i = 0; i < count; ++i) {
+        float part = (float(i) + 0.5f) / float(count);
+        vec2 place_m = mix(from_m, to_m, part);
+        float steps = mix(a.steps, b.steps, part);
+        float here = torn_at(mix(a.torn, b.torn, part), steps, mix(a.lift, b.lift, part));
+        if (!(here > 0.0f)) continue;
+        all += here;
+        threads += here * spray_thread(place_m, steps * spray.step_m, here, spray.threads.pixel_rad * length(place_m), spray.threads);
+    }
+    return mean + (all > 0.0f ? ribbons * (threads / all) : ribbons);
 }
 
 // Light that a ray in this direction has scattered into it below so thick a column, over the extinction.
@@ -159,12 +279,17 @@ vec4 spray_between(float column, int row) {
     int left = int(column);
     return mix(spray_texel(left, row), spray_texel(left + 1, row), column - float(left));
 }
+float spray_lift_between(float column, int row) {
+    int left = int(column);
+    return mix(spray_lift(left, row), spray_lift(left + 1, row), column - float(left));
+}
 
 // to_eye: unit, from the place towards the eye. on_sea: the place is on the surface, wherever the map has that.
 SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray) {
     vec3 ray = -to_eye;
     float across = max(length(vec2(ray.x, ray.y)), 1.0e-6f);
     float slope = ray.z / across;
+    vec2 ahead = vec2(ray.x, ray.y) / across;
     float along_first = ray.x * spray.azimuth.x + ray.y * spray.azimuth.y;
     float beside_first = ray.y * spray.azimuth.x - ray.x * spray.azimuth.y;
     float turn = along_first * along_first + beside_first * beside_first > 0.0f ? atan(beside_first, along_first) : 0.0f;
@@ -189,9 +314,11 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
     }
     float at_m = row < 0 ? 0.0f : spray.first_m * exp(spray.row_step * float(row));
     vec4 here = spray_between(column, max(row, 0));
+    float lift = spray_lift_between(column, max(row, 0));
     // The map's cells don't resolve all waves. A ray that ends on the surface ends at height 0. The row before its end
     // is moved by the same height, and the one before that the more, the nearer the end is to the last row.
     vec4 ends = vec4(0.0f);
+    float ends_lift = 0.0f;
     float ends_z = 0.0f;
     float astray = 0.0f;
     float astray_before = 0.0f;
@@ -201,6 +328,7 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         float before_m = spray.first_m * exp(spray.row_step * float(max(end, 0)));
         float part = end < 0 ? 0.0f : clamp((end_m - before_m) / (before_m * (ratio - 1.0f)), 0.0f, 1.0f);
         ends = mix(before, behind, part);
+        ends_lift = mix(spray_lift_between(column, max(end, 0)), spray_lift_between(column, min(end + 1, last)), part);
         ends_z = (spray.eye_m + slope * end_m - ends.x) / spray.scale_m;
         if (on_sea) {
             astray = end < last ? ends_z : 0.0f;
@@ -209,7 +337,7 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         }
     }
     float off = row < 0 || row < end - 1 ? 0.0f : row == end ? astray : astray_before;
-    SprayPlace a = spray_place(here, (spray.eye_m + slope * at_m - here.x) / spray.scale_m - off, spray);
+    SprayPlace a = spray_place(here, lift, (spray.eye_m + slope * at_m - here.x) / spray.scale_m - off, spray);
     SprayPath path = SprayPath(1.0f, vec3(0.0f));
     float rise_per_m = slope * across / spray.scale_m;
     bool has_left = false;
@@ -217,10 +345,11 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         ++row;
         float next_m = row == 0 ? spray.first_m : at_m * ratio;
         here = spray_between(column, row);
+        lift = spray_lift_between(column, row);
         off = row < end - 1 ? 0.0f : row == end ? astray : astray_before;
-        SprayPlace b = spray_place(here, (spray.eye_m + slope * next_m - here.x) / spray.scale_m - off, spray);
+        SprayPlace b = spray_place(here, lift, (spray.eye_m + slope * next_m - here.x) / spray.scale_m - off, spray);
         float length_m = (next_m - at_m) / across;
-        path = spray_behind(path, ray, spray_mean_of(a, b, spray) * length_m,
+        path = spray_behind(path, ray, spray_mean_of(a, b, at_m * ahead, next_m * ahead, spray) * length_m,
                             0.5f * (spray_column(a, spray) + spray_column(b, spray)), spray);
         rise_per_m = (b.point.z - a.point.z) / length_m;
         at_m = next_m;
@@ -230,8 +359,8 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
     }
     if (has_left) return path;
     if (!is_endless) {
-        SprayPlace b = spray_place(ends, ends_z, spray);
-        return spray_behind(path, ray, spray_mean_of(a, b, spray) * max((end_m - at_m) / across, 0.0f),
+        SprayPlace b = spray_place(ends, ends_lift, ends_z, spray);
+        return spray_behind(path, ray, spray_mean_of(a, b, at_m * ahead, end_m * ahead, spray) * max((end_m - at_m) / across, 0.0f),
                             0.5f * (spray_column(a, spray) + spray_column(b, spray)), spray);
     }
     // Beyond the last row the ray goes on rising over a sea like that there.

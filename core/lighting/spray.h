@@ -13,6 +13,16 @@
 
 namespace pelagic {
 
+// The largest threads of spray at birth [m]: along the wind, across it. spray.glsl has their height.
+inline constexpr int kThreadLong_m = 24, kThreadBroad_m = 4;
+
+// spray.glsl has the members.
+struct SprayThreads {
+    glm::vec4 cell{0.0f}, wind{1.0f, 0.0f, 0.0f, 0.0f}, born{0.0f, 0.0f, 1.0f, 0.0f};
+    glm::vec2 names{0.0f};
+    float per_m = 0.0f, pixel_rad = 0.0f;
+};
+
 // Empty: there is none.
 struct Spray {
     int columns = 0, rows = 0;  // at least 2 each
@@ -28,8 +38,9 @@ struct Spray {
     // Its light (light_spray()).
     glm::vec3 to_sun{0.0f, 0.0f, 1.0f}, sun{0.0f}, above{0.0f}, below{0.0f}, low_ahead{0.0f},
         low_beside{0.0f}, low_behind{0.0f};
+    SprayThreads threads{};  // none: ribbons are as smooth as the map
     // columns × rows, columns fastest: the surface's height in the axes of the eye's nadir [m], and the extinctions there [1/m]: at the surface, at 1 and
-    // at 2.5 steps.
+    // at 2.5 steps. Where it is torn, once more as many: how far up ribbons stay there, in steps (SprayRibbons), and nothing; or none, and they don't.
     std::vector<glm::vec4> texels{};
     bool empty() const { return texels.empty(); }
 };
@@ -45,6 +56,11 @@ struct SpraySeen {
 // Before what lies in a direction from the eye (unit), at a distance [m]; none: before the sky. on_sea: a place of the sea
 // itself. Finite.
 SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m, bool on_sea);
+
+// What ribbons have at a place over what the map says, 1 on average: place_m from the eye's nadir, height_m above the sea, the map's extinction there [1/m],
+// and what a pixel sees [m].
+float spray_thread(const Spray& spray, glm::vec2 place_m, float height_m, float extinction_per_m,
+                   float pixel_m);
 
 // The radiance that spray so high above the sea at rest sends on in a direction from the eye (unit), where it hides all behind it: of the
 // same light, by the same phase function, below the haze there. Finite.

@@ -157,12 +157,22 @@ SprayLaw andreas_law(double wind_speed_mps, double significant_height_m, bool ha
 
 }  // namespace
 
-double SprayRibbons::mean(glm::dvec3 extinctions, double from_m, double to_m) const {
+double SprayRibbons::thinned(glm::dvec3 extinctions, double lift_steps) {
+    if (!(lift_steps > 0.0) || !(extinctions.x > 0.0)) return 1.0;
+    const double whole = 0.5 * extinctions.x + 1.25 * extinctions.y + 2.0 * extinctions.z;
+    return whole / (whole + 0.25 * lift_steps * extinctions.x);
+}
+
+double SprayRibbons::mean(glm::dvec3 extinctions, double from_m, double to_m, double lift_m) const {
     if (!(to_m > 0.0) || !(from_m < top_m())) return 0.0;
-    const std::array at{extinctions.x, extinctions.y, extinctions.z, 0.0};
+    extinctions *= thinned(extinctions, lift_m / step_m);
+    const std::array at{0.0, extinctions.x, extinctions.y, extinctions.z, 0.0};
+    const std::array heights_m{0.5 * lift_m, lift_m, lift_m + kHeights[1] * step_m,
+                               lift_m + kHeights[2] * step_m, lift_m + kHeights[3] * step_m};
     double sum = 0.0;
     for (std::size_t i = 0; i + 1 < at.size(); ++i) {
-        const double low = kHeights[i] * step_m, high = kHeights[i + 1] * step_m;
+        const double low = heights_m[i], high = heights_m[i + 1];
+        if (!(high > low)) continue;
         const double from = std::clamp(from_m, low, high), to = std::clamp(to_m, low, high);
         sum += (to - from) * std::lerp(at[i], at[i + 1], (0.5 * (from + to) - low) / (high - low));
     }

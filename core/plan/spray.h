@@ -31,18 +31,22 @@ struct SprayLayer {
     double optical_thickness() const { return extinction_per_m * scale_m; }
 };
 
-// Of three heights above the local surface, linear between them, and none at a fourth.
+// Of three heights above the local surface, linear between them, and none at a fourth. Where the surface falls off behind the crest that they
+// come from ribbons stay up, by a lift: they begin so much above it, and fade below that over half of the lift. Straight up they are as thick as without.
 struct SprayRibbons {
     static constexpr std::array kHeights{0.0, 1.0, 2.5, 5.0};  // in steps
+    static constexpr double kMostLift = 3.0;                   // in steps
 
     glm::dvec3 extinction_per_m{0.0};  // at three heights, on average over the sea
     double step_m = 1.0;
 
-    // The mean over [from_m, to_m] above the surface, below which there is none, of one with these extinctions.
-    double mean(glm::dvec3 extinctions, double from_m, double to_m) const;
+    // The mean over [from_m, to_m] above the surface, below which there is none, of one with these extinctions and that lift.
+    double mean(glm::dvec3 extinctions, double from_m, double to_m, double lift_m = 0.0) const;
+    // What is left of such extinctions, since it is thinner where it fades below.
+    static double thinned(glm::dvec3 extinctions, double lift_steps);
     // Straight up, on average.
     double optical_thickness() const { return mean(extinction_per_m, 0.0, top_m()) * top_m(); }
-    double top_m() const { return kHeights.back() * step_m; }
+    double top_m() const { return (kHeights.back() + kMostLift) * step_m; }
 };
 
 // Drops so large that each flies by itself: it falls, and takes a moment to reach the wind's speed.

@@ -15,9 +15,10 @@ namespace pelagic {
 namespace {
 
 struct SpraySlot final : OutputSlot {
-    // By column: the sea's height, how much breaks beside the sea's mean, and how much spray, at three heights.
+    // By column: the sea's height, how much breaks beside the sea's mean, and how much spray, at three heights; and how far up it stays.
     std::vector<float> heights_m, breaking;
     std::vector<glm::vec3> shares;
+    std::vector<float> lifts_m;
     std::string file;
 };
 
@@ -55,7 +56,7 @@ class SprayPart final : public VolumePart {
     OutputMemory memory() const override {
         constexpr double kBlockBytes = 500.0, kVoxelBytes = 6.0;  // of a file; fitted to 4 … 30 m/s
         const ExpectedSpray spray = expected_spray(plan_);
-        return memory_of(columns() * columns() * 5 * sizeof(float), 2,
+        return memory_of(columns() * columns() * 6 * sizeof(float), 2,
                          spray.blocks * (vdb::bytes_a_block<float>() + vdb::bytes_a_block<glm::vec3>()),
                          spray.blocks * kBlockBytes + spray.voxels * kVoxelBytes);
     }
@@ -83,22 +84,25 @@ class SprayPart final : public VolumePart {
         slot.heights_m.resize(columns() * columns());
         slot.breaking.resize(slot.heights_m.size());
         slot.shares.resize(slot.heights_m.size());
+        slot.lifts_m.resize(slot.heights_m.size());
         const double mean = mean_breaking(sea.sea());
         const SprayVeil veil(sea);
         std::vector<glm::dvec3> shares;
-        std::vector<double> cells_m;
+        std::vector<double> cells_m, lifts_m;
         for_each_row<T>(
             sea, middles_m_, watch, [&](std::size_t first, const Row<T>& row, const PreparedQuery<T>& ask) {
                 const std::size_t count = row.breaking.size();
                 shares.resize(count);
+                lifts_m.resize(count);
                 cells_m.assign(count, voxel_m());
-                veil.shares<T>(ask, {.count = count, .rest_m = {row.places_m.data()}}, row.breaking, cells_m,
-                               shares);
+                veil.shares<T>(ask, {.count = count, .rest_m = {row.places_m.data()}}, row.breaking,
+                               row.displacement_m, cells_m, shares, lifts_m);
                 for (std::size_t i = 0; i < count; ++i) {
                     slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
                     slot.breaking[first + i] =
                         mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean) : 0.0f;
                     slot.shares[first + i] = glm::vec3(shares[i]);
+                    slot.lifts_m[first + i] = static_cast<float>(lifts_m[i]);
                 }
             });
     }
@@ -114,10 +118,10 @@ class SprayPart final : public VolumePart {
         return law_.ribbons.extinction_per_m * share * widths_[x] * widths_[y];
     }
     // Their mean over a height above the sea.
-    double mean_over(const glm::dvec3& extinction_per_m, double from_m, double to_m) const {
+    double mean_over(const glm::dvec3& extinction_per_m, double from_m, double to_m, double lift_m) const {
         return law_.over_foam.extinction_per_m > 0.0
                    ? extinction_per_m.x * mean_profile(law_.over_foam.scale_m, from_m, to_m)
-                   : law_.ribbons.mean(extinction_per_m, from_m, to_m);
+                   : law_.ribbons.mean(extinction_per_m, from_m, to_m, lift_m);
     }
 
     std::string encoded(int frame, const SpraySlot& slot) const {
@@ -180,9 +184,10 @@ class SprayPart final : public VolumePart {
                 const glm::dvec3 extinction = extinction_per_m(slot, x, y);
                 if (extinction == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
+                const auto lift_m = static_cast<double>(slot.lifts_m[y * columns() + x]);
                 for (int k = 0; k < vdb::kBlock; ++k) {
                     const double from_m = (first.z + k) * voxel_m() - height_m, to_m = from_m + voxel_m();
-                    const auto value = static_cast<float>(mean_over(extinction, from_m, to_m));
+                    const auto value = static_cast<float>(mean_over(extinction, from_m, to_m, lift_m));
                     if (!(value > 0.0f) || from_m > top_m_) continue;
                     const std::size_t at = vdb::index_in_block(i, j, k);
                     thick.active[at] = moved.active[at] = true;
@@ -216,7 +221,9 @@ class SprayPart final : public VolumePart {
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 const double top_m =
                     (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
-                spray.optical_thickness += mean_over(extinction, 0.0, top_m) * top_m;
+                spray.optical_thickness +=
+                    mean_over(extinction, 0.0, top_m, static_cast<double>(slot.lifts_m[y * columns() + x])) *
+                    top_m;
             }
         spray.breaking_over_mean /= area;
         spray.optical_thickness /= area;

@@ -113,7 +113,11 @@ ExpectedSpray expected_spray(const Plan& plan) {
     const double hit = share + (1.0 - share) * -std::expm1(-nearby / std::max(1.0 - share, 1e-9));
     const double columns = voxels_a_side(scene), blocks = std::ceil(columns / kBlock);
     const SprayLaw law = spray_law(scene, plan.from->extent.significant_height_m);
-    const double high = spray_top_m(law) / voxel_m + 1.0;
+    // Most ribbons are hardly lifted; and lifted ones leave room below.
+    const double high = (spray_top_m(law) - SprayRibbons::kMostLift * law.ribbons.step_m *
+                                                (law.ribbons.extinction_per_m.x > 0.0)) /
+                            voxel_m +
+                        1.0;
     // Ribbons come from several places upwind, more or less each for itself.
     const double from = law.ribbons.extinction_per_m.x > 0.0 ? 6.0 : 1.0;
     return {.blocks = blocks * blocks * (1.0 - std::pow(1.0 - hit, from)) * blocks_of_row(high),

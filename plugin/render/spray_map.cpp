@@ -12,6 +12,7 @@
 #include "core/effects/spray.h"
 #include "core/evaluate/places.h"
 #include "core/plan/spray.h"
+#include "core/plan/wind_profile.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 #include "plugin/render/seen_drops.h"
@@ -125,7 +126,7 @@ std::size_t spray_map_bytes(SprayMapSize size) {
     // In double: places, points at rest, footprints and their axes, displacement, what breaks, a residual; cells, extinctions,
     // and most of that once more for what lies upwind; and the texel.
     return static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows) *
-           (40 * sizeof(double) + sizeof(glm::vec4));
+           (44 * sizeof(double) + 2 * sizeof(glm::vec4));
 }
 
 Spray spray_by(const SprayLaw& law) {
@@ -135,6 +136,28 @@ Spray spray_by(const SprayLaw& law) {
             .haze_per_m = static_cast<float>(law.haze.extinction_per_m),
             .forward = law.is_torn() ? kTornForward : Spray{}.forward};
 }
+
+namespace {
+
+SprayThreads threads_by(const SprayVeil& veil, const View& view) {
+    if (!veil.is_torn()) return {};
+    const glm::dvec2 downwind = veil.downwind(), eye_m(view.position_m);
+    const glm::dvec2 at(glm::dot(eye_m, downwind) / kThreadLong_m,
+                        (eye_m.y * downwind.x - eye_m.x * downwind.y) / kThreadBroad_m);
+    const glm::dvec2 whole = glm::floor(at);
+    const auto wrapped = [](double cell) { return cell - 65536.0 * std::floor(cell / 65536.0); };
+    const WindProfile wind(veil.wind_speed_mps());
+    constexpr double kKarman = 0.4;
+    const auto [young, old] = veil.generations();
+    return {.cell = {wrapped(whole.x), wrapped(whole.y), at.x - whole.x, at.y - whole.y},
+            .wind = glm::vec4(glm::dvec4(downwind, wind.friction_mps() / kKarman, 1.0 / wind.roughness_m())),
+            .born = glm::vec4(glm::dvec4(young.age_s, old.age_s, young.weight, old.weight)),
+            .names = {static_cast<float>(young.name), static_cast<float>(old.name)},
+            .per_m = static_cast<float>(veil.law().ribbons.extinction_per_m.x * veil.whole()),
+            .pixel_rad = static_cast<float>(view.pixel_tangent())};
+}
+
+}  // namespace
 
 template <class T>
 Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGridOptions& options,
@@ -154,6 +177,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     spray.first_m = static_cast<float>(radii.first_m);
     spray.row_step = static_cast<float>(step);
     spray.eye_m = static_cast<float>(view.position_m.z);
+    spray.threads = threads_by(veil, view);
 
     const auto count = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
     using Vec = glm::vec<2, T>;
@@ -184,8 +208,10 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
             const std::size_t i = static_cast<std::size_t>(row) * size.columns + column;
             places[i] = static_cast<T>(arc_m) * away;
             widths[i] = width;
-            spreads[i] = std::max(width, static_cast<T>(kSmoothest_m));
-            cells[i] = std::sqrt(away_m * beside_m);
+            // Ribbons lie aslant: finer than rows are apart they would be combs and pillars.
+            const double finest_ribbon_m = veil.is_torn() ? std::max(away_m, beside_m) : 0.0;
+            spreads[i] = std::max({width, static_cast<T>(kSmoothest_m), static_cast<T>(finest_ribbon_m)});
+            cells[i] = 1.5 * finest_ribbon_m;
             axes[i] = away_m >= beside_m ? static_cast<T>(away_m) * away
                                          : static_cast<T>(beside_m) * Vec(-away.y, away.x);
         }
@@ -207,19 +233,25 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     evaluate_at(query, points, kSearch, results);
 
     std::vector<glm::dvec3> shares(count);
-    veil.shares<T>(query, points, breaking, cells, shares);
+    std::vector<double> lifts_m(count);
+    veil.shares<T>(query, points, breaking, displacement, cells, shares, lifts_m);
     const SprayLaw& law = veil.law();
     const bool of_foam = !veil.is_torn();
 
-    spray.texels.resize(count);
+    spray.texels.resize(of_foam ? count : 2 * count);
     spray.top_m = -std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 at(glm::dvec2(places[i]), static_cast<double>(displacement[i].z));
         spray.texels[i] = {
             static_cast<float>(on_earth(at, curvature).z),
             of_foam ? glm::vec3(static_cast<float>(law.over_foam.extinction_per_m * shares[i].x), 0.0f, 0.0f)
-                    : glm::vec3(thicker[i / static_cast<std::size_t>(size.columns)] *
+                    : glm::vec3(SprayRibbons::thinned(law.ribbons.extinction_per_m * shares[i],
+                                                      lifts_m[i] / law.ribbons.step_m) *
+                                thicker[i / static_cast<std::size_t>(size.columns)] *
                                 law.ribbons.extinction_per_m * shares[i])};
+        if (!of_foam)
+            spray.texels[count + i] =
+                glm::vec4(static_cast<float>(lifts_m[i] / law.ribbons.step_m), 0.0f, 0.0f, 0.0f);
         spray.top_m = std::max(spray.top_m, spray.texels[i].x);
     }
     return spray;

@@ -6,6 +6,7 @@
 #include "core/lighting/air.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/spray.h"
 #include "core/plan/taps.h"
 #include "plugin/host/gpu/packed_foam.h"
 #include "plugin/host/gpu/uniforms.h"
@@ -59,7 +60,8 @@ const char* points_file(const DrawOptions& options) {
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
            constant("kFalseColour", static_cast<int>(options.false_colour)) +
-           constant("kAirSky", options.sky_from_air) + constant("kFromBelow", options.from_below);
+           constant("kAirSky", options.sky_from_air) + constant("kFromBelow", options.from_below) +
+           constant("kThreadLong_m", kThreadLong_m) + constant("kThreadBroad_m", kThreadBroad_m);
 }
 
 std::string foam_constants() {

@@ -14,5 +14,13 @@ uniform vec3 spray_below;
 uniform vec3 spray_low_ahead;
 uniform vec3 spray_low_beside;
 uniform vec3 spray_low_behind;
+uniform vec4 spray_threads_cell;
+uniform vec4 spray_threads_wind;
+uniform vec4 spray_threads_born;
+uniform vec4 spray_threads_look; // names of two generations, extinction, a pixel's angle
 
 vec4 spray_texel(int column, int row) { return texelFetch(spray_map, ivec2(column, row), 0); }
+// Below the rows, as many.
+float spray_lift(int column, int row) {
+    return spray_is_torn ? texelFetch(spray_map, ivec2(column, row + textureSize(spray_map, 0).y / 2), 0).x : 0.0;
+}

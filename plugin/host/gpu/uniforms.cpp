@@ -110,7 +110,12 @@ std::vector<Uniform> spray_uniforms(const Spray& spray) {
             vector("spray_below", spray.below),
             vector("spray_low_ahead", spray.low_ahead),
             vector("spray_low_beside", spray.low_beside),
-            vector("spray_low_behind", spray.low_behind)};
+            vector("spray_low_behind", spray.low_behind),
+            {"spray_threads_cell", 4, spray.threads.cell},
+            {"spray_threads_wind", 4, spray.threads.wind},
+            {"spray_threads_born", 4, spray.threads.born},
+            {"spray_threads_look", 4,
+             glm::vec4(spray.threads.names, spray.threads.per_m, spray.threads.pixel_rad)}};
 }
 
 }  // namespace pelagic

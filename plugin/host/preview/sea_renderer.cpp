@@ -569,7 +569,8 @@ void SeaRenderer::set_spray(const Spray& spray, std::shared_ptr<const std::vecto
     texels_as_they_are();
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, spray.columns, spray.rows, 0, GL_RGBA, GL_FLOAT,
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, spray.columns,
+                 static_cast<int>(spray.texels.size()) / spray.columns, 0, GL_RGBA, GL_FLOAT,
                  spray.texels.data());
 }
 

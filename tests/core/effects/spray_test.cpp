@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -111,6 +112,37 @@ TEST(Spray, TheTearingHasTheMeanOne) {
     }
 }
 
+// Threads' generations take turns without a jump, and close a loop.
+TEST(Spray, GenerationsTakeTurns) {
+    for (const double loop_s : {0.0, 10.0}) {
+        Scene scene = spray_scene(20.0);
+        scene.shot.loop_s = loop_s;
+        Frame<float> frame(spray_sea(scene));
+        const auto at = [&](double time_s) {
+            frame.set(time_s);
+            return SprayVeil(frame).generations();
+        };
+        for (int i = 0; i < 200; ++i) {
+            const double time_s = 0.05 * i;
+            const auto now = at(time_s), then = at(time_s + 1e-6);
+            EXPECT_NEAR(now[0].weight * now[0].weight + now[1].weight * now[1].weight, 1.0, 1e-12);
+            for (const auto& each : now) {
+                if (each.weight < 1e-4) continue;
+                const auto same = std::find_if(then.begin(), then.end(),
+                                               [&](const auto& other) { return other.name == each.name; });
+                ASSERT_NE(same, then.end()) << time_s;
+                EXPECT_NEAR(same->weight, each.weight, 1e-5);
+                EXPECT_NEAR(same->age_s, each.age_s, 1e-5);
+            }
+        }
+        if (!(loop_s > 0.0)) continue;
+        const auto ends = at(loop_s - 1e-7), begins = at(0.0);
+        EXPECT_EQ(begins[1].name, ends[0].name);
+        EXPECT_NEAR(begins[1].age_s, ends[0].age_s, 1e-6);
+        EXPECT_NEAR(begins[1].weight, ends[0].weight, 1e-6);
+    }
+}
+
 // Where cells are coarse for the noise what ribbons have is what breaks, over the sea; it lies downwind of that.
 TEST(Spray, RibbonsAreWhatBreaksUpwind) {
     Scene scene = spray_scene(20.0);
@@ -128,10 +160,20 @@ TEST(Spray, RibbonsAreWhatBreaksUpwind) {
     std::vector<float> breaking(points.count);
     Results<float> results;
     results.set(Product::Breaking, {breaking.data()});
+    std::vector<glm::vec3> displacement_m(points.count);
+    results.set(Product::Displacement, {displacement_m.data()});
     evaluate_at(query, points, {.tolerance_m = 0.05}, results);
     const SprayVeil veil(frame);
     std::vector<glm::dvec3> shares(points.count);
-    veil.shares<float>(query, points, breaking, std::vector<double>(points.count, 5.9), shares);
+    std::vector<double> lifts_m(points.count);
+    veil.shares<float>(query, points, breaking, displacement_m, std::vector<double>(points.count, 5.9),
+                       shares, lifts_m);
+    double most_lift_m = 0.0;
+    for (const double lift_m : lifts_m) {
+        ASSERT_TRUE(lift_m >= 0.0 && lift_m <= SprayRibbons::kMostLift * veil.law().ribbons.step_m);
+        most_lift_m = std::max(most_lift_m, lift_m);
+    }
+    EXPECT_GT(most_lift_m, 2.0) << "they lie on the sea";
     glm::dvec3 sum(0.0);
     double broken = 0.0, downwind = 0.0, upwind = 0.0;
     for (int j = 0; j < kSide; ++j)

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <random>
 #include <vector>
 
@@ -115,6 +116,39 @@ TEST(FoamStructure, MixesFreshAndOldByWhatTheyHide) {
     const auto none = glsl(foam_pattern({.structure = 1.0, .fresh_opacity = 0.0f, .old_opacity = 0.0f}, {}));
     EXPECT_EQ(shading.seen_foam(none, {}, glm::vec3(0.01f, 0.0f, 0.0f), 0.3f, 0.1f, 2.0f, kSun).opacity,
               0.0f);
+}
+
+// What is fresh isn't cut off: beside thick foam there is lace, seldom bare water right away.
+TEST(FoamStructure, PatchesEndInLace) {
+    const auto pattern = pattern_of(1.0, 1.0, 0.0);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> place(-500.0f, 500.0f), turn(0.0f, 6.2831853f);
+    const auto at = [&](glm::vec2 rest_m) {
+        const auto noise = shading.foam_noise(pattern, rest_m, 0.02f, 0.0f);
+        return shading.foam_opacity_in(noise, 0.3f, shading.foam_thin(0.0f));
+    };
+    constexpr int kPlaces = 60000;
+    int thick = 0, cut = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const glm::vec2 m(place(random), place(random));
+        const float angle = turn(random);
+        const glm::vec2 ahead(std::cos(angle), std::sin(angle)), aside(-ahead.y, ahead.x);
+        // Two strips of 60 × 24 cm, 12 cm apart.
+        const auto mean = [&](float from_m) {
+            float sum = 0.0f;
+            for (int j = 0; j < 3; ++j)
+                for (int k = -2; k <= 2; ++k)
+                    sum += at(m + (from_m + 0.12f * static_cast<float>(j)) * ahead +
+                              0.15f * static_cast<float>(k) * aside);
+            return sum / 15.0f;
+        };
+        if (mean(-0.3f) < 0.75f) continue;
+        ++thick;
+        cut += mean(0.06f) < 0.15f;
+    }
+    std::printf("    of %d places %d are thick, and of these %d end in a cut\n", kPlaces, thick, cut);
+    EXPECT_GT(thick, 2000);
+    EXPECT_LT(cut, 4e-4 * kPlaces);
 }
 
 // The opacity and the white of foam at places of a fine footprint.

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <random>
 
 #include "core/base/constants.h"
+#include "core/plan/spray.h"
 
 namespace pelagic {
 namespace {
@@ -206,6 +208,121 @@ TEST(SprayBefore, RaysThroughTornSprayAreTheIntegral) {
         const double whole = 0.05 * kStep_m * (0.75 + 0.5625 + 0.3125) + kHaze_per_m * kHazeScale_m;
         EXPECT_NEAR(-std::log(up.transmittance) / (whole / std::sin(elevation)), 1.0, 3e-3) << elevation;
     }
+}
+
+// Where the sea falls off ribbons stay up: nothing right above it, and as much in all.
+TEST(SprayBefore, LiftedRibbonsAreAsThickAndHigher) {
+    const glm::dvec3 law(0.05, 0.025, 0.0125);
+    const SprayRibbons ribbons{.extinction_per_m = law, .step_m = kStep_m};
+    for (const double lift : {0.0, 0.2, 1.0, 2.9}) {
+        EXPECT_NEAR(ribbons.mean(law, 0.0, ribbons.top_m(), lift * kStep_m) * ribbons.top_m(),
+                    ribbons.optical_thickness(), 1e-12);
+        Spray spray = torn_spray(0.0, kFlat);
+        for (glm::vec4& texel : spray.texels)
+            for (int i = 1; i < 4; ++i) texel[i] *= static_cast<float>(SprayRibbons::thinned(law, lift));
+        spray.texels.resize(2 * spray.texels.size(), glm::vec4(lift, 0.0f, 0.0f, 0.0f));
+        for (const double elevation : {0.5 * kPi, 1.0, 0.2}) {
+            const auto up = spray_before(spray, glm::vec3(spray_towards(elevation)), {}, false);
+            const double whole = ribbons.optical_thickness() + kHaze_per_m * kHazeScale_m;
+            EXPECT_NEAR(-std::log(up.transmittance) / (whole / std::sin(elevation)), 1.0, 3e-3) << elevation;
+        }
+        spray.eye_m = static_cast<float>(0.35 * kStep_m);
+        const double level = seen_thickness(spray, 0.0, 10.0) - 10.0 * kHaze_per_m;
+        EXPECT_NEAR(level,
+                    10.0 * ribbons.mean(law, 0.35 * kStep_m - 1e-3, 0.35 * kStep_m + 1e-3, lift * kStep_m),
+                    2e-3)
+            << lift;
+        if (lift > 0.5) {
+            EXPECT_LT(level, 2e-3) << lift;
+        }
+    }
+}
+
+Spray threaded_spray() {
+    Spray spray = torn_spray(2.0, kFlat);
+    spray.threads = {.cell = {65535.0f, 3.0f, 0.3f, 0.8f},
+                     .wind = {0.8f, 0.6f, 2.25f, 1e3f},
+                     .born = {0.4f, 2.0f, 0.6f, 0.8f},
+                     .names = {12345.0f, 6789.0f},
+                     .per_m = 0.05f,
+                     .pixel_rad = 1e-3f};
+    return spray;
+}
+
+// Threads have the map's mean, however dense it is, and whatever pixels resolve of them.
+TEST(SprayBefore, ThreadsHaveTheMeanOne) {
+    const Spray spray = threaded_spray();
+    for (const float extinction_per_m : {1e-3f, 0.05f, 1.0f})
+        for (const float pixel_m : {0.02f, 0.2f, 0.6f}) {
+            double sum = 0.0, square = 0.0;
+            constexpr int kSide = 60;
+            for (int i = 0; i < kSide; ++i)
+                for (int j = 0; j < kSide; ++j)
+                    for (int k = 0; k < 12; ++k) {
+                        const auto factor = static_cast<double>(
+                            spray_thread(spray, glm::vec2(glm::dvec2(41.3 * i - 1e3, 17.9 * j - 500.0)),
+                                         static_cast<float>(-0.3 + 0.61 * k), extinction_per_m, pixel_m));
+                        ASSERT_GE(factor, 0.0);
+                        sum += factor;
+                        square += factor * factor;
+                    }
+            constexpr double kCount = kSide * kSide * 12.0;
+            EXPECT_NEAR(sum / kCount, 1.0, 0.02) << extinction_per_m << " " << pixel_m;
+            if (pixel_m < 0.1f && extinction_per_m < 0.1f) {
+                EXPECT_GT(square / kCount, 1.5) << "no threads";
+            }
+        }
+    EXPECT_EQ(spray_thread(spray, {3.0f, 5.0f}, 1.0f, 0.05f, 2.0f), 1.0f) << "pixels see none";
+}
+
+// Some times as long along the wind as across it and up, although the wind shears them.
+TEST(SprayBefore, ThreadsLieAlongTheWind) {
+    const Spray spray = threaded_spray();
+    const auto at = [&](glm::vec3 place_m) {
+        return static_cast<double>(spray_thread(spray, glm::vec2(place_m), place_m.z, 0.05f, 0.02f));
+    };
+    const auto differs = [&](glm::vec3 by_m) {
+        double sum = 0.0;
+        for (int i = 0; i < 60; ++i)
+            for (int j = 0; j < 60; ++j) {
+                const glm::vec3 place_m(glm::dvec3(41.3 * i, 17.9 * j, 0.04 * j));
+                sum += std::abs(at(place_m + by_m) - at(place_m));
+            }
+        return sum;
+    };
+    const double along = differs({0.8f, 0.6f, 0.0f});
+    EXPECT_GT(differs({-0.6f, 0.8f, 0.0f}), 2.5 * along);
+    EXPECT_GT(differs({0.0f, 0.0f, 1.0f}), 2.5 * along);
+}
+
+// What rays see on average is as thick as without threads.
+TEST(SprayBefore, RaysThroughThreadsAreAsThickOnAverage) {
+    Spray spray = threaded_spray();
+    for (glm::vec4& texel : spray.texels) texel *= glm::vec4(1.0f, glm::vec3(0.02f));
+    spray.haze_per_m = 1e-9f;
+    spray.threads.per_m *= 0.02f;
+    Spray smooth = spray;
+    smooth.threads = {};
+    double threads = 0.0, all = 0.0, least = 1e9, most = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+        const double azimuth = kTwoPi * i / 4000.0 * 7.0;
+        spray.threads.names.x = static_cast<float>(10000 + i / 100);
+        spray.threads.names.y = static_cast<float>(20000 + i / 100);
+        const auto thick = [&](const Spray& through) {
+            return -std::log(static_cast<double>(
+                spray_before(through, glm::vec3(spray_towards(-0.01, azimuth)), 60.0f, false).transmittance));
+        };
+        const double seen = thick(spray), plain = thick(smooth);
+        threads += seen;
+        all += plain;
+        least = std::min(least, seen / plain);
+        most = std::max(most, seen / plain);
+    }
+    std::printf("    rays through threads: %.4f of the thickness, %.2f ... %.2f\n", threads / all, least,
+                most);
+    EXPECT_NEAR(threads / all, 1.0, 0.03);
+    EXPECT_LT(least, 0.9);
+    EXPECT_GT(most, 1.1);
 }
 
 // Against a low sun torn spray is brighter than the sky that it hides.

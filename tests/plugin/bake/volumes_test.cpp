@@ -194,13 +194,16 @@ TEST_F(Volumes, TornSprayIsTheVeil) {
     cells_m.assign(points.count, 1.0);
     Results<double> results;
     results.set(Product::Breaking, {breaking.data()});
+    std::vector<glm::dvec3> displacement_m(points.count);
+    results.set(Product::Displacement, {displacement_m.data()});
     evaluate_at(ask, points, {}, results);
     std::vector<glm::dvec3> shares(points.count);
-    veil.shares<double>(ask, points, breaking, cells_m, shares);
+    std::vector<double> lifts_m(points.count);
+    veil.shares<double>(ask, points, breaking, displacement_m, cells_m, shares, lifts_m);
     double sum = 0.0, sum_expected = 0.0, off = 0.0;
     for (std::size_t i = 0; i < points.count; ++i) {
         const double expected =
-            law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], 0.0, law.ribbons.top_m()) *
+            law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], 0.0, law.ribbons.top_m(), lifts_m[i]) *
             law.ribbons.top_m();
         sum += seen[i];
         sum_expected += expected;

@@ -11,6 +11,7 @@
 
 #include "core/effects/spray.h"
 #include "core/evaluate/places.h"
+#include "core/lighting/spray.h"
 #include "core/plan/spray.h"
 #include "core/surface/earth.h"
 #include "core/waves/frame.h"
@@ -27,8 +28,8 @@ struct SprayRay {
 // optical thickness. Those that don't meet it there are left out. The frame's plan is that of pictures with
 // spray. cell_m: of the surface's height.
 inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dvec3& eye_m,
-                                        double curvature_per_m, double cell_m,
-                                        std::span<const SprayRay> rays) {
+                                        double curvature_per_m, double cell_m, std::span<const SprayRay> rays,
+                                        const Spray& map) {
     constexpr double kLonger = 1.3, kSmoothest_m = 2.0;
     const SprayVeil veil(frame);
     const SprayLaw& law = veil.law();
@@ -66,7 +67,9 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
     results.set(Product::Breaking, {coverage.data()});
     evaluate_at(query, points, {}, results);
     std::vector<glm::dvec3> shares(places.size());
-    veil.shares<float>(query, points, coverage, std::vector<double>(places.size(), cell_m), shares);
+    std::vector<double> lifts_m(places.size());
+    veil.shares<float>(query, points, coverage, displacement, std::vector<double>(places.size(), cell_m),
+                       shares, lifts_m);
     std::vector<SprayRay> met;
     for (std::size_t i = 0; i < steps.size();) {
         SprayRay ray{.direction = rays[steps[i].ray].direction};
@@ -76,10 +79,15 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
             if (ray.length_m > 0.0) continue;
             const double z_m = steps[i].height_m - static_cast<double>(displacement[i].z);
             const double z_over_m = std::max(z_m, 0.0);
+            const glm::vec2 place_m(places[i]);
+            const double ribbons = law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], z_over_m,
+                                                    z_over_m + 1e-3, lifts_m[i]);
             const double density =
                 law.over_foam.extinction_per_m * shares[i].x * std::exp(-z_over_m / law.over_foam.scale_m) +
                 law.haze.extinction_per_m * std::exp(-z_over_m / law.haze.scale_m) +
-                law.ribbons.mean(law.ribbons.extinction_per_m * shares[i], z_over_m, z_over_m + 1e-3);
+                ribbons * static_cast<double>(spray_thread(
+                              map, place_m, static_cast<float>(z_over_m - lifts_m[i]),
+                              static_cast<float>(ribbons), map.threads.pixel_rad * glm::length(place_m)));
             if (z_m > 0.0) {
                 ray.thickness += density * steps[i].length_m;
                 before_m = steps[i].at_m;

@@ -198,7 +198,7 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
             const double length_m = glm::length(way);
             if (length_m < 8e3) rays.push_back({way / length_m, length_m});
         }
-        rays = test::exact_rays(frame, view.position_m, grid.curvature_per_m, 0.5, rays);
+        rays = test::exact_rays(frame, view.position_m, grid.curvature_per_m, 0.5, rays, spray);
         ASSERT_GT(rays.size(), 100u);
         double mean = 0.0, exact_mean = 0.0, square = 0.0;
         for (const test::SprayRay& ray : rays) {

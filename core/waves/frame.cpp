@@ -24,8 +24,6 @@ namespace {
 // precision.
 constexpr int kBlockColumns = 16;
 constexpr int kBlockRows = 32;
-// Along the side of a vessel's tile, of the means of its slopes.
-constexpr int kBlocks = 32;
 
 // One FFTW plan per size.
 template <class T>
@@ -205,8 +203,8 @@ template <class T>
 std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
     const T *x = samples(cascade, grid, Field::SlopeX), *y = samples(cascade, grid, Field::SlopeY);
     const int n = sea_->plan().cascades[cascade].grids[grid].resolution;
-    if (!x || !y || n < kBlocks) return {};  // waves as long as blocks
-    std::vector<glm::vec3> sums(static_cast<std::size_t>(kBlocks) * kBlocks, glm::vec3(0.0f));
+    if (!x || !y || n < kSlopeBlocks) return {};  // waves as long as blocks
+    std::vector<glm::vec3> sums(static_cast<std::size_t>(kSlopeBlocks) * kSlopeBlocks, glm::vec3(0.0f));
     std::vector<int> counts(sums.size());
     // At nodes, of which a spline's have its coefficients; of fine grids at as many as tell blocks' means.
     const bool is_spline = sea_->plan().cascades[cascade].grids[grid].sampling == Sampling::Spline;
@@ -217,7 +215,7 @@ std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
     const int spline_taps = sea_->plan().knobs.spline_taps, taps = is_spline ? spline_taps - 1 : 1,
               before = taps / 2;
     const T* weights = !is_spline ? &one : spline_taps == 6 ? quintic : cubic;
-    const int step = std::max(1, n / (8 * kBlocks));
+    const int step = std::max(1, n / (8 * kSlopeBlocks));
     for (int j = 0; j < n; j += step)
         for (int i = 0; i < n; i += step) {
             glm::vec<2, T> slope(T(0));
@@ -228,7 +226,8 @@ std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
                         static_cast<std::size_t>((i + p - before + n) % n);
                     slope += weights[q] * weights[p] * glm::vec<2, T>(x[from], y[from]);
                 }
-            const auto to = static_cast<std::size_t>(j * kBlocks / n * kBlocks + i * kBlocks / n);
+            const auto to =
+                static_cast<std::size_t>(j * kSlopeBlocks / n * kSlopeBlocks + i * kSlopeBlocks / n);
             sums[to] += glm::vec3(slope.x * slope.x, slope.x * slope.y, slope.y * slope.y);
             ++counts[to];
         }
@@ -242,15 +241,16 @@ glm::dvec3 Frame<T>::hidden_slopes(int cascade, int grid, glm::dvec2 place_m) co
     const auto finest = std::ranges::find_if(of, [](const auto& squares) { return !squares.empty(); });
     if (finest == of.end()) return glm::dvec3(0.0);
     const std::vector<glm::vec3>* shown = grid < 0 ? nullptr : &of[static_cast<std::size_t>(grid)];
-    const glm::dvec2 at = place_m * (kBlocks / sea_->plan().cascades[cascade].size_m) - 0.5,
+    const glm::dvec2 at = place_m * (kSlopeBlocks / sea_->plan().cascades[cascade].size_m) - 0.5,
                      whole = glm::floor(at);
     const auto inside = [](double block) {
-        return static_cast<std::size_t>(block - std::floor(block / kBlocks) * kBlocks) % kBlocks;
+        return static_cast<std::size_t>(block - std::floor(block / kSlopeBlocks) * kSlopeBlocks) %
+               kSlopeBlocks;
     };
     glm::dvec3 sum(0.0);
     for (const double j : {0.0, 1.0})
         for (const double i : {0.0, 1.0}) {
-            const std::size_t block = inside(whole.y + j) * kBlocks + inside(whole.x + i);
+            const std::size_t block = inside(whole.y + j) * kSlopeBlocks + inside(whole.x + i);
             const double weight = (1.0 - std::abs(at.x - whole.x - i)) * (1.0 - std::abs(at.y - whole.y - j));
             sum += weight * glm::dvec3((*finest)[block] -
                                        (shown && !shown->empty() ? (*shown)[block] : glm::vec3(0.0f)));

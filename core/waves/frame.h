@@ -57,7 +57,8 @@ class Frame {
     // Where the tile of a vessel's cascade lies: beyond its half side there are none of its waves.
     glm::dvec2 tile_middle_m(int cascade) const { return vessels_[vessel_of(cascade)].middle_m(); }
     // Of a vessel's cascade, the slope variances (xx, xy, yy) round a place in the tile that grid `grid` doesn't show and its finest grid with
-    // slopes does, means over a 32nd of the tile; −1: no grid, which shows none.
+    // slopes does, between the means of kSlopeBlocks² blocks of the tile; −1: no grid, which shows none.
+    static constexpr int kSlopeBlocks = 32;
     glm::dvec3 hidden_slopes(int cascade, int grid, glm::dvec2 place_m) const;
     // The turbulent wakes of vessels, at the frame's time.
     std::span<const WakeStrip> strips() const { return strips_; }

@@ -39,21 +39,16 @@ WakeStrip::WakeStrip(const VesselPlan& plan, double time_s)
                            time_s - t_s, strength(t_s)});
     }
     hull_.oldest_s = std::max(points_.back().age_s, step_s);
-    const double reach_m =
-        2.0 * wake_half_width(points_.back().way_m, plan.length_m, plan.beam_m) + plan.beam_m;
+    reach_m_ = 2.0 * wake_half_width(points_.back().way_m, plan.length_m, plan.beam_m) + plan.beam_m;
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
         const glm::dvec2 a = points_[i].place_m, b = points_[i + 1].place_m;
-        const glm::dvec2 low_m = glm::min(a, b) - reach_m, high_m = glm::max(a, b) + reach_m;
+        const glm::dvec2 low_m = glm::min(a, b) - reach_m_, high_m = glm::max(a, b) + reach_m_;
         if (i % kBoxSteps == 0) boxes_.push_back({low_m, high_m});
         Box& box = boxes_.back();
         box = {glm::min(box.low_m, low_m), glm::max(box.high_m, high_m)};
         if (i == 0) whole_ = box;
         whole_ = {glm::min(whole_.low_m, box.low_m), glm::max(whole_.high_m, box.high_m)};
     }
-}
-
-bool WakeStrip::Box::holds(glm::dvec2 place_m) const {
-    return place_m.x >= low_m.x && place_m.y >= low_m.y && place_m.x <= high_m.x && place_m.y <= high_m.y;
 }
 
 bool WakeStrip::reaches(glm::dvec2 low_m, glm::dvec2 high_m) const {
@@ -64,8 +59,8 @@ bool WakeStrip::reaches(glm::dvec2 low_m, glm::dvec2 high_m) const {
 WakeWater<double> WakeStrip::at(glm::dvec2 place_m, double footprint_m) const {
     const WakeWater<double> none{0.0, 0.0, 0.0};
     if (!whole_.holds(place_m)) return none;
-    double nearest = INFINITY, share = 0.0;
-    std::size_t of = 0;
+    double nearest = reach_m_ * reach_m_, share = 0.0;
+    std::size_t of = points_.size();
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
         if (i % kBoxSteps == 0 && !boxes_[i / kBoxSteps].holds(place_m)) {
             i += kBoxSteps - 1;
@@ -82,7 +77,7 @@ WakeWater<double> WakeStrip::at(glm::dvec2 place_m, double footprint_m) const {
             of = i;
         }
     }
-    if (!std::isfinite(nearest)) return none;
+    if (of == points_.size()) return none;
     const Point &a = points_[of], &b = points_[of + 1];
     const WakePlace<double> at{std::sqrt(nearest), std::lerp(a.way_m, b.way_m, share),
                                std::lerp(a.age_s, b.age_s, share), std::lerp(a.strength, b.strength, share)};

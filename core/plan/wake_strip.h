@@ -33,7 +33,9 @@ class WakeStrip {
     // Round some and all that they reach.
     struct Box {
         glm::dvec2 low_m{0.0}, high_m{0.0};
-        bool holds(glm::dvec2 place_m) const;
+        bool holds(glm::dvec2 at_m) const {
+            return at_m.x >= low_m.x && at_m.y >= low_m.y && at_m.x <= high_m.x && at_m.y <= high_m.y;
+        }
     };
     static constexpr int kMostPoints = 160;
     static constexpr int kBoxSteps = 8;  // from point to point, in a box
@@ -41,9 +43,11 @@ class WakeStrip {
     const std::vector<Point>& points() const { return points_; }
     const std::vector<Box>& boxes() const { return boxes_; }
     const Box& whole() const { return whole_; }
+    double reach_m() const { return reach_m_; }  // from the path: beyond it there is none
 
   private:
     WakeHull<double> hull_;
+    double reach_m_ = 0.0;
     std::vector<Point> points_;
     std::vector<Box> boxes_;
     Box whole_;

@@ -115,8 +115,9 @@ class Frame {
     long transform_rows(const Rows&);
     // The means of a grid's squared slopes over blocks of a vessel's tile.
     std::vector<glm::vec3> squares_of(int cascade, int grid) const;
-    // Lets a vessel's tile fade to its border: a row of all of a grid's fields.
-    void fade_row(int cascade, int grid, int row);
+    // Lets a vessel's tile fade to its border: a grid, and a row of all of its fields.
+    void fade(int cascade, int grid);
+    void fade_row(int cascade, int grid, int row, const std::vector<TileFade>& along, const TileFade& y);
 
     std::shared_ptr<const Sea<T>> sea_;
     std::shared_ptr<const SeaOverTime<T>> shot_;  // null: the sea is one

@@ -182,7 +182,7 @@ std::vector<glm::vec4> SeaLayout::wake_texels(const Frame<float>& frame) const {
         };
         const WakeHull<double>& hull = strip.hull();
         texel(0, 0) = glm::vec4(hull.length_m, hull.beam_m, hull.foam, hull.oldest_s);
-        texel(1, 0) = glm::vec4(static_cast<float>(strip.points().size()), 0.0f, 0.0f, 0.0f);
+        texel(1, 0) = glm::vec4(static_cast<float>(strip.points().size()), strip.reach_m(), 0.0f, 0.0f);
         texel(2, 0) = box(strip.whole());
         for (std::size_t i = 0; i < strip.boxes().size(); ++i)
             texel(3 + static_cast<int>(i), 0) = box(strip.boxes()[i]);

@@ -2,7 +2,7 @@
 // behind the sea's, within one tile. Its rows of `gusts`, behind those of masks: the origin from the tile's middle, half the tile's side [m], and
 // blocks per metre; then the block that the middle is in, of kSlopeBlocks.
 
-// kWakeTableRows rows for each vessel, places from its tile's middle [m]. First: its hull and the age at which its wake ends; the number of points; a box
+// kWakeTableRows rows for each vessel, places from its tile's middle [m]. First: its hull and the age at which its wake ends; the number of points, and how far it reaches from them; a box
 // round the strip; a box round each kWakeBox steps of it. Second, two texels for each point from the bow on: place, way [m] and age [s]; strength. Then what each
 // level of pixels hides of the slopes, a block a texel, levels side by side: xx, xy, yy.
 uniform sampler2D wake_table;
@@ -57,8 +57,9 @@ WakeWater wake_strip(int vessel, vec2 rest_m, float footprint_m) {
     int row = kWakeTableRows * vessel;
     if (!is_in_box(texelFetch(wake_table, ivec2(2, row), 0), place_m)) return none;
     vec4 hull = texelFetch(wake_table, ivec2(0, row), 0);
-    int last = int(texelFetch(wake_table, ivec2(1, row), 0).x) - 1;
-    float nearest = 3.0e38;
+    vec4 points = texelFetch(wake_table, ivec2(1, row), 0);
+    int last = int(points.x) - 1;
+    float nearest = points.y * points.y;
     float share = 0.0;
     int of = -1;
     for (int first = 0; first < last; first += kWakeBox) {

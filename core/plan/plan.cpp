@@ -172,7 +172,7 @@ void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
     // A vessel's shortest waves are next to nothing.
     const double of_vessels =
-        std::max(0.56 * plan.knobs.oversampling, std::min(plan.knobs.oversampling, 1.12));
+        std::max(0.625 * plan.knobs.oversampling, std::min(plan.knobs.oversampling, 1.25));
     constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];

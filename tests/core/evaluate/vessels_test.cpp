@@ -397,6 +397,30 @@ TEST(Vessels, StayFiniteOnHardPaths) {
         0u);
 }
 
+// The tile's grid is coarser than a sea's: its spline shows the slopes all the same.
+TEST(Vessels, HaveTheNormalsOfAFinerGrid) {
+    for (const auto& [speed_mps, length_m] :
+         {std::pair(5.0, 25.0), std::pair(3.0, 25.0), std::pair(8.0, 6.0)}) {
+        Scene scene = still_water(straight(speed_mps, length_m));
+        const auto rest = random_points<float>(10.0 * length_m, 4000);
+        const auto normals = [&](QualityLevel level) {
+            scene.quality.level = level;
+            const auto frame = frame_of<float>(scene, {unfiltered(products(Position, Normal))}, 0.0);
+            return sample(frame, 0, rest, {.origin_m = {-4.0 * length_m, 0.0}, .cell_m = {}, .pixel_m = {}})
+                .vectors(Normal);
+        };
+        const auto final = normals(QualityLevel::Final), fine = normals(QualityLevel::Reference);
+        double error = 0.0, all = 0.0;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            error += std::pow(glm::length(final[i] - fine[i]), 2);
+            all += std::pow(fine[i].x, 2) + std::pow(fine[i].y, 2);
+        }
+        EXPECT_LT(std::sqrt(error / all), 0.01) << speed_mps;
+        std::printf("    %.0f m/s, %.0f m: %.2e of the slopes, rms\n", speed_mps, length_m,
+                    std::sqrt(error / all));
+    }
+}
+
 // A lattice's points read few rows of the tile, and no other ones are transformed: what they show is the same, to the bit.
 TEST(Vessels, TransformTheRowsThatALatticeReads) {
     const ProductSet wanted = products(Position, Normal, Velocity);

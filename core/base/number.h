@@ -48,5 +48,9 @@ template <class T>
 T exponential(T x) {
     return std::exp(x);
 }
+template <class T>
+T power(T x, T y) {
+    return std::pow(x, y);
+}
 
 }  // namespace pelagic

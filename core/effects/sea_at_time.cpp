@@ -135,7 +135,7 @@ void SeaAtTime<T>::evaluate_by(const Ask& ask, int index, const Points<T>& point
     if (!query.only_cascade) add_wakes(points, foam);
 }
 
-// The foam of vessels' wakes beside what waves leave. Where it is much, the age is its own.
+// The foam of vessels' wakes beside what waves leave.
 template <class T>
 void SeaAtTime<T>::add_wakes(const Points<T>& points, const FoamResults<T>& foam) const {
     const std::span<const WakeStrip> strips = frame_.strips();
@@ -143,14 +143,14 @@ void SeaAtTime<T>::add_wakes(const Points<T>& points, const FoamResults<T>& foam
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
             for (const WakeStrip& strip : strips) {
-                const WakeStrip::Water water =
+                const WakeWater<double> water =
                     strip.at(points.origin_m + glm::dvec2(points.rest_m[i]),
                              points.pixel_m ? static_cast<double>(points.pixel_m[i]) : 0.0);
                 if (!(water.foam > 0.0)) continue;
-                const T more = static_cast<T>(water.foam), age_s = static_cast<T>(water.age_s);
-                if (foam.coverage) foam.coverage[i] = T(1) - (T(1) - foam.coverage[i]) * (T(1) - more);
+                const WakeWater<T> at{static_cast<T>(water.foam), static_cast<T>(water.age_s), T(0)};
+                if (foam.coverage) foam.coverage[i] = with_wake_foam(foam.coverage[i], at.foam);
                 // The same whether coverage is asked for or not.
-                if (foam.age_s) foam.age_s[i] += std::min(T(4) * more, T(1)) * (age_s - foam.age_s[i]);
+                if (foam.age_s) foam.age_s[i] = with_wake_age(foam.age_s[i], at);
             }
     });
 }

@@ -152,10 +152,27 @@ std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const
     return {};
 }
 
+// Only those that points of its level's lattice read. Whoever hides slopes has means over all rows.
+void leave_rows_out(const Plan& plan, const CascadePlan& cascade, Grid& grid) {
+    constexpr int kTogether = 8;  // as Frame transforms and scatters them
+    const std::optional<Lattice>& lattice = plan.levels[grid.level].lattice;
+    if (!lattice || grid.resolution % kTogether != 0) return;
+    const double per_m = grid.resolution / cascade.size_m, size_m = lattice->last_m - lattice->first_m;
+    if (!(size_m < cascade.size_m)) return;
+    const double below =
+                     std::floor((lattice->first_m * per_m - plan.knobs.spline_taps) / kTogether) * kTogether,
+                 end = lattice->last_m * per_m + plan.knobs.spline_taps;
+    const int rows = static_cast<int>(std::ceil((end - below) / kTogether)) * kTogether;
+    if (rows >= grid.resolution) return;
+    grid.first_row = static_cast<int>(below - std::floor(below / grid.resolution) * grid.resolution);
+    grid.rows = rows;
+}
+
 void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
     // A vessel's shortest waves are next to nothing.
-    const double of_vessels = std::max(0.7 * plan.knobs.oversampling, std::min(plan.knobs.oversampling, 1.3));
+    const double of_vessels =
+        std::max(0.625 * plan.knobs.oversampling, std::min(plan.knobs.oversampling, 1.25));
     constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
@@ -210,9 +227,12 @@ void add_grids(Plan& plan, int cascade_index) {
             grid.resolution = *nodes;
             grid.sampling = Sampling::Nodes;
         }
+        grid.rows = grid.resolution;
         cascade.grid_of_level[level] = static_cast<int>(cascade.grids.size());
         cascade.grids.push_back(std::move(grid));
     }
+    if (cascade.vessel && !plan.hides_slopes(cascade_index))
+        for (Grid& grid : cascade.grids) leave_rows_out(plan, cascade, grid);
     if (cascade.grids.empty() && cascade.why_empty.empty())
         cascade.why_empty = "all its waves are too short for the footprints asked for: kept as variance";
 }

@@ -43,10 +43,12 @@ struct Grid {
     Sampling sampling = Sampling::Spline;
     int radius = 0;   // modes with mx² + my² < radius² pass, 2 radius ≤ N + 1
     FieldSet fields;  // each is one real N × N transform
+    // The rows that are transformed, from one on and round: all, but for a vessel's tile that only a lattice's points read.
+    int first_row = 0, rows = 0;
 
     // One-dimensional complex transforms of N points that a frame takes for each field: a column for each mx
     // below radius, and two real rows at a time.
-    int lines_per_field() const { return radius + (resolution + 1) / 2; }
+    int lines_per_field() const { return radius + (rows + 1) / 2; }
 };
 
 struct CascadePlan {

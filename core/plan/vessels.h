@@ -5,26 +5,10 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "core/scene/course.h"
 #include "pelagic/scene.h"
 
 namespace pelagic {
-
-// Where a vessel is. Before its first key it comes along its first course at its first speed, after the last it goes on along the last.
-struct VesselPath {
-    struct Key {
-        double time_s = 0.0;
-        glm::dvec2 place_m{0.0}, velocity_mps{0.0};
-    };
-    std::vector<Key> keys;  // at least two, by rising time
-    bool is_smooth = false;
-
-    glm::dvec2 at(double time_s) const;
-    glm::dvec2 velocity_mps(double time_s) const;
-
-  private:
-    template <class Linear, class Cubic>
-    glm::dvec2 on(double time_s, Linear linear, Cubic cubic) const;
-};
 
 struct VesselPlan {
     VesselPath path;
@@ -49,7 +33,9 @@ struct VesselPlan {
     static std::size_t bytes(int radius);  // of what is remembered of the modes within
 };
 
-// Those that make waves: not what is slower than its tile can show.
+// Slower ones make waves that are too short for a tile that holds the hull.
+double slowest_mps(const Vessel& vessel);
+// Those that make waves.
 std::vector<VesselPlan> plan_vessels(const Scene& scene);
 
 }  // namespace pelagic

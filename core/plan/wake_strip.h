@@ -7,41 +7,50 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "core/base/number.h"
+#include "core/plan/filter.h"
 #include "core/plan/vessels.h"
 
 namespace pelagic {
+
+#include "core/plan/wake_strip.inl"
 
 class WakeStrip {
   public:
     WakeStrip(const VesselPlan& plan, double time_s);
 
-    struct Water {
-        double foam = 0.0, age_s = 0.0;  // coverage, 0 … 1, and how long ago it broke
-        double calm = 0.0;               // 0 … 1: how much of short waves' amplitude is damped
-    };
     // Through a pixel of this footprint [m].
-    Water at(glm::dvec2 place_m, double footprint_m) const;
+    WakeWater<double> at(glm::dvec2 place_m, double footprint_m) const;
     // Whether any of it reaches into a rectangle.
     bool reaches(glm::dvec2 low_m, glm::dvec2 high_m) const;
 
-  private:
     // From the bow: where, how far along the path, how long ago the vessel's middle was there, and how fast it was, of a speed that
     // makes foam.
     struct Point {
         glm::dvec2 place_m{0.0};
         double way_m = 0.0, age_s = 0.0, strength = 0.0;
     };
-    double half_width_m(double behind_m) const;
-
-    double length_m_, beam_m_, foam_, oldest_s_;
-    std::vector<Point> points_;
-    // Round some successive points and all that they reach, and round all.
+    // Round some and all that they reach.
     struct Box {
         glm::dvec2 low_m{0.0}, high_m{0.0};
-        bool holds(glm::dvec2 place_m) const;
+        bool holds(glm::dvec2 at_m) const {
+            return at_m.x >= low_m.x && at_m.y >= low_m.y && at_m.x <= high_m.x && at_m.y <= high_m.y;
+        }
     };
+    static constexpr int kMostPoints = 160;
+    static constexpr int kBoxSteps = 8;  // from point to point, in a box
+    const WakeHull<double>& hull() const { return hull_; }
+    const std::vector<Point>& points() const { return points_; }
+    const std::vector<Box>& boxes() const { return boxes_; }
+    const Box& whole() const { return whole_; }
+    double reach_m() const { return reach_m_; }  // from the path: beyond it there is none
+
+  private:
+    WakeHull<double> hull_;
+    double reach_m_ = 0.0;
+    std::vector<Point> points_;
     std::vector<Box> boxes_;
-    glm::dvec2 low_m_{0.0}, high_m_{0.0};
+    Box whole_;
 };
 
 }  // namespace pelagic

@@ -590,18 +590,21 @@ void check_vessels(SceneChecker& check, const Scene& scene) {
                                 const std::string& accepted) {
             check.refuse({indexed("waves.vessels", i) + ".path", value, problem, accepted});
         };
-        const auto keys = course_of(vessels[i].path);
+        std::size_t wrong = 0;
+        const auto keys = course_of(vessels[i].path, &wrong);
         if (!keys || keys->size() < 2 || keys->size() > limits::kVesselKeys) {
             refuse(quoted_text(vessels[i].path),
-                   !keys ? "is no list of keys" : "has too few keys, or too many",
+                   !keys ? "is no list of keys: key " + std::to_string(wrong + 1) + " isn't three numbers"
+                         : "has too few keys, or too many",
                    "\"frame east north, frame east north, …\", of 2 … " +
                        std::to_string(limits::kVesselKeys) + " keys");
             continue;
         }
+        bool is_good = scene.shot.time_scale > 0.0;
         for (std::size_t k = 0; k < keys->size(); ++k) {
             const CourseKey &key = (*keys)[k], &before = (*keys)[k > 0 ? k - 1 : 0];
-            const std::string text =
-                number_text(key.frame) + ' ' + number_text(key.east_m) + ' ' + number_text(key.north_m);
+            const std::string text = "key " + std::to_string(k + 1) + ", " + number_text(key.frame) + ' ' +
+                                     number_text(key.east_m) + ' ' + number_text(key.north_m);
             const double step_s = scene.shot.time_scale * (key.frame - before.frame) / scene.shot.fps;
             const double way_m = std::hypot(key.east_m - before.east_m, key.north_m - before.north_m);
             if (!limits::kFrame.holds(key.frame))
@@ -625,8 +628,18 @@ void check_vessels(SceneChecker& check, const Scene& scene) {
                        "at most " + number_text(fastest_mps) + " m/s there, or deeper water");
             else
                 continue;
+            is_good = false;
             break;
         }
+        // Between keys a smooth path is faster than on the straight way.
+        if (const double most_mps = is_good ? path_of(scene.shot, vessels[i]).fastest_mps() : 0.0;
+            most_mps > fastest_mps)
+            check.refuse(
+                {indexed("waves.vessels", i) + ".interpolation", "\"smooth\"",
+                 "goes up to " + number_text(most_mps) + " m/s between its keys, over " +
+                     number_text(scene.sea.depth_m) +
+                     " m of water: near √(g d) waves pile up, which linear theory has without an end",
+                 "keys of a steadier speed, at most " + number_text(fastest_mps) + " m/s, or deeper water"});
         const double most_m = kMostOfDepth * scene.sea.depth_m;
         if (vessels[i].draught_m > most_m)
             check.refuse({indexed("waves.vessels", i) + ".draught_m", number_text(vessels[i].draught_m),

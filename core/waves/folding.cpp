@@ -11,6 +11,7 @@
 #include "core/plan/breaking.h"
 #include "core/plan/masks.h"
 #include "core/plan/random_tiling.h"
+#include "core/plan/vessels.h"
 #include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
@@ -216,6 +217,21 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
 }
 
 // A sea that is cut off within half a wave shows it.
+std::vector<std::string> vessel_warning(const PreparedScene& prepared) {
+    std::vector<std::string> warnings;
+    const Scene& scene = prepared.scene;
+    for (std::size_t i = 0; i < scene.waves.vessels.size(); ++i) {
+        const Vessel& vessel = scene.waves.vessels[i];
+        const double fastest_mps = path_of(scene.shot, vessel).fastest_mps(), least_mps = slowest_mps(vessel);
+        if (fastest_mps > least_mps) continue;
+        warnings.push_back("waves.vessels[" + std::to_string(i) + "].path goes at up to " +
+                           rough_text(fastest_mps) + " m/s, too slow for a wake: a hull of " +
+                           number_text(vessel.length_m) + " m has one from " + rough_text(least_mps) +
+                           " m/s on");
+    }
+    return warnings;
+}
+
 std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     const std::optional<MasksPlan> plan = plan_masks(scene);
@@ -303,7 +319,7 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     if (prepared.weather) return weather_warnings(*prepared.weather);
     std::vector<std::string> warnings = folding_warning(prepared);
     for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
-                       &hero_warning, &mask_warning})
+                       &hero_warning, &mask_warning, &vessel_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
         warnings.push_back(std::move(thin));

@@ -14,7 +14,7 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 
 // What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more
 // than 5 % of its area, and the choppiness that leaves that much; troughs deeper than the water; explicit tiles whose
-// repetition is visible, or whose blending adds more than 5 % of slope; spray that is too thin to be seen.
+// repetition is visible, or whose blending adds more than 5 % of slope; spray that is too thin to be seen; vessels too slow for a wake.
 std::vector<std::string> sea_warnings(const PreparedScene& prepared);
 
 }  // namespace pelagic

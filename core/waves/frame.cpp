@@ -24,8 +24,6 @@ namespace {
 // precision.
 constexpr int kBlockColumns = 16;
 constexpr int kBlockRows = 32;
-// Along the side of a vessel's tile, of the means of its slopes.
-constexpr int kBlocks = 32;
 
 // One FFTW plan per size.
 template <class T>
@@ -63,6 +61,13 @@ struct Turned {
 template <class T>
 Turned<T> turned_by(double angle_rad) {
     return {static_cast<T>(std::cos(angle_rad)), static_cast<T>(std::sin(angle_rad))};
+}
+
+// The rows of a grid that are transformed: one or two ranges.
+std::vector<std::pair<int, int>> row_ranges(const Grid& grid) {
+    const int n = grid.resolution, end = grid.first_row + grid.rows;
+    if (end <= n) return {{grid.first_row, end}};
+    return {{grid.first_row, n}, {0, end - n}};
 }
 
 // Calls work(item) for each item, one item per task, and returns the sum of the results.
@@ -124,9 +129,14 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
             }
             for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!grid.fields[f]) continue;
-                made.planes[f] = Buffer<T>::uncleared(grid_samples<T>(n));  // set() writes all that is read
-                for (int first = 0; first < n; first += kBlockRows)
-                    rows_.push_back({c, g, static_cast<Field>(f), first, std::min(kBlockRows, n - first)});
+                made.planes[f] =
+                    grid.rows < n
+                        ? Buffer<T>(grid_samples<T>(n))
+                        : Buffer<T>::uncleared(grid_samples<T>(n));  // set() writes all that is read
+                for (const auto& [from, end] : row_ranges(grid))
+                    for (int first = from; first < end; first += kBlockRows)
+                        rows_.push_back(
+                            {c, g, static_cast<Field>(f), first, std::min(kBlockRows, end - first)});
             }
             line_values_ = std::max(line_values_, 2 * line_stride<T>(n));
             grids.push_back(std::move(made));
@@ -184,12 +194,12 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     executed_lines_ +=
         sum_of_each(blocks_, [&](const Block& block) { return go_on(), transform_columns(block); });
     executed_lines_ += sum_of_each(rows_, [&](const Rows& rows) { return go_on(), transform_rows(rows); });
-    executed_transforms_ +=
-        std::count_if(rows_.begin(), rows_.end(), [](const Rows& rows) { return rows.first == 0; });
     const Plan& plan = sea_->plan();
+    executed_transforms_ += std::count_if(rows_.begin(), rows_.end(), [&](const Rows& rows) {
+        return rows.first == plan.cascades[rows.cascade].grids[rows.grid].first_row;
+    });
     for (int c = static_cast<int>(plan.sea_cascades()); c < static_cast<int>(plan.cascades.size()); ++c)
-        for (int g = 0; g < static_cast<int>(plan.cascades[c].grids.size()); ++g)
-            tbb::parallel_for(0, plan.cascades[c].grids[g].resolution, [&](int row) { fade_row(c, g, row); });
+        for (int g = 0; g < static_cast<int>(plan.cascades[c].grids.size()); ++g) fade(c, g);
     squares_.assign(vessels_.size(), {});
     for (std::size_t v = 0; v < vessels_.size(); ++v) {
         const int c = static_cast<int>(plan.sea_cascades() + v);
@@ -205,8 +215,8 @@ template <class T>
 std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
     const T *x = samples(cascade, grid, Field::SlopeX), *y = samples(cascade, grid, Field::SlopeY);
     const int n = sea_->plan().cascades[cascade].grids[grid].resolution;
-    if (!x || !y || n < kBlocks) return {};  // waves as long as blocks
-    std::vector<glm::vec3> sums(static_cast<std::size_t>(kBlocks) * kBlocks, glm::vec3(0.0f));
+    if (!x || !y || n < kSlopeBlocks) return {};  // waves as long as blocks
+    std::vector<glm::vec3> sums(static_cast<std::size_t>(kSlopeBlocks) * kSlopeBlocks, glm::vec3(0.0f));
     std::vector<int> counts(sums.size());
     // At nodes, of which a spline's have its coefficients; of fine grids at as many as tell blocks' means.
     const bool is_spline = sea_->plan().cascades[cascade].grids[grid].sampling == Sampling::Spline;
@@ -217,7 +227,7 @@ std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
     const int spline_taps = sea_->plan().knobs.spline_taps, taps = is_spline ? spline_taps - 1 : 1,
               before = taps / 2;
     const T* weights = !is_spline ? &one : spline_taps == 6 ? quintic : cubic;
-    const int step = std::max(1, n / (8 * kBlocks));
+    const int step = std::max(1, n / (8 * kSlopeBlocks));
     for (int j = 0; j < n; j += step)
         for (int i = 0; i < n; i += step) {
             glm::vec<2, T> slope(T(0));
@@ -228,7 +238,8 @@ std::vector<glm::vec3> Frame<T>::squares_of(int cascade, int grid) const {
                         static_cast<std::size_t>((i + p - before + n) % n);
                     slope += weights[q] * weights[p] * glm::vec<2, T>(x[from], y[from]);
                 }
-            const auto to = static_cast<std::size_t>(j * kBlocks / n * kBlocks + i * kBlocks / n);
+            const auto to =
+                static_cast<std::size_t>(j * kSlopeBlocks / n * kSlopeBlocks + i * kSlopeBlocks / n);
             sums[to] += glm::vec3(slope.x * slope.x, slope.x * slope.y, slope.y * slope.y);
             ++counts[to];
         }
@@ -242,15 +253,16 @@ glm::dvec3 Frame<T>::hidden_slopes(int cascade, int grid, glm::dvec2 place_m) co
     const auto finest = std::ranges::find_if(of, [](const auto& squares) { return !squares.empty(); });
     if (finest == of.end()) return glm::dvec3(0.0);
     const std::vector<glm::vec3>* shown = grid < 0 ? nullptr : &of[static_cast<std::size_t>(grid)];
-    const glm::dvec2 at = place_m * (kBlocks / sea_->plan().cascades[cascade].size_m) - 0.5,
+    const glm::dvec2 at = place_m * (kSlopeBlocks / sea_->plan().cascades[cascade].size_m) - 0.5,
                      whole = glm::floor(at);
     const auto inside = [](double block) {
-        return static_cast<std::size_t>(block - std::floor(block / kBlocks) * kBlocks) % kBlocks;
+        return static_cast<std::size_t>(block - std::floor(block / kSlopeBlocks) * kSlopeBlocks) %
+               kSlopeBlocks;
     };
     glm::dvec3 sum(0.0);
     for (const double j : {0.0, 1.0})
         for (const double i : {0.0, 1.0}) {
-            const std::size_t block = inside(whole.y + j) * kBlocks + inside(whole.x + i);
+            const std::size_t block = inside(whole.y + j) * kSlopeBlocks + inside(whole.x + i);
             const double weight = (1.0 - std::abs(at.x - whole.x - i)) * (1.0 - std::abs(at.y - whole.y - j));
             sum += weight * glm::dvec3((*finest)[block] -
                                        (shown && !shown->empty() ? (*shown)[block] : glm::vec3(0.0f)));
@@ -454,11 +466,14 @@ long Frame<T>::transform_columns(const Block& block) {
                                .line_im = at.line.data() + stride});
                 state.transform.execute(at.line.data(), at.lines.data() + 2 * stride * column);
             }
-            kernels_.scatter({.lines = at.lines.data(),
-                              .columns = columns,
-                              .first_column = block.first_mx,
-                              .n = grid.resolution,
-                              .rows = state.planes[f].data()});
+            for (const auto& [from, end] : row_ranges(grid))
+                kernels_.scatter({.lines = at.lines.data(),
+                                  .columns = columns,
+                                  .first_column = block.first_mx,
+                                  .n = grid.resolution,
+                                  .rows = state.planes[f].data(),
+                                  .first_row = from,
+                                  .end_row = end});
             lines += columns;
         }
     }
@@ -491,21 +506,34 @@ long Frame<T>::transform_rows(const Rows& rows) {
 }
 
 template <class T>
-void Frame<T>::fade_row(int cascade, int grid, int row) {
+void Frame<T>::fade(int cascade, int grid) {
     const CascadePlan& planned = sea_->plan().cascades[cascade];
-    GridState& state = grids_[cascade][grid];
     const int n = planned.grids[grid].resolution;
     const glm::dvec2 middle_m = tile_middle_m(cascade);
-    const auto fade = [&](int node, double middle) {
-        const double turns = static_cast<double>(node) / n - middle / planned.size_m;
-        return tile_fade((turns - std::round(turns)) * planned.size_m, planned.size_m);
+    const auto fades = [&](double middle) {
+        std::vector<TileFade> all(static_cast<std::size_t>(n));
+        for (std::size_t node = 0; node < all.size(); ++node) {
+            const double turns = static_cast<double>(node) / n - middle / planned.size_m;
+            all[node] = tile_fade((turns - std::round(turns)) * planned.size_m, planned.size_m);
+        }
+        return all;
     };
+    const std::vector<TileFade> x = fades(middle_m.x), y = fades(middle_m.y);
+    for (const auto& [first, end] : row_ranges(planned.grids[grid]))
+        tbb::parallel_for(
+            first, end, [&](int row) { fade_row(cascade, grid, row, x, y[static_cast<std::size_t>(row)]); });
+}
+
+template <class T>
+void Frame<T>::fade_row(int cascade, int grid, int row, const std::vector<TileFade>& along,
+                        const TileFade& y) {
+    GridState& state = grids_[cascade][grid];
+    const int n = sea_->plan().cascades[cascade].grids[grid].resolution;
     const auto line = [&](std::size_t field) {
         return from(state.planes[field], static_cast<std::size_t>(row) * line_stride<T>(n));
     };
-    const TileFade y = fade(row, middle_m.y);
     for (int i = 0; i < n; ++i) {
-        const TileFade x = fade(i, middle_m.x);
+        const TileFade& x = along[static_cast<std::size_t>(i)];
         const T share = static_cast<T>(x.share * y.share);
         if (share == T(1)) continue;
         for (const Gradient& gradient : kGradients)  // before what they are derivatives of

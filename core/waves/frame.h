@@ -57,7 +57,8 @@ class Frame {
     // Where the tile of a vessel's cascade lies: beyond its half side there are none of its waves.
     glm::dvec2 tile_middle_m(int cascade) const { return vessels_[vessel_of(cascade)].middle_m(); }
     // Of a vessel's cascade, the slope variances (xx, xy, yy) round a place in the tile that grid `grid` doesn't show and its finest grid with
-    // slopes does, means over a 32nd of the tile; −1: no grid, which shows none.
+    // slopes does, between the means of kSlopeBlocks² blocks of the tile; −1: no grid, which shows none.
+    static constexpr int kSlopeBlocks = 32;
     glm::dvec3 hidden_slopes(int cascade, int grid, glm::dvec2 place_m) const;
     // The turbulent wakes of vessels, at the frame's time.
     std::span<const WakeStrip> strips() const { return strips_; }
@@ -114,8 +115,9 @@ class Frame {
     long transform_rows(const Rows&);
     // The means of a grid's squared slopes over blocks of a vessel's tile.
     std::vector<glm::vec3> squares_of(int cascade, int grid) const;
-    // Lets a vessel's tile fade to its border: a row of all of a grid's fields.
-    void fade_row(int cascade, int grid, int row);
+    // Lets a vessel's tile fade to its border: a grid, and a row of all of its fields.
+    void fade(int cascade, int grid);
+    void fade_row(int cascade, int grid, int row, const std::vector<TileFade>& along, const TileFade& y);
 
     std::shared_ptr<const Sea<T>> sea_;
     std::shared_ptr<const SeaOverTime<T>> shot_;  // null: the sea is one

@@ -201,8 +201,8 @@ void Scatter(const ScatterArgs<T>& args) {
     for (int part = 0; part < 2; ++part) {
         const T* from = args.lines + part * stride;
         T* to = args.rows + part * (stride / 2) + args.first_column;
-        int row = 0;
-        for (; row + kSide <= args.n; row += kSide) {
+        int row = args.first_row;
+        for (; row + kSide <= args.end_row; row += kSide) {
             // Each row lies in another page, beyond which hardware prefetchers don't look.
             for (int i = 0; i < kSide; ++i) __builtin_prefetch(to + (row + kAhead + i) * stride, 1);
             int column = 0;
@@ -212,7 +212,7 @@ void Scatter(const ScatterArgs<T>& args) {
                 for (int i = row; i < row + kSide; ++i)
                     to[i * stride + column] = from[column * from_stride + i];
         }
-        for (; row < args.n; ++row)
+        for (; row < args.end_row; ++row)
             for (int column = 0; column < args.columns; ++column)
                 to[row * stride + column] = from[column * from_stride + row];
     }

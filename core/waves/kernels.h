@@ -50,7 +50,8 @@ template <class T>
 struct ScatterArgs {
     const T* lines;  // `columns` lines, each 2 line_stride(n) long
     int columns, first_column, n;
-    T* rows;  // line_stride(n) apart
+    T* rows;                         // line_stride(n) apart
+    int first_row = 0, end_row = 0;  // that are written
 };
 
 // Combines two rows' half spectra X and Y (modes 0 … radius − 1) into the full spectrum X + iY. Its transform

@@ -41,6 +41,9 @@ HWY_INLINE void Put(Complex value, float* re, float* im, std::size_t i) {
     hn::StoreU(value.re.v, D(), re + i);
     hn::StoreU(value.im.v, D(), im + i);
 }
+HWY_INLINE bool IsZero(N a) {
+    return hn::AllTrue(D(), hn::Eq(a.v, hn::Zero(D())));
+}
 HWY_INLINE Complex Conjugate(Complex a) {
     return {a.re, -a.im};
 }
@@ -104,16 +107,19 @@ void Block(const BlockArgs& args) {
     const N x(args.from_x), y(args.from_y), age(args.age_s), share(args.share), half(args.half_m),
         per_edge(args.per_edge_m);
     for (std::size_t i = 0; i < args.count; i += hn::Lanes(D())) {
-        const Complex place = At(args.place, i), turn = At(args.turn_re, args.turn_im, i);
+        const Complex turn = At(args.turn_re, args.turn_im, i);
         const N east = age * At(args.group_x, i), north = age * At(args.group_y, i);
         // e^{i(k·x + ωt)} goes against k.
         const N later = share * Within(x - east, half, per_edge) * Within(y - north, half, per_edge),
                 earlier = share * Within(x + east, half, per_edge) * Within(y + north, half, per_edge);
-        Put(turn * At(args.later_re, args.later_im, i) +
-                later * (place * At(args.of_later_re, args.of_later_im, i)),
+        const auto add = [&](Complex sum, N weight, const float* re, const float* im) {
+            // Most of what is old has left the tile: it isn't read.
+            return IsZero(weight) ? sum : sum + weight * (At(args.place, i) * At(re, im, i));
+        };
+        Put(add(turn * At(args.later_re, args.later_im, i), later, args.of_later_re, args.of_later_im),
             args.later_re, args.later_im, i);
-        Put(Conjugate(turn) * At(args.earlier_re, args.earlier_im, i) +
-                earlier * (place * At(args.of_earlier_re, args.of_earlier_im, i)),
+        Put(add(Conjugate(turn) * At(args.earlier_re, args.earlier_im, i), earlier, args.of_earlier_re,
+                args.of_earlier_im),
             args.earlier_re, args.earlier_im, i);
     }
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/base/build_watch.h"
@@ -47,6 +48,7 @@ VesselWaves::VesselWaves(const Cascade<T>& cascade, const VesselPlan& plan, cons
         *buffer = Buffer<float>(count);
     for (int n = 0; n < 4; ++n)
         for (Buffer<float>* buffer : {&cosine_[n], &sine_[n]}) *buffer = Buffer<float>(count);
+    fastest_mps_.assign(static_cast<std::size_t>(radius_), 0.0);
     ky_ = Buffer<float>(2 * static_cast<std::size_t>(radius_) - 1);
     const double step = kTwoPi / plan_.size_m;
     constexpr double kParabola = 2.0 / 3.0;  // of what is round it
@@ -59,7 +61,10 @@ VesselWaves::VesselWaves(const Cascade<T>& cascade, const VesselPlan& plan, cons
         for (int my = -height; my <= height; ++my) {
             const std::size_t i = cascade.middle(mx) + static_cast<std::size_t>(my);
             const double k = step * std::hypot(mx, my), omega = kTwoPi * cycles_per_s_[i];
-            const double group = k > 0.0 ? dispersion.domega_dk(k) / k * step : 0.0;
+            const double fast_mps = k > 0.0 ? dispersion.domega_dk(k) : 0.0,
+                         group = k > 0.0 ? fast_mps / k * step : 0.0;
+            double& fastest_mps = fastest_mps_[static_cast<std::size_t>(mx)];
+            fastest_mps = std::max(fastest_mps, fast_mps);
             omega_[i] = static_cast<float>(omega);
             depth_[i] = static_cast<float>(hull_m * below_water_m(k, plan_.draught_m));
             group_x_[i] = static_cast<float>(group * mx);
@@ -235,6 +240,12 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
     middle_m_ = plan_.middle_m(t_s);
 }
 
+bool VesselWaves::reaches_tile(const Leg& leg, int mx) const {
+    const glm::dvec2 off_m = glm::max(glm::abs(leg.middle_m - middle_m_) - 0.5 * plan_.size_m, 0.0);
+    const double age_s = t_s_ - 0.5 * (leg.from_s + leg.end_s);
+    return glm::length(off_m) <= 1.001 * age_s * fastest_mps_[static_cast<std::size_t>(mx)];
+}
+
 template <class T>
 void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T* rate_im) const {
     struct Own {
@@ -277,26 +288,40 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
                             .earlier_re = own.earlier_re.data(),
                             .earlier_im = own.earlier_im.data()});
         };
-        for (const Leg* block : order_)
+        bool is_empty = true;  // the oldest have left, but for fast waves
+        for (const Leg* block : order_) {
+            is_empty = is_empty && !reaches_tile(*block, mx);
+            if (is_empty) continue;
             add(*block, turn_re_.data() + first, turn_im_.data() + first,
                 {block->sums[0].data() + first, block->sums[1].data() + first, block->sums[2].data() + first,
                  block->sums[3].data() + first});
+        }
         const Sums now{own.now[0].data(), own.now[1].data(), own.now[2].data(), own.now[3].data()};
-        const auto add_begun = [&](const Leg& leg, double half_s, int steps) {
+        const auto add_begun = [&](const Leg& leg, const float* cosine, const float* sine) {
             for (std::size_t i = 0; i < count; ++i) {
-                const double phase = kTwoPi * cycles_per_s_[first + i] * half_s;
-                own.cosine[i] = static_cast<float>(std::cos(phase));
-                own.sine[i] = static_cast<float>(std::sin(phase));
-                own.turn_re[i] = static_cast<float>(std::cos(2.0 * steps * phase));
-                own.turn_im[i] = static_cast<float>(std::sin(2.0 * steps * phase));
+                const float c = cosine[i], s = sine[i], step_re = c * c - s * s, step_im = 2.0f * c * s;
+                own.turn_re[i] = step_re;
+                own.turn_im[i] = step_im;
+                for (std::size_t n = 1; n < leg.steps.size(); ++n) {
+                    const float before = own.turn_re[i];
+                    own.turn_re[i] = before * step_re - own.turn_im[i] * step_im;
+                    own.turn_im[i] = before * step_im + own.turn_im[i] * step_re;
+                }
             }
-            sum_up(leg, mx, own.cosine.data(), own.sine.data(), now);
+            sum_up(leg, mx, cosine, sine, now);
             add(leg, own.turn_re.data(), own.turn_im.data(),
                 {now.later_re, now.later_im, now.earlier_re, now.earlier_im});
         };
-        for (const Leg* leg : {&begun_, &last_})
-            if (const auto steps = static_cast<int>(leg->steps.size()); steps > 0)
-                add_begun(*leg, 0.5 * (leg->end_s - leg->from_s) / steps, steps);
+        if (!begun_.steps.empty())
+            add_begun(begun_, cosine_[begun_.table].data() + first, sine_[begun_.table].data() + first);
+        const double half_s = 0.5 * (last_.end_s - last_.from_s);
+        for (std::size_t i = 0; i < count; ++i) {
+            const float phase =
+                static_cast<float>(kTwoPi * cycles_per_s_[first + i] * half_s);  // some turns at most
+            own.cosine[i] = std::cos(phase);
+            own.sine[i] = std::sin(phase);
+        }
+        add_begun(last_, own.cosine.data(), own.sine.data());
         if (rate_re) {
             std::fill_n(now.later_re, count, 0.0f);
             std::fill_n(now.later_im, count, 0.0f);

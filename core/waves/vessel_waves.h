@@ -80,6 +80,8 @@ class VesselWaves {
     const float* ky_of(int mx) const;
     PlanePhase phase(const Phases& of, int mx) const;
     HullArgs hull(const Step& step, int mx) const;
+    // Whether some of a column's waves that a leg made can be within the tile by now.
+    bool reaches_tile(const Leg& leg, int mx) const;
     // Of a column; cosine and sine of ω times half a step.
     void sum_up(const Leg& leg, int mx, const float* cosine, const float* sine, const Sums& sums) const;
 
@@ -87,6 +89,7 @@ class VesselWaves {
     VesselKernels kernels_;
     int radius_ = 0;
     std::vector<std::size_t> columns_;
+    std::vector<double> fastest_mps_;  // by column: the greatest group velocity
     std::vector<double> cycles_per_s_;
     Buffer<float> ky_, omega_, depth_, group_x_, group_y_, turn_re_, turn_im_;
     Buffer<float> cosine_[4], sine_[4];  // of half a step of 1, 2, 4, 8 in a block

@@ -1,5 +1,5 @@
 // The cascades' fields at a point: the sums of evaluate() (core/evaluate), read from textures that SeaLayout
-// describes. Needs the constants kCascades, kCellLevels, kPixelLevels, kBreakingLevels, kChoppy, kCoverage, kRandomTiling and P, the
+// describes. Needs the constants kCascades, kVessels (whose cascades come last), kCellLevels, kPixelLevels, kBreakingLevels, kChoppy, kCoverage, kRandomTiling and P, the
 // spline's number of taps.
 
 layout(std140) uniform SeaTables {
@@ -14,8 +14,18 @@ layout(std140) uniform SeaTables {
     // same eight mixed with the next level.
     vec4 unresolved_levels[4 * kPixelLevels];
     vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: the key of its random tiling; .z: tiles per metre
-    vec4 gusts[kGustRows + kMaskRows];  // gusts.glsl; then masks.glsl
+    vec4 gusts[kGustRows + kMaskRows + kVesselRows * kVessels];  // gusts.glsl; then masks.glsl; then wakes.glsl
 };
+
+// The cascades of the sea, first and end.
+const ivec2 kSea = ivec2(0, kCascades - kVessels);
+
+// A place from the middle of a vessel's tile, beyond which there are none of its waves.
+vec2 from_tile(int vessel, vec2 rest_m) { return gusts[kGustRows + kMaskRows + kVesselRows * vessel].xy + rest_m; }
+bool is_in_tile(int vessel, vec2 rest_m) {
+    vec2 from_m = abs(from_tile(vessel, rest_m));
+    return max(from_m.x, from_m.y) < gusts[kGustRows + kMaskRows + kVesselRows * vessel].z;
+}
 
 uniform vec2 finest_m;             // the finest footprints of cells and pixels; trains and gusts are filtered no finer
 uniform sampler2D cell_fields;     // Height, Dx, Dy
@@ -177,9 +187,11 @@ FieldSums add_tiles(sampler2D first, sampler2D second, bool both, int tile, int 
     return sums;
 }
 
-FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_level, vec2 rest_m, Footprint footprint) {
+// Of the cascades `which`: of the sea or of vessels.
+FieldSums cascade_sums(ivec2 which, sampler2D first, sampler2D second, bool both, int first_level, vec2 rest_m, Footprint footprint) {
     FieldSums sums = FieldSums(vec4(0.0), 0.0, 0.0, vec3(0.0));
-    for (int c = 0; c < kCascades; ++c) {
+    for (int c = which.x; c < which.y; ++c) {
+        if (kVessels > 0 && c >= kSea.y && !is_in_tile(c - kSea.y, rest_m)) continue;
         Taps taps = taps_in(c, footprint);
         int last = last_tap(taps);
         for (int r = 0; r < 2; ++r) {
@@ -191,7 +203,7 @@ FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_l
             for (int j = -last; j <= last; ++j) {
                 Node at = node_in(tile, split_metres(rest_m + float(j) * taps.spacing_m * footprint.axis));
                 float weight = share * tap_weight(taps.reach, float(j));
-                if (kRandomTiling) {
+                if (kRandomTiling && c < kSea.y) {
                     sums = add_tiles(first, second, both, tile, c, at, weight, sums);
                     continue;
                 }
@@ -212,8 +224,8 @@ FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_l
 }
 
 // Height, Dx, Dy.
-vec3 cell_cascades(vec2 rest_m, Footprint footprint) {
-    vec4 sum = cascade_sums(cell_fields, pixel_fields_2, false, 0, rest_m, footprint).first;
+vec3 cell_cascades(ivec2 which, vec2 rest_m, Footprint footprint) {
+    vec4 sum = cascade_sums(which, cell_fields, pixel_fields_2, false, 0, rest_m, footprint).first;
     return kChoppy ? sum.xyz : vec3(sum.x, 0.0, 0.0);
 }
 
@@ -222,8 +234,8 @@ struct PixelFields {
     vec3 values;  // with masks: Height, Dx, Dy
 };
 
-PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
-    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, kChoppy || kRandomTiling || kMasks > 0, kCellLevels, rest_m, footprint);
+PixelFields pixel_cascades(ivec2 which, vec2 rest_m, Footprint footprint) {
+    FieldSums sums = cascade_sums(which, pixel_fields, pixel_fields_2, kChoppy || kRandomTiling || kMasks > 0, kCellLevels, rest_m, footprint);
     vec4 sum = sums.first;
     if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0, 0.0, vec3(sums.values.x, 0.0, 0.0));
     return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second, sums.second + sums.turn, sums.values);
@@ -242,11 +254,11 @@ struct BreakingFields {
     vec2 values;    // with masks: Dx, Dy
 };
 
-BreakingFields breaking_cascades(vec2 rest_m, Footprint pixel) {
+BreakingFields breaking_cascades(ivec2 which, vec2 rest_m, Footprint pixel) {
     Footprint footprint = pixel;
     footprint.width = max(pixel.width, breaking_footprint_m);
     if (!(footprint.along > footprint.width)) footprint.along = 0.0;
-    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, true, kCellLevels + kPixelLevels, rest_m, footprint);
+    FieldSums sums = cascade_sums(which, pixel_fields, pixel_fields_2, true, kCellLevels + kPixelLevels, rest_m, footprint);
     return BreakingFields(vec4(sums.first.zw, sums.second, sums.second + sums.turn), kChoppy ? sums.values.yz : vec2(0.0));
 }
 

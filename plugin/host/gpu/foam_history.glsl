@@ -36,7 +36,7 @@ vec3 foam_left(vec2 rest_m, float footprint) {
     float t = level < kFoamLevels ? max(cells - 1.0, 0.0) : 0.0;
     vec3 mean = sea.xyw;
     if (kMasks > 0) {  // beyond all tiles
-        MaskGains gains = masks_at(rest_m);
+        MaskGains gains = placed_masks(rest_m);
         mean *= gains.foam * masked_breaking(gains.waves, texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).z);
     }
     vec3 sum = vec3(0.0);

@@ -2,7 +2,7 @@
 // each mask: its middle from the origin [m] and the direction of its length; one over its half axes, within and without its edge; its gains
 // of waves, ripples and foam. Then what a slick hides of the slopes: xx, xy, yy.
 
-MaskGains masks_at(vec2 rest_m) {
+MaskGains placed_masks(vec2 rest_m) {
     MaskGains all = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
     for (int i = 0; i < kMasks; ++i) {
         vec4 place = gusts[kGustRows + 3 * i];
@@ -15,23 +15,31 @@ MaskGains masks_at(vec2 rest_m) {
     return all;
 }
 
+// With the strips behind vessels.
+MaskGains masks_at(vec2 rest_m) {
+    MaskGains all = placed_masks(rest_m);
+    if (kStrips)
+        for (int vessel = 0; vessel < kVessels; ++vessel) all.ripples *= 1.0 - wake_strip(vessel, rest_m, kSlick_m).calm;
+    return all;
+}
+
 // What a slick leaves of waves is that of its own level.
 Footprint calm_footprint(Footprint footprint, int level) {
     return Footprint(LevelBlend(level, 0.0), kSlick_m, footprint.along > kSlick_m ? footprint.along : 0.0, footprint.axis);
 }
 // How much of it is shown in a footprint of this level.
-float calm_share(vec2 rest_m, float level_m) { return level_m < kSlick_m ? 1.0 - masks_at(rest_m).ripples : 0.0; }
+float calm_share(MaskGains masks, float level_m) { return level_m < kSlick_m ? 1.0 - masks.ripples : 0.0; }
 
-vec3 calm_cell(vec2 rest_m, Footprint footprint, vec3 sum) {
-    float share = calm_share(rest_m, levels[footprint.blend.lower].x);
+vec3 calm_cell(vec2 rest_m, Footprint footprint, MaskGains masks, vec3 sum) {
+    float share = calm_share(masks, levels[footprint.blend.lower].x);
     if (!(share > 0.0)) return sum;
-    return sum + share * (cell_cascades(rest_m, calm_footprint(footprint, kCalmCell)) - sum);
+    return sum + share * (cell_cascades(kSea, rest_m, calm_footprint(footprint, kCalmCell)) - sum);
 }
 
-PixelFields calm_pixel(vec2 rest_m, Footprint footprint, PixelFields f) {
-    float share = calm_share(rest_m, levels[kCellLevels + footprint.blend.lower].x);
+PixelFields calm_pixel(vec2 rest_m, Footprint footprint, MaskGains masks, PixelFields f) {
+    float share = calm_share(masks, levels[kCellLevels + footprint.blend.lower].x);
     if (!(share > 0.0)) return f;
-    PixelFields calm = pixel_cascades(rest_m, calm_footprint(footprint, kCalmPixel));
+    PixelFields calm = pixel_cascades(kSea, rest_m, calm_footprint(footprint, kCalmPixel));
     return PixelFields(mix(f.slope_x, calm.slope_x, share), mix(f.slope_y, calm.slope_y, share), mix(f.dxx, calm.dxx, share),
                        mix(f.dyy, calm.dyy, share), mix(f.dxy, calm.dxy, share), mix(f.dyx, calm.dyx, share), f.values);
 }
@@ -53,7 +61,7 @@ PixelMoments masked_moments(PixelMoments hidden, Footprint footprint, MaskGains 
     vec3 slopes = vec3(hidden.xx, hidden.xy, hidden.yy);
     if (masks.ripples != 1.0) {
         // What is hidden besides a slick's waves: by coarse pixels and grids, or by the ellipse as long as a slick is wide.
-        vec3 left = slopes - gusts[kMasks > 0 ? kGustRows + 3 * kMasks : 0].xyz;
+        vec3 left = slopes - gusts[kMasked ? kGustRows + 3 * kMasks : 0].xyz;
         PixelMoments possible = possible_moments(PixelMoments(left.x, left.y, left.z, 0.0, 0.0, 0.0, 0.0, 0.0));
         vec3 calmed = vec3(possible.xx, possible.xy, possible.yy);
         if (kCalmPixel >= 0 && levels[kCellLevels + blend.lower].x < kSlick_m) {

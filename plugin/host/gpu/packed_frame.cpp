@@ -13,6 +13,7 @@ void PackedFrame::pack(const Frame<float>& frame) {
         throw std::invalid_argument("the frame is of another sea than the one that it is packed for");
     if (!frame.is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
     layout_->fill(frame, planes_);
+    wakes_ = layout_->wake_texels(frame);
     time_s_ = frame.time_s();
     time_within_loop_s_ = frame.time_within_loop_s();
 }

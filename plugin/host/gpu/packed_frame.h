@@ -23,10 +23,13 @@ class PackedFrame {
     double time_within_loop_s() const { return time_within_loop_s_; }
     // By texture of the layout: rows of its width, channels interleaved.
     const std::vector<std::vector<float>>& planes() const { return planes_; }
+    // The texture wake_table, as the layout has it; empty without vessels.
+    const std::vector<glm::vec4>& wakes() const { return wakes_; }
 
   private:
     std::shared_ptr<const SeaLayout> layout_;
     std::vector<std::vector<float>> planes_;
+    std::vector<glm::vec4> wakes_;
     double time_s_ = 0.0, time_within_loop_s_ = 0.0;
 };
 

@@ -8,6 +8,7 @@ float magnitude(float x) { return abs(x); }
 float minus_product(float c, float a, float b) { return c - a * b; }
 float square_root(float x) { return sqrt(x); }
 float exponential(float x) { return exp(x); }
+float power(float x, float y) { return pow(x, y); }
 
 float sine_of_cycles(float x) { return sin(6.28318530717958647692 * (x - floor(x + 0.5))); }
 float cosine_of_cycles(float x) { return cos(6.28318530717958647692 * (x - floor(x + 0.5))); }

@@ -17,10 +17,13 @@ vec3 train_footprint(vec3 given, float finest) {
 // Height, Dx, Dy of the point that rests at x.
 vec3 query_cell(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(0, kCellLevels, cell);
-    vec3 sum = cell_cascades(rest_m, footprint);
-    if (kCalmCell >= 0) sum = calm_cell(rest_m, footprint, sum);
+    vec3 sum = cell_cascades(kSea, rest_m, footprint);
+    MaskGains masks = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
+    if (kMasked) masks = masks_at(rest_m);
+    if (kCalmCell >= 0) sum = calm_cell(rest_m, footprint, masks, sum);
     if (kTrains) sum += cell_trains(split_metres(rest_m), train_footprint(cell, finest_m.x));
-    return kMasks > 0 ? masks_at(rest_m).waves * sum : sum;
+    if (kMasked) sum *= masks.waves;
+    return kVessels > 0 ? sum + wake_cell(rest_m, footprint) : sum;
 }
 
 // The slopes that a mesh of such cells leaves unresolved, at rest: variances (xx, yy, xy).
@@ -29,7 +32,8 @@ vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec3(0.0)), vec4(0.0), unresolved_of(footprint));
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y), sums);
     PixelMoments unresolved = possible_moments(sums.unresolved);
-    if (kMasks > 0) unresolved = masked_moments(unresolved, footprint, masks_at(rest_m));
+    if (kMasked) unresolved = masked_moments(unresolved, footprint, masks_at(rest_m));
+    if (kVessels > 0) unresolved = with_hidden_wakes(unresolved, rest_m, footprint);
     return vec3(unresolved.xx, unresolved.yy, unresolved.xy);
 }
 
@@ -39,6 +43,17 @@ struct AllFoam {
     float age_s;     // of what earlier breaking has left, on average
     float bubbles;   // what it has left of them, of 1 where all breaks; negative: nobody knows
 };
+
+// With the foam of wakes beside what waves leave.
+AllFoam with_strips(AllFoam all, vec2 rest_m, float footprint_m) {
+    for (int vessel = 0; vessel < kVessels; ++vessel) {
+        WakeWater water = wake_strip(vessel, rest_m, footprint_m);
+        if (!(water.foam > 0.0)) continue;
+        all.coverage = with_wake_foam(all.coverage, water.foam);
+        all.age_s = with_wake_age(all.age_s, water);
+    }
+    return all;
+}
 
 struct PixelAnswer {
     vec3 normal;
@@ -51,20 +66,25 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     Footprint footprint = footprint_of(kCellLevels, kPixelLevels, pixel);
     bool apart = kCoverage && breaks_apart(footprint);
     BreakingFields breaking = BreakingFields(vec4(0.0), vec2(0.0));
-    if (apart) breaking = breaking_cascades(rest_m, footprint);
-    PixelFields cascades_here = pixel_cascades(rest_m, footprint);
-    if (kCalmPixel >= 0) cascades_here = calm_pixel(rest_m, footprint, cascades_here);
+    if (apart) breaking = breaking_cascades(kSea, rest_m, footprint);
+    PixelFields cascades_here = pixel_cascades(kSea, rest_m, footprint);
+    MaskGains masks = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
+    if (kMasked) masks = masks_at(rest_m);
+    if (kCalmPixel >= 0) cascades_here = calm_pixel(rest_m, footprint, masks, cascades_here);
     vec2 before_trains = cascades_here.values.yz;
     TrainSums sums = TrainSums(cascades_here, breaking.gradient, unresolved_of(footprint));
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
     PixelFields f = sums.fields;
     PixelMoments unresolved = possible_moments(sums.unresolved);
-    MaskGains masks = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
-    if (kMasks > 0) {
-        masks = masks_at(rest_m);
+    if (kMasked) {
         sums.breaking = masked_gradient(sums.breaking, breaking.values + (f.values.yz - before_trains), masks);
         f = masked_fields(f, masks);
         unresolved = masked_moments(unresolved, footprint, masks);
+    }
+    if (kVessels > 0) {
+        f = with_wakes(f, rest_m, footprint);
+        if (apart) sums.breaking += breaking_cascades(kWakes, rest_m, footprint).gradient;
+        unresolved = with_hidden_wakes(unresolved, rest_m, footprint);
     }
     SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dyx);
     if (kShaped)
@@ -81,7 +101,7 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
                                          UnresolvedGradients(unresolved.xxxx, unresolved.xxxy, unresolved.xxyy, unresolved.xyyy,
                                                       unresolved.yyyy)),
                         gust.whitecap_threshold, kThirdMoment);
-    if (kMasks > 0) foam *= masks.foam;
+    if (kMasked) foam *= masks.foam;
     return PixelAnswer(vec3(n.x, n.y, n.z), gust.factor * vec3(carried.xx, carried.yy, carried.xy),
                        vec3(unresolved.xx, unresolved.yy, unresolved.xy), foam, float(footprint.blend.lower) + footprint.blend.t);
 }

@@ -12,7 +12,7 @@ void main() {
     vec3 pixel = pixel_on_mesh();
     PixelAnswer answer = query_pixel(rest_m, pixel);
     AllFoam all = AllFoam(0.0, 0.0, 0.0, -1.0);
-    if (kCoverage) all = all_foam(rest_m, pixel, answer.coverage);
+    if (kCoverage) all = with_strips(all_foam(rest_m, pixel, answer.coverage), rest_m, pixel.x);
     answer.coverage = all.coverage;
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);

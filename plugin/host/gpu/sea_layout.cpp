@@ -42,9 +42,6 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Le
         throw std::invalid_argument("query \"" + planned.query.name +
                                     "\" is of a lattice or of one cascade: "
                                     "a picture needs one of points anywhere in the whole sea");
-    if (plan.sea_cascades() < plan.cascades.size())
-        throw std::invalid_argument(
-            "waves.vessels: the OpenGL preview has no wakes yet; pelagic render shows them, or leave them out");
     const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);
     if ((planned.query.products & least) != least)
         throw std::invalid_argument(
@@ -241,6 +238,13 @@ std::vector<glm::vec4> SeaLayout::ellipse_texels() const {
         texels.emplace_back(m[4], m[5], m[6], m[7]);
     }
     return texels;
+}
+
+glm::ivec2 SeaLayout::wake_size() const {
+    if (vessels() == 0) return glm::ivec2(0);
+    return {std::max(2 * WakeStrip::kMostPoints,
+                     Frame<float>::kSlopeBlocks * static_cast<int>(pixels_.footprints_m.size())),
+            kWakeTableRows * vessels()};
 }
 
 std::vector<glm::vec4> SeaLayout::train_texels() const {

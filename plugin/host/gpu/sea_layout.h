@@ -36,11 +36,16 @@ class SeaLayout {
     bool has_gusts() const { return sea_->gusts().has_value(); }
     // Calm and rough places (masks.glsl): how many, their rows of the uniform block, and the levels of cells and pixels that show what a
     // slick leaves; −1: none is finer.
-    int masks() const { return sea_->plan().masks ? static_cast<int>(sea_->plan().masks->masks.size()) : 0; }
-    int mask_rows() const { return masks() > 0 ? 3 * masks() + 1 : 0; }
+    bool is_masked() const { return sea_->plan().masks.has_value(); }
+    int masks() const { return is_masked() ? static_cast<int>(sea_->plan().masks->masks.size()) : 0; }
+    int mask_rows() const { return is_masked() ? 3 * masks() + 1 : 0; }
+    // Whether vessels' wakes calm ripples as well.
+    bool has_strips() const { return is_masked() && sea_->plan().masks->has_strips; }
     int calm_cell() const { return calm_cell_; }
     int calm_pixel() const { return calm_pixel_; }
     int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }
+    int sea_cascades() const { return static_cast<int>(sea_->plan().sea_cascades()); }
+    int vessels() const { return cascades() - sea_cascades(); }  // whose cascades are behind the sea's
 
     // A texture: rows of `width` texels, fields interleaved, zeros up to `channels`.
     struct Plane {
@@ -93,12 +98,17 @@ class SeaLayout {
     std::vector<glm::vec4> ellipse_texels() const;
     int ellipse_columns() const;
 
+    // A vessel's rows of the uniform block, and of the texture wake_table: see wakes.glsl.
+    static constexpr int kVesselRows = 2, kWakeTableRows = 2 + Frame<float>::kSlopeBlocks;
+    glm::ivec2 wake_size() const;
+    std::vector<glm::vec4> wake_texels(const Frame<float>& frame) const;
+
     // Of gusts.glsl.
     static constexpr int kGustRows =
         2 * GustsPlan::kWaves + (Gusts::kLevelTerms + Gusts::kKeptTerms + 1 + 3) / 4;
 
     // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each, in which the time counts
-    // only for gusts; and, where the sea has trains, their phases there [cycles], one float a train.
+    // only for gusts and vessels; and, where the sea has trains, their phases there [cycles], one float a train.
     std::vector<std::byte> tables(glm::dvec2 origin_m, double time_within_loop_s) const;
     std::vector<float> train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <span>
 
 #include "core/plan/masks.h"
@@ -84,6 +85,17 @@ std::vector<std::array<float, 4>> rows_of(const MasksPlan& plan, const SpectralM
     return rows;
 }
 
+// Those of wakes.glsl. A sea with vessels has no loop.
+std::vector<std::array<float, 4>> rows_of(const VesselPlan& vessel, glm::dvec2 origin_m, double time_s) {
+    constexpr double kBlocks = Frame<float>::kSlopeBlocks;
+    const glm::dvec2 middle_m = vessel.middle_m(time_s), from = origin_m - middle_m,
+                     blocks = middle_m * (kBlocks / vessel.size_m) - 0.5,
+                     within = blocks - glm::floor(blocks / kBlocks) * kBlocks;
+    return {{static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(0.5 * vessel.size_m),
+             static_cast<float>(kBlocks / vessel.size_m)},
+            {static_cast<float>(within.x), static_cast<float>(within.y), 0.0f, 0.0f}};
+}
+
 }  // namespace
 
 std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within_loop_s) const {
@@ -136,13 +148,61 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
     append(cascades);
     append(sea_->gusts() ? rows_of(*sea_->gusts(), origin_m, time_within_loop_s)
                          : std::vector<std::array<float, 4>>(SeaLayout::kGustRows));
-    if (masks() > 0) append(rows_of(*sea_->plan().masks, sea_->slick(), origin_m));
+    if (is_masked()) append(rows_of(*sea_->plan().masks, sea_->slick(), origin_m));
+    for (int v = 0; v < vessels(); ++v) {
+        const VesselPlan& vessel =
+            *sea_->plan().cascades[static_cast<std::size_t>(sea_cascades() + v)].vessel;
+        append(rows_of(vessel, origin_m, time_within_loop_s));
+    }
     return block;
 }
 
 std::vector<float> SeaLayout::train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const {
     const std::vector<double> cycles = phases_at(sea_->trains(), origin_m, time_within_loop_s);
     return {cycles.begin(), cycles.end()};
+}
+
+std::vector<glm::vec4> SeaLayout::wake_texels(const Frame<float>& frame) const {
+    constexpr int kBlocks = Frame<float>::kSlopeBlocks;
+    const glm::ivec2 size = wake_size();
+    std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y),
+                                  glm::vec4(0.0f));
+    const auto levels = static_cast<int>(pixels_.footprints_m.size());
+    for (int v = 0; v < vessels(); ++v) {
+        const auto texel = [&](int column, int row) -> glm::vec4& {
+            return texels[static_cast<std::size_t>(v * kWakeTableRows + row) *
+                              static_cast<std::size_t>(size.x) +
+                          static_cast<std::size_t>(column)];
+        };
+        const int cascade = sea_cascades() + v;
+        const glm::dvec2 middle_m = frame.tile_middle_m(cascade);
+        const WakeStrip& strip = frame.strips()[static_cast<std::size_t>(v)];
+        const auto box = [&](const WakeStrip::Box& of) {
+            return glm::vec4(glm::vec2(of.low_m - middle_m), glm::vec2(of.high_m - middle_m));
+        };
+        const WakeHull<double>& hull = strip.hull();
+        texel(0, 0) = glm::vec4(hull.length_m, hull.beam_m, hull.foam, hull.oldest_s);
+        texel(1, 0) = glm::vec4(static_cast<float>(strip.points().size()), strip.reach_m(), 0.0f, 0.0f);
+        texel(2, 0) = box(strip.whole());
+        for (std::size_t i = 0; i < strip.boxes().size(); ++i)
+            texel(3 + static_cast<int>(i), 0) = box(strip.boxes()[i]);
+        for (std::size_t i = 0; i < strip.points().size(); ++i) {
+            const WakeStrip::Point& point = strip.points()[i];
+            const int column = 2 * static_cast<int>(i);
+            texel(column, 1) = glm::vec4(glm::vec2(point.place_m - middle_m), point.way_m, point.age_s);
+            texel(column + 1, 1) = glm::vec4(point.strength, 0.0, 0.0, 0.0);
+        }
+        const CascadePlan& planned = sea_->plan().cascades[static_cast<std::size_t>(cascade)];
+        const std::vector<int>& pixel_levels = sea_->plan().queries[query_].pixel_levels;
+        for (int level = 0; level < levels; ++level)
+            for (int y = 0; y < kBlocks; ++y)
+                for (int x = 0; x < kBlocks; ++x)
+                    texel(kBlocks * level + x, 2 + y) = glm::vec4(
+                        glm::vec3(frame.hidden_slopes(cascade, planned.grid_of_level[pixel_levels[level]],
+                                                      (glm::dvec2(x, y) + 0.5) * (planned.size_m / kBlocks))),
+                        0.0f);
+    }
+    return texels;
 }
 
 }  // namespace pelagic

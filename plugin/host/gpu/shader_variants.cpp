@@ -90,34 +90,26 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
-                                                     "plugin/host/gpu/prelude.glsl",
-                                                     "core/plan/filter.inl",
-                                                     "core/plan/masks.inl",
-                                                     "core/plan/taps.inl",
-                                                     "core/plan/random_tiling.inl",
-                                                     "core/waves/spline.inl",
-                                                     "core/waves/whitecaps.inl",
-                                                     "core/waves/gusts.inl",
-                                                     "core/evaluate/surface.inl",
-                                                     "core/evaluate/rest_normal.inl",
-                                                     "core/waves/trains.inl",
-                                                     "core/evaluate/unresolved.inl",
-                                                     "core/surface/earth.inl",
-                                                     "core/surface/pixel_footprint.inl",
-                                                     "plugin/host/gpu/places.glsl",
-                                                     "plugin/host/gpu/cascades.glsl",
-                                                     "plugin/host/gpu/trains.glsl",
-                                                     "plugin/host/gpu/gusts.glsl",
-                                                     "plugin/host/gpu/masks.glsl",
-                                                     "plugin/host/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{
+        "core/lighting/special.glsl",  "plugin/host/gpu/prelude.glsl",
+        "core/plan/filter.inl",        "core/plan/masks.inl",
+        "core/plan/wake_strip.inl",    "core/plan/taps.inl",
+        "core/plan/random_tiling.inl", "core/waves/spline.inl",
+        "core/waves/whitecaps.inl",    "core/waves/gusts.inl",
+        "core/evaluate/surface.inl",   "core/evaluate/rest_normal.inl",
+        "core/waves/trains.inl",       "core/evaluate/unresolved.inl",
+        "core/surface/earth.inl",      "core/surface/pixel_footprint.inl",
+        "plugin/host/gpu/places.glsl", "plugin/host/gpu/cascades.glsl",
+        "plugin/host/gpu/wakes.glsl",  "plugin/host/gpu/trains.glsl",
+        "plugin/host/gpu/gusts.glsl",  "plugin/host/gpu/masks.glsl",
+        "plugin/host/gpu/query.glsl"};
     return files;
 }
 
 std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped) {
     return constant("kShaped", is_shaped) +
            "const float kCrestFootprint_m = " + std::to_string(kCrestFootprint_m) + ";\n" +
-           constant("kCascades", layout.cascades()) +
+           constant("kCascades", layout.cascades()) + constant("kVessels", layout.vessels()) +
            constant("kTileCascades", std::max(layout.cascades(), 1)) +
            constant("kCellLevels", static_cast<int>(layout.cells().footprints_m.size())) +
            constant("kPixelLevels", static_cast<int>(layout.pixels().footprints_m.size())) +
@@ -127,6 +119,10 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
            constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
            constant("kMasks", layout.masks()) + constant("kMaskRows", layout.mask_rows()) +
+           constant("kMasked", layout.is_masked()) + constant("kStrips", layout.has_strips()) +
+           constant("kVesselRows", SeaLayout::kVesselRows) +
+           constant("kWakeTableRows", SeaLayout::kWakeTableRows) +
+           constant("kWakeBox", WakeStrip::kBoxSteps) + constant("kSlopeBlocks", Frame<float>::kSlopeBlocks) +
            constant("kCalmCell", layout.calm_cell()) + constant("kCalmPixel", layout.calm_pixel()) +
            "const float kSlick_m = " + std::to_string(kSlick_m) + ";\n" +
            constant("kGustRows", SeaLayout::kGustRows) + constant("kGustWaves", GustsPlan::kWaves) +

@@ -23,7 +23,8 @@ enum Unit : int {
     kTrainCycles,
     kFoamNodes,
     kFoamPages,
-    kFoamLevels
+    kFoamLevels,
+    kWakeTable
 };
 
 }  // namespace
@@ -42,7 +43,7 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     if (block_bytes > static_cast<std::size_t>(largest_block))
         throw PreviewError("the sea's tables need " + std::to_string(block_bytes) +
                            " bytes of uniforms, and the driver has " + std::to_string(largest_block) +
-                           ": ask for fewer cascades");
+                           ": ask for fewer cascades or vessels");
     std::optional<GlTexture> train_table, train_cycles;
     GlTexture ellipse_table;
     edit_texture(ellipse_table);
@@ -79,6 +80,7 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         planes_.resize(layout->planes().size());
     }
     ellipse_table_ = std::move(ellipse_table);
+    if (layout->vessels() == 0) wake_table_.reset();
     train_table_ = std::move(train_table);
     train_cycles_ = std::move(train_cycles);
     if (has_room) return true;
@@ -95,6 +97,15 @@ void SeaTextures::make_room(std::size_t p) {
     const TexelFormat texels = float_texels(plane.channels);
     glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(texels.internal), plane.size.x, plane.size.y, 0,
                  texels.format, GL_FLOAT, nullptr);
+}
+
+void SeaTextures::upload_wakes(const std::vector<glm::vec4>& texels) {
+    if (texels.empty()) return;
+    if (!wake_table_) wake_table_.emplace();
+    edit_texture(*wake_table_);
+    texels_as_they_are();
+    const glm::ivec2 size = layout_->wake_size();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, texels.data());
 }
 
 void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
@@ -128,6 +139,7 @@ void SeaTextures::upload_once(Frame<float>&& frame, int query) {
     time_within_loop_s_ = frame.time_within_loop_s();
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    upload_wakes(layout_->wake_texels(frame));
     constexpr int kRows = 64;
     std::vector<float> rows;
     const auto upload = [&](const SeaLayout::Plane& plane, const SeaLayout::Tile& tile) {
@@ -164,6 +176,8 @@ void SeaTextures::upload(const PackedFrame& frame) {
     if (layout_ != frame.layout() && !take_sea(frame.layout()))
         for (std::size_t p = 0; p < planes_.size(); ++p) make_room(p);
     time_within_loop_s_ = frame.time_within_loop_s();
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    upload_wakes(frame.wakes());
     Staging& buffers = staging_[next_staging_];
     next_staging_ = (next_staging_ + 1) % staging_.size();
     for (std::size_t p = 0; p < frame.planes().size(); ++p) {
@@ -212,7 +226,7 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
           std::pair{"pixel_fields_2", kPixelFields2}, std::pair{"ellipse_table", kEllipseTable},
           std::pair{"train_table", kTrainTable}, std::pair{"train_cycles", kTrainCycles},
           std::pair{"foam_nodes", kFoamNodes}, std::pair{"foam_pages", kFoamPages},
-          std::pair{"foam_levels", kFoamLevels}})
+          std::pair{"foam_levels", kFoamLevels}, std::pair{"wake_table", kWakeTable}})
         glUniform1i(program.uniform(name), unit);
     set_uniforms(program, query_uniforms(*layout_));
     for (std::size_t p = 0; p < planes_.size(); ++p)
@@ -222,6 +236,7 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
         bind_texture(kTrainTable, *train_table_);
         bind_texture(kTrainCycles, *train_cycles_);
     }
+    if (wake_table_) bind_texture(kWakeTable, *wake_table_);
     if (foam_textures_) {
         bind_texture(kFoamNodes, foam_textures_->nodes);
         bind_texture(kFoamPages, foam_textures_->pages);

@@ -17,7 +17,7 @@ namespace pelagic {
 
 class SeaTextures {
   public:
-    static constexpr int kUnits = 9;  // bind() uses texture units 0 … kUnits − 1
+    static constexpr int kUnits = 10;  // bind() uses texture units 0 … kUnits − 1
 
     // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
@@ -35,11 +35,12 @@ class SeaTextures {
     // Returns whether its planes and foam have their textures already.
     bool take_sea(const std::shared_ptr<const SeaLayout>& layout);
     void make_room(std::size_t plane);
+    void upload_wakes(const std::vector<glm::vec4>& texels);
     void upload_tables(glm::dvec2 origin_m);
 
     std::shared_ptr<const SeaLayout> layout_;
     std::vector<GlTexture> planes_;
-    std::optional<GlTexture> ellipse_table_, train_table_, train_cycles_;
+    std::optional<GlTexture> ellipse_table_, train_table_, train_cycles_, wake_table_;
     struct FoamTextures {
         GlTexture nodes, pages, levels;
     };

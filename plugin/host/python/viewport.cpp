@@ -253,6 +253,10 @@ class GpuSea {
                                       {plane.size.y, plane.size.x, plane.channels});
         }
         if (made.empty()) return made;  // no time was set
+        if (const std::vector<glm::vec4>& wakes = tables->packed.wakes(); !wakes.empty()) {
+            const glm::ivec2 size = layout.wake_size();
+            made["wake_table"] = view_of(owner, &wakes[0].x, {size.y, size.x, 4});
+        }
         const int columns = layout.ellipse_columns();
         made["ellipse_table"] =
             view_of(owner, &tables->ellipse_table[0].x,
@@ -401,11 +405,13 @@ class GpuSea {
         return std::unique_lock(mutex_);
     }
 
-    // The clock only by the loop that it makes and by when heroes and keys stand: set() is given the sea's time.
+    // The clock only by the loop that it makes and by when heroes, vessels and keys stand: set() is given the sea's time.
     static std::string what_counts(const Scene& scene) {
         std::string moments;
         for (const HeroWave& hero : scene.waves.heroes)
             moments += number_text(scene.shot.time_s(hero.frame)) + ' ';
+        if (!scene.waves.vessels.empty())  // their keys are at frames
+            for (const double frame : {0.0, 1.0}) moments += number_text(scene.shot.time_s(frame)) + ' ';
         for (const int frame : frames_of_sea(scene)) moments += number_text(scene.shot.time_s(frame)) + ' ';
         return canonical(scene, kKeyParts) + number_text(scene.shot.sea_loop_s()) + moments +
                (has_bubbles(scene) ? " bubbles" : "");
@@ -569,7 +575,7 @@ void add_viewport(py::module_& module) {
         .def(
             "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
             "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "
-            "on time where there are gusts, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
+            "on time where there are gusts or vessels, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
         .def(
             "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"), py::arg("light"),

@@ -11,6 +11,8 @@
 
 #include "core/effects/sea_at_time.h"
 #include "core/evaluate/bounds.h"
+#include "core/scene/limits.h"
+#include "core/waves/folding.h"
 #include "tests/core/waves/samples.h"
 
 namespace pelagic {
@@ -126,8 +128,10 @@ TEST(Vessels, MakeKelvinsWaves) {
             all += said * said;
         }
         EXPECT_LT(std::sqrt(error / all), 0.008) << waves;
+        RecordProperty("error_at_" + std::to_string(static_cast<int>(waves)),
+                       std::to_string(std::sqrt(error / all)));
     }
-    for (const double waves : {10.0, 20.0}) {
+    for (const double waves : {10.0, 20.0, 28.0}) {  // 32 waves behind the tile ends
         const double said = loudest_angle(waves * wave_m, wave_m, 15.0, 21.0, [&](double x, double y) {
             return std::pow(far.at(x, y).imag(), 2);
         });
@@ -295,6 +299,76 @@ TEST(Vessels, LieWithinTheirBoundsAndFadeToTheTilesBorder) {
     }
 }
 
+std::string problems_of(const Scene& scene) {
+    std::string all;
+    for (const Problem& problem : validate(scene)) all += text_of(problem) + '\n';
+    return all;
+}
+
+// From deep water to as shallow as is allowed, slow and fast, slender and broad: what is allowed is finite and within its bounds, and
+// what isn't is refused.
+TEST(Vessels, AreBoundedOverAllDepthsAndSpeedsOrRefused) {
+    int allowed = 0, refused = 0;
+    double nearest = 0.0;  // to its bound
+    for (const double length_m : {2.0, 25.0})
+        for (const double beams : {0.1, 1.0})
+            for (const double depth_m : {4000.0, 2.0 * length_m, 0.3 * length_m, 0.08 * length_m})
+                for (const double froude : {0.12, 0.4, 1.0, 2.0})
+                    for (const double of_limit : {0.0, 0.97, 1.03}) {
+                        const double limit_mps = limits::kVesselDepthFroude * std::sqrt(kGravity * depth_m);
+                        const double speed_mps =
+                            of_limit > 0.0 ? of_limit * limit_mps : froude * std::sqrt(kGravity * length_m);
+                        // Each depth's limit once, where a hull could have such a speed.
+                        if (of_limit > 0.0 && (froude != 0.12 || depth_m > 2.0 * length_m)) continue;
+                        Vessel vessel = straight(speed_mps, length_m);
+                        vessel.beam_m = beams * length_m;
+                        vessel.draught_m = std::min(0.12 * length_m, 0.7 * depth_m);
+                        Scene scene = still_water(vessel);
+                        scene.sea.depth_m = depth_m;
+                        const std::string problems = problems_of(scene);
+                        const std::string what = std::to_string(length_m) + " m, " + std::to_string(beams) +
+                                                 ", over " + std::to_string(depth_m) + " m, " +
+                                                 std::to_string(speed_mps) + " m/s";
+                        if (speed_mps > limit_mps) {
+                            ++refused;
+                            ASSERT_NE(problems.find("key 2, 2401"), std::string::npos) << problems;
+                            ASSERT_NE(problems.find("near √(g d) waves pile up"), std::string::npos)
+                                << problems;
+                            continue;
+                        }
+                        ++allowed;
+                        ASSERT_EQ(problems, "") << what;
+                        const auto frame =
+                            frame_of<float>(scene, {unfiltered(products(Position, Normal, Velocity))}, 0.0);
+                        const VesselPlan& plan = *frame.sea().plan().cascades.back().vessel;
+                        const auto rest = random_points<float>(plan.size_m, 4000);
+                        const auto there = sample(
+                            frame, 0, rest, {.origin_m = plan.middle_m(0.0), .cell_m = {}, .pixel_m = {}});
+                        const DisplacementBounds bounds = FrameBounds<float>(frame, 0).everywhere();
+                        const Extent extent = frame.sea().plan().from->extent;
+                        double most_m = 0.0;
+                        for (std::size_t i = 0; i < rest.size(); ++i) {
+                            const glm::dvec3 at(there.vectors(Position)[i]);
+                            const glm::vec3 n = there.vectors(Normal)[i], v = there.vectors(Velocity)[i];
+                            ASSERT_TRUE(std::isfinite(at.x + at.y + at.z) && std::isfinite(n.x + n.y + n.z) &&
+                                        std::isfinite(v.x + v.y + v.z))
+                                << what;
+                            ASSERT_TRUE(bounds.z.lo <= at.z && at.z <= bounds.z.hi) << what;
+                            ASSERT_LE(glm::length(glm::dvec2(at) - glm::dvec2(rest[i])), extent.reach_m)
+                                << what;
+                            most_m = std::max(most_m, std::abs(at.z));
+                        }
+                        ASSERT_GT(most_m, 0.0) << what;
+                        ASSERT_LE(most_m, plan.highest_m(depth_m)) << what;
+                        ASSERT_LE(most_m, extent.height_m) << what;
+                        nearest = std::max(nearest, most_m / plan.highest_m(depth_m));
+                    }
+    EXPECT_GT(allowed, 30);
+    EXPECT_GT(refused, 12);
+    EXPECT_GT(nearest, 0.3);  // the bound isn't an idle one
+    RecordProperty("nearest", std::to_string(nearest));
+}
+
 TEST(Vessels, StayFiniteOnHardPaths) {
     const auto rest = random_points<float>(200.0, 2000);
     for (const char* path : {"1 0 0, 100 0 0", "1 5 5, 10 5 5, 20 9 5, 30 9 5", "1 0 0, 1000 8 0",
@@ -321,6 +395,64 @@ TEST(Vessels, StayFiniteOnHardPaths) {
     EXPECT_EQ(
         make_plan(still_water({.path = "1 0 0, 100 0 0"}), {unfiltered(products(Position))}).vessel_bytes(),
         0u);
+}
+
+// The tile's grid is coarser than a sea's: its spline shows the slopes all the same.
+TEST(Vessels, HaveTheNormalsOfAFinerGrid) {
+    for (const auto& [speed_mps, length_m] :
+         {std::pair(5.0, 25.0), std::pair(3.0, 25.0), std::pair(8.0, 6.0)}) {
+        Scene scene = still_water(straight(speed_mps, length_m));
+        const auto rest = random_points<float>(10.0 * length_m, 4000);
+        const auto normals = [&](QualityLevel level) {
+            scene.quality.level = level;
+            const auto frame = frame_of<float>(scene, {unfiltered(products(Position, Normal))}, 0.0);
+            return sample(frame, 0, rest, {.origin_m = {-4.0 * length_m, 0.0}, .cell_m = {}, .pixel_m = {}})
+                .vectors(Normal);
+        };
+        const auto final = normals(QualityLevel::Final), fine = normals(QualityLevel::Reference);
+        double error = 0.0, all = 0.0;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            error += std::pow(glm::length(final[i] - fine[i]), 2);
+            all += std::pow(fine[i].x, 2) + std::pow(fine[i].y, 2);
+        }
+        EXPECT_LT(std::sqrt(error / all), 0.01) << speed_mps;
+        std::printf("    %.0f m/s, %.0f m: %.2e of the slopes, rms\n", speed_mps, length_m,
+                    std::sqrt(error / all));
+    }
+}
+
+// A lattice's points read few rows of the tile, and no other ones are transformed: what they show is the same, to the bit.
+TEST(Vessels, TransformTheRowsThatALatticeReads) {
+    const ProductSet wanted = products(Position, Normal, Velocity);
+    const Scene scene = still_water(straight(5.0));
+    Query query = unfiltered(wanted);
+    const auto whole = frame_of<float>(scene, {query}, 0.0);
+    const CascadePlan& all = whole.sea().plan().cascades.back();
+    for (const glm::dvec2 ends_m : {glm::dvec2(-40.0, 43.0), glm::dvec2(0.0, 60.0),
+                                    glm::dvec2(-1234.5, -1234.0), glm::dvec2(10.0, 10.0 + all.size_m)}) {
+        query.lattice = Lattice{.first_m = ends_m.x, .spacing_m = 0.777, .last_m = ends_m.y};
+        auto part = frame_of<float>(scene, {query}, 0.0);
+        const Plan& plan = part.sea().plan();
+        const Grid& grid = plan.cascades.back().grids.front();
+        ASSERT_EQ(grid.resolution, all.grids.front().resolution);
+        const double size_m = ends_m.y - ends_m.x;
+        if (size_m < all.size_m)
+            EXPECT_LT(grid.rows, grid.resolution * size_m / all.size_m + 32.0);
+        else
+            EXPECT_EQ(grid.rows, grid.resolution);
+        EXPECT_EQ(part.executed_lines(), plan.lines_per_frame());
+        EXPECT_EQ(part.executed_transforms(), plan.transforms_per_frame());
+        std::vector<glm::vec2> rest;
+        for (const glm::dvec2& at : random_points<double>(size_m, 2000))
+            rest.emplace_back(at + 0.5 * (ends_m.x + ends_m.y));
+        rest.emplace_back(glm::dvec2(ends_m.x));
+        rest.emplace_back(glm::dvec2(ends_m.y));
+        const auto expected = sample(whole, 0, rest), found = sample(part, 0, rest);
+        for (const Product product : {Position, Normal, Velocity})
+            EXPECT_EQ(expected.vectors(VectorProduct::checked(product)),
+                      found.vectors(VectorProduct::checked(product)))
+                << ends_m.x;
+    }
 }
 
 // Of the squares of the slopes what is shown and what is hidden: over the tile the same sum at each footprint.
@@ -409,6 +541,25 @@ TEST(Vessels, AreRefusedWhereTheyCannotBe) {
     EXPECT_NE(of_path("1 0 0, 2 1").find("is no list of keys"), std::string::npos);
     EXPECT_NE(of_path("1 0 0, 1 5 0").find("does not come after"), std::string::npos);
     EXPECT_NE(of_path("1 0 0, 2 50 0").find("too short"), std::string::npos);
+    // Which key it is.
+    EXPECT_NE(of_path("1 0 0, 9 2 0, 10 nan 0").find("key 3 isn't three numbers"), std::string::npos);
+    EXPECT_NE(of_path("1 0 0, 9 2 0, 5 4 0").find("key 3, 5 4 0"), std::string::npos);
+    // In shallow water a smooth path is judged between its keys as well.
+    Scene shallow = still_water({.path = "1 0 0, 25 0.5 0, 49 4.5 0, 73 5 0", .draught_m = 0.5});
+    shallow.sea.depth_m = 2.6;
+    EXPECT_NE(first(shallow).find("interpolation = \"smooth\": goes up to"), std::string::npos)
+        << first(shallow);
+    shallow.waves.vessels[0].interpolation = CameraInterpolation::Linear;
+    EXPECT_EQ(first(shallow), "");
+    // Too slow: no wake, and a note says so.
+    Scene slow = still_water({.path = "1 0 0, 241 3 0"});
+    EXPECT_EQ(first(slow), "");
+    const auto notes = sea_warnings(*prepare(slow));
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_NE(notes[0].find("waves.vessels[0].path goes at up to 0.3 m/s, too slow for a wake: a hull of"),
+              std::string::npos)
+        << notes[0];
+    EXPECT_TRUE(sea_warnings(*prepare(still_water({}))).empty());
     EXPECT_NE(of_path("1 0 0, 2 2e9 0").find("no place on the sea"), std::string::npos);
     Scene scene = still_water({});
     scene.shot.time_scale = 0.0;

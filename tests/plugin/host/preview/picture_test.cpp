@@ -254,6 +254,31 @@ TEST(PreviewsPicture, IsTheCpusOfLivingFoamFromAPlane) {
                   {320, 180});
 }
 
+// examples/trawler.toml, smaller: the wake of a turn, with its strip of foam and calm.
+TEST(PreviewsPicture, IsTheCpusOfAWake) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 4.0;
+    scene.sea.wind_direction_deg = 200.0;
+    scene.sea.fetch_m = 8e3;
+    scene.waves.vessels = {{.path = "-1600 -215 -225, -900 -95 -175, -400 -25 -120, 1 8 -42, 200 8 0",
+                            .length_m = 26.0,
+                            .beam_m = 7.5,
+                            .draught_m = 3.0}};
+    scene.camera.position_m = {-105.0, -285.0, 80.0};
+    scene.camera.look_at_m = {-14.0, -78.0, 0.0};
+    scene.camera.fov_deg = 46.0;
+    scene.light.sun_elevation_deg = 13.0;
+    scene.light.sun_azimuth_deg = 122.0;
+    scene.quality.level = QualityLevel::Preview;
+    const auto [cpu, gpu] = compare_frame("of a wake", scene, {320, 180});
+    EXPECT_NEAR(mean_foam(gpu) / mean_foam(cpu), 1.0, 1e-3);
+    scene.waves.vessels.clear();
+    scene.camera.resolution = {320, 180};
+    const OffscreenPicture bare = render_offscreen(plan_offscreen(scene, 5), make_sky(scene));
+    EXPECT_GT(compare(gpu, bare.picture).last_percent, 0.1);
+    EXPECT_GT(mean_foam(gpu), 2.0 * mean_foam(bare.picture));
+}
+
 Scene changing_scene() {
     Scene scene = living_scene({0.0, -60.0, 6.0}, {0.0, 0.0, 0.0});
     scene.keyed = {{.path = "sea.wind_speed_mps", .keys = {.keys = {{1, 7.0}, {9, 16.0}}}}};

@@ -133,6 +133,30 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
         ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), vec3(p.w, given(1).zw));\n"
             "answer = vec4(a.slope_variance, a.level);");
 
+    if (!frame.strips().empty()) {
+        const auto strips = ask(
+            "vec4 p = given(0); AllFoam a = with_strips(AllFoam(0.1, 0.05, 3.0, -1.0), vec2(p.x, p.y), p.w);\n"
+            "answer = vec4(a.coverage, a.age_s, kMasked ? masks_at(vec2(p.x, p.y)).ripples : 1.0, a.breaking);");
+        double most_white = 0.0, most_calm = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            double coverage = 0.1, age_s = 3.0, ripples = 1.0;
+            for (const WakeStrip& strip : frame.strips()) {
+                const glm::dvec2 place_m = at.origin_m + glm::dvec2(asked.rest_m[i]);
+                const WakeWater<double> water = strip.at(place_m, static_cast<double>(asked.pixel_m[i]));
+                coverage = with_wake_foam(coverage, water.foam);
+                age_s = with_wake_age(age_s, water);
+                ripples *= 1.0 - strip.at(place_m, kSlick_m).calm;
+            }
+            most_white = std::max(most_white, coverage);
+            most_calm = std::max(most_calm, 1.0 - ripples);
+            ASSERT_NEAR(static_cast<double>(strips[i].x), coverage, 1e-4) << i;
+            ASSERT_NEAR(static_cast<double>(strips[i].y), age_s, 1e-3 * age_s) << i;
+            ASSERT_NEAR(static_cast<double>(strips[i].z), ripples, 1e-4) << i;
+            ASSERT_EQ(strips[i].w, 0.05f);
+        }
+        EXPECT_GT(most_white, 0.5);
+        EXPECT_GT(most_calm, 0.5);
+    }
     const auto hs_m = static_cast<float>(4.0 * std::sqrt(sea->total().m0));
     const auto mss = static_cast<float>(sea->total().xx + sea->total().yy);
     std::vector<float> normal_error, coverage_error;
@@ -263,6 +287,32 @@ TEST(QueryOnTheGpu, OfCalmAndRoughPlacesIsEvaluates) {
         scene.waves.masks = {masks[0], masks[1]};
         compare(scene, picture_query(), at, 3000);
     }
+}
+// One turns, one crosses its wake: in copies beside a mask, without choppiness, and far away where longer waves break.
+TEST(QueryOnTheGpu, OfWakesIsEvaluates) {
+    const std::vector<Vessel> vessels{
+        {.path = "-400 -90 -30, 1 -20 0, 180 35 20, 360 20 75",
+         .length_m = 14.0,
+         .beam_m = 4.0,
+         .draught_m = 1.5},
+        {.path = "1 60 -80, 300 -10 20", .length_m = 9.0, .beam_m = 3.0, .draught_m = 1.0, .foam = 0.8}};
+    Query fine = picture_query();
+    fine.cell_m = {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+    fine.pixel_m = fine.cell_m;
+    const Compared at{.unresolved_mss = 6e-6f};
+    Scene scene = copied(WaveModel::Fft);
+    scene.waves.vessels = vessels;
+    scene.waves.masks = {{.north_m = 40.0, .edge_m = 70.0, .waves = 0.7}};
+    compare(scene, fine, at, 3000);
+    scene = scene_of_model(WaveModel::Fft);
+    scene.waves.vessels = vessels;
+    scene.waves.vessels.pop_back();
+    scene.waves.choppiness = 0.0;
+    compare(scene, picture_query(), at, 3000);
+    scene.waves.choppiness = 1.0;
+    scene.effects.breaking_from_m = 7.0;
+    scene.waves.vessels[0].path = "-400 999910 -1000030, 1 999980 -1000000, 180 1000015 -999990";
+    compare(scene, picture_query(), {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .unresolved_mss = 6e-6f}, 3000);
 }
 TEST(QueryOnTheGpu, OfFourTapsAndTwoMomentsIsEvaluates) {
     Scene scene = scene_of_model(WaveModel::Fft);

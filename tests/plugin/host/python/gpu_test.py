@@ -153,6 +153,25 @@ class Seas(unittest.TestCase):
         scene.shot.time_scale = 1.0
         self.assertFalse(looping.serves(scene))
 
+    def test_wakes_come_with_the_frame_and_go_by_the_clock(self):
+        path = "1 -20 0, 97 20 4"
+        scene = small_scene(vessels=[{"path": path}, {"path": "1 0 -60, 49 0 -40"}])
+        sea = pelagic.GpuSea(scene, finest_m=0.5)
+        sea.set(1.0)
+        wakes = sea.textures["wake_table"].copy()
+        self.assertEqual(wakes.shape[2], 4)
+        self.assertEqual(wakes.shape[0] % 2, 0)
+        self.assertTrue(np.isfinite(wakes).all() and wakes[2:].any())
+        here, there = sea.at_origin((0.0, 0.0))[0], sea.at_origin((30.0, 0.0))[0]
+        sea.set(2.0)
+        self.assertFalse(np.array_equal(sea.textures["wake_table"], wakes))
+        self.assertFalse(np.array_equal(sea.at_origin((0.0, 0.0))[0], here))
+        self.assertFalse(np.array_equal(here, there))
+        self.assertTrue(sea.serves(scene))
+        scene.shot.fps = 25.0
+        self.assertFalse(sea.serves(scene))
+        self.assertNotIn("wake_table", self.sea.textures)
+
     def test_how_foam_looks_needs_no_other_sea_and_no_other_sky(self):
         scene = small_scene()
         sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)

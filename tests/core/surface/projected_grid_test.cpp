@@ -15,7 +15,7 @@
 namespace pelagic {
 namespace {
 
-struct Shot {
+struct Pose {
     double height_m = 4.0, pitch_deg = 0.0, azimuth_deg = 0.0, fov_deg = 50.0;
     glm::ivec2 resolution{1280, 720};
     glm::dvec2 at_m{0.0};
@@ -23,7 +23,7 @@ struct Shot {
     glm::dvec2 shift{0.0};
 };
 
-View view_of(const Shot& shot) {
+View view_of(const Pose& shot) {
     Camera camera;
     const double pitch = shot.pitch_deg * kPi / 180.0, azimuth = shot.azimuth_deg * kPi / 180.0;
     camera.position_m = glm::dvec3(shot.at_m, shot.height_m);
@@ -73,8 +73,8 @@ UnresolvedHeight steep_waves(double deviation_m) {
     return unresolved;
 }
 
-std::vector<Shot> hard_shots() {
-    std::vector<Shot> shots;
+std::vector<Pose> hard_shots() {
+    std::vector<Pose> shots;
     for (const double height_m : {-30.0, -0.5, 0.0, 1e-9, 0.5, 2.0, 4.0, 60.0, 20e3, 1e5})
         for (const double pitch_deg : {-90.0, -89.999, -70.0, -30.0, -8.0, 0.0, 8.0, 45.0, 90.0})
             shots.push_back({.height_m = height_m, .pitch_deg = pitch_deg, .azimuth_deg = 33.0});
@@ -104,7 +104,7 @@ std::vector<Shot> hard_shots() {
     return shots;
 }
 
-std::string text_of(const Shot& shot) {
+std::string text_of(const Pose& shot) {
     return "height " + std::to_string(shot.height_m) + " pitch " + std::to_string(shot.pitch_deg) + " fov " +
            std::to_string(shot.fov_deg) + " " + std::to_string(shot.resolution.x) + " × " +
            std::to_string(shot.resolution.y) + " roll " + std::to_string(shot.roll_deg) + " shift " +
@@ -116,7 +116,7 @@ std::string text_of(const Shot& shot) {
 TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    std::vector<Shot> shots = hard_shots();
+    std::vector<Pose> shots = hard_shots();
     for (int i = 0; i < 60; ++i)
         shots.push_back({.height_m = std::pow(10.0, -1.0 + 5.0 * uniform(random)),
                          .pitch_deg = -90.0 + 150.0 * uniform(random),
@@ -125,7 +125,7 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
                          .resolution = {200 + static_cast<int>(800 * uniform(random)), 400},
                          .roll_deg = i % 2 == 0 ? 0.0 : 360.0 * uniform(random)});
     int in_view = 0;
-    for (const Shot& shot : shots) {
+    for (const Pose& shot : shots) {
         const View view = view_of(shot);
         const double height_m = uniform(random) < 0.2 ? 0.0 : 4.0 * uniform(random);
         const double reach_m = uniform(random) < 0.2 ? 0.0 : 4.0 * uniform(random);
@@ -154,7 +154,7 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
 }
 
 TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {
-    for (const Shot& shot : hard_shots()) {
+    for (const Pose& shot : hard_shots()) {
         SCOPED_TRACE(text_of(shot));
         for (const double height_m : {0.0, 3.0}) {
             const ProjectedGridOptions options{.bounds = {.height_m = height_m, .reach_m = 2.0},
@@ -191,7 +191,7 @@ TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
                 for (const double wave_m : {0.0, 0.3, 10.0})
                     for (const double cell_px : {1.0, 8.0})
                         for (const glm::ivec2 resolution : {glm::ivec2{32, 18}, glm::ivec2{20, 400}}) {
-                            const Shot shot{.height_m = height_m,
+                            const Pose shot{.height_m = height_m,
                                             .pitch_deg = pitch_deg,
                                             .fov_deg = fov_deg,
                                             .resolution = resolution};
@@ -262,7 +262,7 @@ TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
     for (const double height_m : {0.5, 4.0, 200.0, 20e3})
         for (const double pitch_deg : {-90.0, -60.0, -30.0, -5.0, 0.0, 10.0})
             for (const double fov_deg : {1.0, 5.0, 20.0, 50.0, 90.0}) {
-                const Shot shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
+                const Pose shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
                 const View view = view_of(shot);
                 // Waves much lower than the camera, and waves as high as the lowest camera.
                 const ProjectedGrid calm = projected_grid(
@@ -286,7 +286,7 @@ TEST(ProjectedGrid, CellsHideNoHeightsThatAreSeen) {
         for (const double pitch_deg : {-30.0, -5.0, 0.0})
             for (const double fov_deg : {35.0, 50.0, 90.0})
                 for (const double cell_px : {1.0, 8.0, 24.0}) {
-                    const Shot shot{.height_m = height_m,
+                    const Pose shot{.height_m = height_m,
                                     .pitch_deg = pitch_deg,
                                     .fov_deg = fov_deg,
                                     .resolution = {320, 180}};
@@ -316,9 +316,9 @@ TEST(ProjectedGrid, CellsHideNoHeightsThatAreSeen) {
 
 // What waves ask for costs nothing where cells are as small without them, nor in a calm.
 TEST(ProjectedGrid, HeightsCostRowsOnlyWhereTheyAreSeen) {
-    for (const Shot& shot :
-         {Shot{.height_m = 20e3, .pitch_deg = -10.0}, Shot{.height_m = 60.0, .pitch_deg = -80.0},
-          Shot{.height_m = 30.0, .pitch_deg = -90.0}}) {
+    for (const Pose& shot :
+         {Pose{.height_m = 20e3, .pitch_deg = -10.0}, Pose{.height_m = 60.0, .pitch_deg = -80.0},
+          Pose{.height_m = 30.0, .pitch_deg = -90.0}}) {
         ProjectedGridOptions options{.bounds = {.height_m = 3.0, .reach_m = 3.0},
                                      .significant_height_m = 2.4};
         const ProjectedGridSize without = projected_grid_needs(view_of(shot), options).size;
@@ -366,7 +366,7 @@ TEST(ProjectedGrid, EndsWithinATwentiethOfAPixelOfTheHorizon) {
     for (const double height_m : {0.5, 4.0, 20e3, 1e5})
         for (const double pitch_deg : {-10.0, 0.0, 10.0})
             for (const double fov_deg : {20.0, 90.0}) {
-                const Shot shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
+                const Pose shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
                 const View view = view_of(shot);
                 const ProjectedGrid grid =
                     projected_grid(view, {.bounds = {.height_m = 1.0, .reach_m = 1.0}});

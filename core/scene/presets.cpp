@@ -37,21 +37,21 @@ struct Force {
 };
 
 // What the sea looks like: after the same table's descriptions, shortened. Each is whiter than the one before, and none of them by the sun's
-// glitter alone: foam is lit from the side or from behind the eye, and a hurricane's spray against the light. At forces 4 and 5 the camera stands before waves that break, at 2 before the sun is up high. From force 6 on the camera is low, as on a small boat in a trough,
-// where the next sea stands over the horizon: from the seas' own height they are low hills. The places are those of the default seed, found by a
-// search: the water stays below the camera for ten seconds, and a crest is ahead, on the default patch,
-// which a bake of the preset shows.
+// glitter alone: foam is lit from the side or from behind the eye, and a hurricane's spray against the light. Force 2 is silk at dawn. From 4 to 8
+// the camera stands before waves that break, on a boat's deck; from 9 on it is low, as in a trough, where the next sea stands over the horizon: from
+// the seas' own height they are low hills. The places are those of the default seed, found by a search: the water stays below the camera for ten
+// seconds, and breaking water or a crest is ahead, on the default patch, which a bake of the preset shows.
 // clang-format off
 constexpr std::array<Force, 13> kForces{{
     {"Calm", 0.0, 100.0, 1.0, {5.0, 75.0, 2.4}, {2.2, 2.6, 45.0}, "like a mirror"},
     {"Light air", 0.9, 100.0, 1.0, {9.0, 112.0, 2.2}, {1.8, 1.2, 45.0}, "ripples without crests"},
     {"Light breeze", 2.4, 200.0, 1.0, {7.0, 25.0, 2.0}, {1.1, 0.9, 38.0}, "small wavelets, glassy crests that don't break"},
     {"Gentle breeze", 4.4, 300.0, 1.0, {16.0, 90.0, 2.0}, {3.0, 1.0, 50.0}, "large wavelets, the first scattered whitecaps"},
-    {"Moderate breeze", 6.7, 70.0, 1.0, {52.0, 330.0, 2.0}, {2.0, 0.6, 44.0, 63.0, -90.0, 270.0}, "small waves that grow longer, fairly frequent whitecaps; 1 m"},
-    {"Fresh breeze", 9.3, 150.0, 1.0, {24.0, 205.0, 2.0}, {2.4, 1.2, 42.0, -60.0, 60.0, 270.0}, "moderate, long waves, many whitecaps; 2 m"},
-    {"Strong breeze", 12.3, 180.0, 1.2, {34.0, 290.0, 2.0}, {0.9, 1.8, 34.0, -5.0, -30.0, 330.0}, "large waves, white crests everywhere; 3 m"},
-    {"Near gale", 15.5, 190.0, 1.4, {40.0, 100.0, 2.2}, {1.6, 2.0, 34.0, 15.0, 34.0, 280.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
-    {"Gale", 18.9, 240.0, 1.7, {28.0, 200.0, 2.4}, {0.9, 2.2, 32.0, -27.0, -45.0, 40.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
+    {"Moderate breeze", 6.7, 70.0, 1.0, {52.0, 330.0, 2.0}, {2.0, 0.9, 44.0, 63.0, -90.0, 280.0}, "small waves that grow longer, fairly frequent whitecaps; 1 m"},
+    {"Fresh breeze", 9.3, 150.0, 1.0, {24.0, 205.0, 2.0}, {2.4, 1.6, 42.0, -60.0, 60.0, 280.0}, "moderate, long waves, many whitecaps; 2 m"},
+    {"Strong breeze", 12.3, 180.0, 1.2, {30.0, 150.0, 2.0}, {1.5, 1.8, 28.0, -90.0, 90.0, 286.0}, "large waves, white crests everywhere; 3 m"},
+    {"Near gale", 15.5, 190.0, 1.4, {30.0, 350.0, 2.2}, {1.8, 2.2, 30.0, 30.0, 36.0, 116.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
+    {"Gale", 18.9, 240.0, 1.7, {28.0, 30.0, 2.4}, {2.3, 3.0, 34.0, 60.0, 66.0, 164.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
     {"Strong gale", 22.6, 270.0, 2.0, {30.0, 200.0, 2.6}, {0.5, 3.0, 32.0, -2.0, -63.0, 340.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
     {"Storm", 26.4, 320.0, 3.2, {24.0, 300.0, 3.0}, {3.3, 4.4, 34.0, 50.0, 58.0, 220.0, -0.3}, "very high waves with overhanging crests, the sea looks white; 9 m"},
     {"Violent storm", 30.5, 385.0, 4.5, {26.0, 300.0, 3.0}, {3.9, 5.0, 34.0, 77.0, 69.0, 200.0, -0.2}, "exceptionally high waves, long white patches everywhere; 11.5 m"},

@@ -22,7 +22,7 @@ double mean_breaking(const Sea<T>& sea);
 //
 // Spray of some age was over a crest that breaks: the wind has carried it on, the crest has followed. So a place has what breaks now so far
 // upwind as wind and crest have come apart, of some ages together: ribbons that begin at crests. The older is the higher: ribbons lean
-// downwind. They fall slowly: where the sea falls off in front of a crest they stay up. A noise of two octaves tears them, at each height its own: drawn out along the wind, moving with it; it also shifts from where spray
+// downwind. They fall slowly: where the sea falls off in front of a crest they stay up. A noise of three octaves tears them, at each height its own: drawn out along the wind, moving with it; it also shifts from where spray
 // came. It is lognormal, and its mean is exactly 1 at every place; where a cell doesn't resolve it it is 1. All of that is known
 // from place and time.
 //

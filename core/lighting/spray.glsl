@@ -15,7 +15,7 @@
 // round; what it loses comes from all sides.
 //
 // Ribbons are spindrift: threads that a noise in space cuts out of what the map says, which has no detail of less than some metres. A
-// generation of the noise is born unsheared, ten times as long as it is high, and the wind shears it, by u(z) t over what is old, as long as
+// generation of the noise is born unsheared, 24 times as long as it is high, and the wind shears it, by u(z) t over what is old, as long as
 // it lives; two generations at a time take turns. Where spray is as thick as over what breaks whole most of it stays as it is; what is
 // thinner is that much fewer threads. So edges fall apart, and don't fade. The mean is the map's everywhere.
 
@@ -244,7 +244,7 @@ float spray_mean_of(SprayPlace a, SprayPlace b, vec2 from_m, vec2 to_m, SprayVie
         float here = torn_at(mix(a.torn, b.torn, part), steps, mix(a.lift, b.lift, part));
         if (!(here > 0.0f)) continue;
         all += here;
-        threads += here * spray_thread(place_m, steps * spray.step_m, here, spray.threads.pixel_rad * length(place_m), spray.threads);
+        threads += here * spray_thread(place_m, steps * spray.step_m, here, spray.threads.pixel_rad * length(vec3(place_m, spray.eye_m)), spray.threads);
     }
     return mean + (all > 0.0f ? ribbons * (threads / all) : ribbons);
 }

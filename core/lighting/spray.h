@@ -40,7 +40,7 @@ struct Spray {
         low_beside{0.0f}, low_behind{0.0f};
     SprayThreads threads{};  // none: ribbons are as smooth as the map
     // columns × rows, columns fastest: the surface's height in the axes of the eye's nadir [m], and the extinctions there [1/m]: at the surface, at 1 and
-    // at 2.5 steps. Where it is torn, once more as many: how far up ribbons stay there, in steps (SprayRibbons), and nothing; or none, and they don't.
+    // at 2.5 steps. Where it is torn, once more as many: how far up ribbons stay there, in steps (SprayRibbons), and nothing.
     std::vector<glm::vec4> texels{};
     bool empty() const { return texels.empty(); }
 };
@@ -57,7 +57,7 @@ struct SpraySeen {
 // itself. Finite.
 SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m, bool on_sea);
 
-// What ribbons have at a place over what the map says, 1 on average: place_m from the eye's nadir, height_m above the sea, the map's extinction there [1/m],
+// What ribbons have at a place over what the map says, 1 on average: place_m from the eye's nadir, height_m above where ribbons begin, the map's extinction there [1/m],
 // and what a pixel sees [m].
 float spray_thread(const Spray& spray, glm::vec2 place_m, float height_m, float extinction_per_m,
                    float pixel_m);

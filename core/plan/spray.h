@@ -31,7 +31,7 @@ struct SprayLayer {
     double optical_thickness() const { return extinction_per_m * scale_m; }
 };
 
-// Of three heights above the local surface, linear between them, and none at a fourth. Where the surface falls off behind the crest that they
+// Of three heights above the local surface, linear between them, and none at a fourth. Where the surface falls off in front of the crest that they
 // come from ribbons stay up, by a lift: they begin so much above it, and fade below that over half of the lift. Straight up they are as thick as without.
 struct SprayRibbons {
     static constexpr std::array kHeights{0.0, 1.0, 2.5, 5.0};  // in steps

@@ -33,9 +33,9 @@ std::size_t VesselPlan::bytes(int radius) {
     return (kBlocks * 4 + kTables) * lattice_modes(radius) * sizeof(float);
 }
 
-// Two of the tile's shortest waves long.
+// Its waves are as long as the tile's shortest.
 double slowest_mps(const Vessel& vessel) {
-    return std::sqrt(kGravity * 2.0 * kLeastLengths * vessel.length_m / (2.0 * VesselPlan::kRadius) / kTwoPi);
+    return std::sqrt(kGravity * kLeastLengths * vessel.length_m / VesselPlan::kRadius / kTwoPi);
 }
 
 std::vector<VesselPlan> plan_vessels(const Scene& scene) {

@@ -40,6 +40,10 @@ WakeStrip::WakeStrip(const VesselPlan& plan, double time_s)
     }
     hull_.oldest_s = std::max(points_.back().age_s, step_s);
     reach_m_ = 2.0 * wake_half_width(points_.back().way_m, plan.length_m, plan.beam_m) + plan.beam_m;
+    // The bow's bands open on and on: as far as they are seen, until 2 % of what broke is left.
+    constexpr double kSeen_s = 4.0 * kWakeWhite_s;
+    const double seen_m = std::min(points_.back().way_m, plan.length_m + kSeen_s * plan.speed_mps);
+    reach_m_ = std::max(reach_m_, wake_bow_reach(seen_m, plan.beam_m));
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
         const glm::dvec2 a = points_[i].place_m, b = points_[i + 1].place_m;
         const glm::dvec2 low_m = glm::min(a, b) - reach_m_, high_m = glm::max(a, b) + reach_m_;
@@ -81,7 +85,7 @@ WakeWater<double> WakeStrip::at(glm::dvec2 place_m, double footprint_m) const {
     const Point &a = points_[of], &b = points_[of + 1];
     const WakePlace<double> at{std::sqrt(nearest), std::lerp(a.way_m, b.way_m, share),
                                std::lerp(a.age_s, b.age_s, share), std::lerp(a.strength, b.strength, share)};
-    return wake_water(hull_, at, footprint_m);
+    return wake_water(hull_, at, std::min(footprint_m, kWakeWidest * reach_m_));
 }
 
 }  // namespace pelagic

@@ -6,6 +6,7 @@ inline constexpr double kWakeWhite = 0.75;     // and its coverage
 inline constexpr double kWakeBeaten_s = 90.0;  // what the propeller beats in
 inline constexpr double kWakeBeaten = 0.6;
 inline constexpr double kWakeDamped = 0.7;  // of short waves' amplitude, by new turbulence
+inline constexpr double kWakeWidest = 1.5;
 
 // A hull, and the age at which its wake ends.
 template <class T>
@@ -42,13 +43,19 @@ inline T wake_band(T off_m, T middle_m, T half_m, T footprint_m) {
     return half_m / wide_m * wake_rise(T(1.5) * (T(1) - magnitude(off_m - middle_m) / (T(1.3) * wide_m)));
 }
 
-// Through a pixel of this footprint [m].
+// How far the bow's bands lie off the path at most, so far along it from the bow: their middle, and 1.3 of half their width.
+template <class T>
+inline T wake_bow_reach(T way_m, T beam_m) {
+    return T(0.5 + 1.3 * 0.08) * beam_m + T(0.1 + 1.3 * 0.04) * way_m;
+}
+
+// Through a pixel of this footprint [m], at most kWakeWidest of the strip's reach: a band that is spread over more would be cut off there.
 template <class T>
 inline WakeWater<T> wake_water(WakeHull<T> hull, WakePlace<T> at, T footprint_m) {
     const T length_m = hull.length_m, beam_m = hull.beam_m, way_m = at.way_m;
     const T behind_m = way_m - length_m, half_m = wake_half_width(behind_m, length_m, beam_m);
-    const T left = wake_rise(behind_m / beam_m + T(0.5)) * at.strength *
-                   wake_rise(T(4) * (T(1) - at.age_s / hull.oldest_s));
+    const T made = at.strength * wake_rise(T(4) * (T(1) - at.age_s / hull.oldest_s));
+    const T left = wake_rise(behind_m / beam_m + T(0.5)) * made;
     const T stern = left * wake_band(at.off_m, T(0), half_m, footprint_m) *
                     (T(kWakeWhite) * exponential(-at.age_s / T(kWakeWhite_s)) +
                      T(kWakeBeaten) * exponential(-at.age_s / T(kWakeBeaten_s)));
@@ -56,7 +63,7 @@ inline WakeWater<T> wake_water(WakeHull<T> hull, WakePlace<T> at, T footprint_m)
     const T ahead = maximum(T(1) - T(2) * way_m / length_m, T(0));
     const T opened_m = T(0.5) * beam_m * (T(1) - ahead * ahead) + T(0.1) * way_m;
     const T bow_age_s = at.age_s + maximum(T(0.5) * length_m - way_m, T(0)) / length_m;
-    const T bow = T(kWakeWhite) * exponential(-bow_age_s / T(kWakeWhite_s)) * at.strength *
+    const T bow = T(kWakeWhite) * exponential(-bow_age_s / T(kWakeWhite_s)) * made *
                   wake_rise(way_m / (T(0.15) * length_m)) *
                   wake_band(at.off_m, opened_m, T(0.08) * beam_m + T(0.04) * way_m, footprint_m);
     return WakeWater<T>(hull.foam * minimum(T(1) - (T(1) - minimum(stern, T(1))) * (T(1) - bow), T(1)),

@@ -29,8 +29,9 @@ class WindProfile {
         return friction_mps_ / kKarman * std::log(height_m / roughness);
     }
 
-  private:
     static constexpr double kKarman = 0.4;
+
+  private:
     static constexpr double kCharnock = 0.0144;  // α over the open sea, as Garratt 1977 found it
     static constexpr double kReference_m = 10.0;
 

@@ -216,7 +216,6 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     return warnings;
 }
 
-// A sea that is cut off within half a wave shows it.
 std::vector<std::string> vessel_warning(const PreparedScene& prepared) {
     std::vector<std::string> warnings;
     const Scene& scene = prepared.scene;
@@ -232,6 +231,7 @@ std::vector<std::string> vessel_warning(const PreparedScene& prepared) {
     return warnings;
 }
 
+// A sea that is cut off within half a wave shows it.
 std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     const std::optional<MasksPlan> plan = plan_masks(scene);
@@ -287,12 +287,23 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 namespace {
 
 // Of a sea that changes: those of its keys, and keys between which it changes faster than seas do.
+// Of one sea, whatever sails on it.
+std::vector<std::string> still_warnings(const PreparedScene& prepared) {
+    std::vector<std::string> warnings = folding_warning(prepared);
+    for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
+                       &hero_warning, &mask_warning})
+        for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
+    if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
+        warnings.push_back(std::move(thin));
+    return warnings;
+}
+
 std::vector<std::string> weather_warnings(const Weather& weather) {
     constexpr double kPeriods =
         10.0;  // of the longest peak: 6 % of the water's speed is then the amplitudes' own change
     std::vector<std::string> warnings;
     for (const Weather::Key& key : weather.keys)
-        for (const std::string& warning : sea_warnings(*key.sea))
+        for (const std::string& warning : still_warnings(*key.sea))
             warnings.push_back("at frame " + std::to_string(key.frame) + ' ' + warning);
     for (std::size_t i = 0; i + 1 < weather.keys.size(); ++i) {
         const Weather::Key &key = weather.keys[i], &next = weather.keys[i + 1];
@@ -316,13 +327,9 @@ std::vector<std::string> weather_warnings(const Weather& weather) {
 }  // namespace
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
-    if (prepared.weather) return weather_warnings(*prepared.weather);
-    std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
-                       &hero_warning, &mask_warning, &vessel_warning})
-        for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
-    if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
-        warnings.push_back(std::move(thin));
+    std::vector<std::string> warnings =
+        prepared.weather ? weather_warnings(*prepared.weather) : still_warnings(prepared);
+    for (std::string& warning : vessel_warning(prepared)) warnings.push_back(std::move(warning));
     return warnings;
 }
 

@@ -147,10 +147,10 @@ SprayThreads threads_by(const SprayVeil& veil, const View& view) {
     const glm::dvec2 whole = glm::floor(at);
     const auto wrapped = [](double cell) { return cell - 65536.0 * std::floor(cell / 65536.0); };
     const WindProfile wind(veil.wind_speed_mps());
-    constexpr double kKarman = 0.4;
     const auto [young, old] = veil.generations();
     return {.cell = {wrapped(whole.x), wrapped(whole.y), at.x - whole.x, at.y - whole.y},
-            .wind = glm::vec4(glm::dvec4(downwind, wind.friction_mps() / kKarman, 1.0 / wind.roughness_m())),
+            .wind = glm::vec4(
+                glm::dvec4(downwind, wind.friction_mps() / WindProfile::kKarman, 1.0 / wind.roughness_m())),
             .born = glm::vec4(glm::dvec4(young.age_s, old.age_s, young.weight, old.weight)),
             .names = {static_cast<float>(young.name), static_cast<float>(old.name)},
             .per_m = static_cast<float>(veil.law().ribbons.extinction_per_m.x * veil.whole()),

@@ -86,5 +86,5 @@ WakeWater wake_strip(int vessel, vec2 rest_m, float footprint_m) {
     float strength_a = texelFetch(wake_table, ivec2(2 * of + 1, row + 1), 0).x;
     float strength_b = texelFetch(wake_table, ivec2(2 * of + 3, row + 1), 0).x;
     return wake_water(WakeHull(hull.x, hull.y, hull.z, hull.w),
-                      WakePlace(sqrt(nearest), mix(a.z, b.z, share), mix(a.w, b.w, share), mix(strength_a, strength_b, share)), footprint_m);
+                      WakePlace(sqrt(nearest), mix(a.z, b.z, share), mix(a.w, b.w, share), mix(strength_a, strength_b, share)), min(footprint_m, kWakeWidest * points.y));
 }

@@ -85,9 +85,10 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
             const double density =
                 law.over_foam.extinction_per_m * shares[i].x * std::exp(-z_over_m / law.over_foam.scale_m) +
                 law.haze.extinction_per_m * std::exp(-z_over_m / law.haze.scale_m) +
-                ribbons * static_cast<double>(spray_thread(
-                              map, place_m, static_cast<float>(z_over_m - lifts_m[i]),
-                              static_cast<float>(ribbons), map.threads.pixel_rad * glm::length(place_m)));
+                ribbons *
+                    static_cast<double>(spray_thread(
+                        map, place_m, static_cast<float>(z_over_m - lifts_m[i]), static_cast<float>(ribbons),
+                        map.threads.pixel_rad * glm::length(glm::vec3(place_m, map.eye_m))));
             if (z_m > 0.0) {
                 ray.thickness += density * steps[i].length_m;
                 before_m = steps[i].at_m;

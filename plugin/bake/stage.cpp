@@ -195,7 +195,8 @@ std::vector<usd::Volume> volumes_of(const Plan& plan) {
 
 // Round a surface that stays where it is, at all frames: by expectation, as the sea's own extent (core/plan/extent.h), and with its volumes.
 std::optional<usd::Extent> extents_of(const Plan& plan) {
-    if (!plan.surface->is_constant()) return {};
+    // How high drops fly nothing says beforehand.
+    if (!plan.surface->is_constant() || plan.from->scene.output.drops) return {};
     RestPoints<float> points;
     plan.surface->points_at(plan.from->scene.shot.first_frame, points);
     if (points.rest_m.empty() || points.curvature_per_m != 0.0) return {};

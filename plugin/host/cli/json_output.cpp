@@ -22,20 +22,29 @@ class Tee final : public std::streambuf {
     int_type overflow(int_type c) override {
         if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
         const char letter = traits_type::to_char_type(c);
+        unwritten_ += letter;  // stderr keeps nothing back: letter by letter each would be a write of its own
         if (letter != '\n') {
             line_ += letter;
-        } else if (!line_.empty()) {
+            return c;
+        }
+        if (!line_.empty()) {
             if (!line_.starts_with("See: ")) last_ = line_;  // the help: no error
             tell_json({{"event", "message"}, {"text", line_}});
             line_.clear();
         }
-        return to_->sputc(letter);
+        return write() ? c : traits_type::eof();
     }
-    int sync() override { return to_->pubsync(); }
+    int sync() override { return write() ? to_->pubsync() : -1; }
+    bool write() {
+        const auto size = static_cast<std::streamsize>(unwritten_.size());
+        const bool is_written = to_->sputn(unwritten_.data(), size) == size;
+        unwritten_.clear();
+        return is_written;
+    }
 
     std::streambuf* const to_;
     std::string& last_;
-    std::string line_;
+    std::string line_, unwritten_;
 };
 
 }  // namespace

@@ -206,13 +206,13 @@ TEST_F(Farm, TasksRunWithoutTheSubmittersFolder) {
 }
 
 TEST_F(Farm, ATaskHandsASignalOn) {
-    write_file(folder() / "long.toml", text_of({.name = "long", .frames = 20000}));
+    write_file(folder() / "long.toml", text_of({.name = "long", .frames = 2000}));
     ASSERT_EQ(shell("$P farm long.toml --out out --tasks 1").status, 0);
     const Ended ended = shell(
         "bash out/farm/long.bake.sh 0 & for i in {1..600}; do ls out/mesh/long.0003.* && break; sleep 0.1; done; "
         "kill -TERM $!; wait $!");
     EXPECT_EQ(ended.status, 143) << ended.err;
-    const std::string log = files_below(folder() / "out").at("farm/long.bake.0001-20000.log");
+    const std::string log = files_below(folder() / "out").at("farm/long.bake.0001-2000.log");
     for (const char* part : {"pelagic: stopping after the current file", "with status 143"})
         EXPECT_TRUE(has(log, part)) << part << log;
     EXPECT_FALSE(has(log, "stopped at once")) << log;
@@ -283,7 +283,9 @@ TEST_F(Farm, VerifyTakesWhatLiesBesideTheRecordOfAWholeShotIntoIt) {
     EXPECT_EQ(shell("$P verify out").status, 3);
     EXPECT_TRUE(fs::exists(folder() / "out/record")) << "what isn't whole stays as it is";
     fs::rename(folder() / "kept", folder() / "out/mesh/small.0003.usda");
-    EXPECT_EQ(shell("exec 9<out; flock 9; timeout --preserve-status -k 10 3 $P verify out 9<&-").status, 143)
+    EXPECT_EQ(shell("exec 9<out; flock 9; timeout --foreground --preserve-status -k 10 3 $P verify out 9<&-")
+                  .status,
+              143)
         << "who waits for the folder's lock can be stopped";
     EXPECT_EQ(result("$P verify out --json").at("merged"), Json({"small.json"}));
     EXPECT_EQ(differences(folder() / "out", folder() / "whole"), "");

@@ -17,34 +17,28 @@ std::mutex json_writing;
 class Tee final : public std::streambuf {
   public:
     Tee(std::streambuf* to, std::string& last) : to_(to), last_(last) {}
+    ~Tee() override { to_->sputn(line_.data(), static_cast<std::streamsize>(line_.size())); }
 
   private:
+    // A line at a time, though std::cerr is flushed after each of its words: one write, and whole in what several write into.
     int_type overflow(int_type c) override {
         if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
-        const char letter = traits_type::to_char_type(c);
-        unwritten_ += letter;  // stderr keeps nothing back: letter by letter each would be a write of its own
-        if (letter != '\n') {
-            line_ += letter;
-            return c;
-        }
+        line_ += traits_type::to_char_type(c);
+        if (line_.back() != '\n') return c;
+        const auto size = static_cast<std::streamsize>(line_.size());
+        const bool is_written = to_->sputn(line_.data(), size) == size;
+        line_.pop_back();
         if (!line_.empty()) {
             if (!line_.starts_with("See: ")) last_ = line_;  // the help: no error
             tell_json({{"event", "message"}, {"text", line_}});
-            line_.clear();
         }
-        return write() ? c : traits_type::eof();
-    }
-    int sync() override { return write() ? to_->pubsync() : -1; }
-    bool write() {
-        const auto size = static_cast<std::streamsize>(unwritten_.size());
-        const bool is_written = to_->sputn(unwritten_.data(), size) == size;
-        unwritten_.clear();
-        return is_written;
+        line_.clear();
+        return is_written ? c : traits_type::eof();
     }
 
     std::streambuf* const to_;
     std::string& last_;
-    std::string line_, unwritten_;
+    std::string line_;
 };
 
 }  // namespace

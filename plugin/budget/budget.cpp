@@ -274,9 +274,10 @@ class Pictures final : public Choices {
     std::vector<Plan> plans_;
 };
 
-// What is chosen from, with what a host settles first; null: nothing is left to choose.
+// What is chosen from, with what a host settles first; null: nothing is left to choose. is_told: it is chosen already, and nothing is
+// measured.
 std::unique_ptr<Choices> choices(const Scene& scene, Purpose purpose, const SettleOptions& with,
-                                 Settled& settled) {
+                                 Settled& settled, bool is_told) {
     const FixedSettings& fixed = with.fixed;
     if (!has_budget(scene.quality) || (purpose == Purpose::Pictures && fixed.sky_quality &&
                                        (fixed.samples || *fixed.sky_quality == SkyQuality::One)))
@@ -284,13 +285,14 @@ std::unique_ptr<Choices> choices(const Scene& scene, Purpose purpose, const Sett
     Rates rates = recorded_rates();
     if (with.rates)
         rates = *with.rates;
-    else if (scene.quality.frame_ms)
+    else if (scene.quality.frame_ms && !is_told)
         rates = calibration(cache_folder(), with.watch).rates();
     if (purpose == Purpose::Mesh) return std::make_unique<Meshes>(settled.scene, rates);
     settled.scene.quality.level = QualityLevel::Final;
     settled.scene.surface.cell_px = kPictureCell_px;
     MeasuredErrors errors = kTypical;
-    if (scene.quality.max_error) errors = measured_errors(settled.scene, with.max_memory_bytes, with.watch);
+    if (scene.quality.max_error && !is_told)
+        errors = measured_errors(settled.scene, with.max_memory_bytes, with.watch);
     settled.measuring_bytes = errors.bytes;
     return std::make_unique<Pictures>(settled.scene, fixed, errors, rates);
 }
@@ -321,16 +323,29 @@ Said said_in(const std::filesystem::path& folder, const Shot& shot, Purpose purp
     return {};
 }
 
-// Where files in `folder` (null: none) say what was chosen for this budget, that.
+// Where files in `folder` (null: none) say what was chosen for this budget, that. told: what whoever shared the shot out chose, by which
+// no error and no time is looked at.
 Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& with,
                    const std::filesystem::path* folder, const std::string& told = {}) {
     Settled settled{.scene = without_budget(scene)};
-    const std::unique_ptr<Choices> from = choices(scene, purpose, with, settled);
+    const std::unique_ptr<Choices> from = choices(scene, purpose, with, settled, !told.empty());
     if (purpose == Purpose::Pictures) settled.options = fixed_options(settled.scene, with.fixed);
     if (!from) return settled;
     const Quality& budget = scene.quality;
     settled.budget = budget.max_error ? "quality.max_error = " + number_text(*budget.max_error)
                                       : "quality.frame_ms = " + number_text(*budget.frame_ms);
+    if (!told.empty()) {
+        settled.before = said_in(*folder, scene.shot, purpose, settled.budget).record;
+        for (std::size_t row = 0; row < from->rows; ++row)
+            for (std::size_t step = 0; step < from->steps; ++step) {
+                from->apply(row, step, settled);
+                if (settled.chosen() != told) continue;
+                settled.is_recorded = true;
+                settled.text = told + ", as was chosen for the whole shot";
+                return settled;
+            }
+        return settled;
+    }
     const Choice best = chosen(*from, budget);
     const auto take = [&](const Choice& choice, Settled& to) {
         from->apply(choice.row, choice.step, to);
@@ -350,11 +365,7 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
              ? "; measured on a small picture, which held about " + bytes_text(settled.measuring_bytes)
              : std::string());
     if (!folder) return settled;
-    Said said = said_in(*folder, scene.shot, purpose, settled.budget);
-    if (!told.empty()) {
-        said.words = line_text(told);
-        said.is = [&](const std::string& chosen) { return chosen == told; };
-    }
+    const Said said = said_in(*folder, scene.shot, purpose, settled.budget);
     settled.before = said.record;
     if (said.words.empty()) return settled;
     Settled recorded = settled;
@@ -434,12 +445,13 @@ Settled settle(const Scene& scene, Purpose purpose, const SettleOptions& with) {
 
 Settled settle_for(const RunOptions& run, const Scene& scene, Purpose purpose, const SettleOptions& with,
                    const std::string& or_else) {
+    if (!run.settled.empty() && !has_budget(scene.quality))
+        throw std::invalid_argument("--chosen is of a budget, and the shot has none");
     const Settled found = settled_by(scene, purpose, with, &run.out, run.settled);
     if (found.budget.empty() || found.is_recorded) return found;
     if (!run.settled.empty())
-        throw std::invalid_argument(
-            found.budget + ": " + line_text(run.settled) +
-            " isn't among what this budget is given, or errs by more: share the shot out anew");
+        throw std::invalid_argument(found.budget + ": " + line_text(run.settled) +
+                                    " isn't among what this budget is given: share the shot out anew");
     const auto asked = static_cast<std::int64_t>(run.frames.size());
     if (held(found, or_else);
         asked > 0 && asked <= std::int64_t{scene.shot.last_frame} - scene.shot.first_frame)

@@ -113,13 +113,17 @@ bool is_of_missing_frame(const std::string& path, const Known& known) {
 }
 
 // Whole shots' records take in what lies beside them.
-void merge_records(const fs::path& folder, const std::set<std::string>& records, Verification& found) {
+void merge_records(const fs::path& folder, const std::set<std::string>& records,
+                   const std::atomic<bool>* cancel, Verification& found) {
+    const files::LockWatch waiting = [&](double) {
+        if (cancel && *cancel) throw BuildCancelled();
+    };
     std::set<std::string> flawed;
     for (const Finding& finding : found.findings)
         flawed.insert(shot_of(fs::path(finding.path).filename().string()));
     for (const std::string& record : records)
         if (!flawed.contains(shot_of(record))) try {
-                if (Record::take_in_fragments(folder / record)) found.merged.push_back(record);
+                if (Record::take_in_fragments(folder / record, waiting)) found.merged.push_back(record);
             } catch (const files::FileError& error) {
                 found.notes.emplace_back(error.what());
             }
@@ -211,7 +215,7 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
             finding.flaw = Flaw::Foreign;
             finding.what = "is no record of a bake, and no file here is of such a shot";
         }
-    merge_records(folder, records, found);
+    merge_records(folder, records, watch.cancel, found);
     std::stable_sort(found.findings.begin(), found.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.path < b.path; });
     return found;

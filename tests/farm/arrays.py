@@ -62,7 +62,7 @@ def status_of(out):
 
 def submit(shot, out, tasks):
     said = pelagic("farm", shot, "--out", out, "--tasks", tasks, "--submit")
-    return re.search(r"array (\d+), and (\d+) after it", said).groups()
+    return re.search(r"array (\d+)\nsubmitted: verify (\d+), after it", said).groups()
 
 
 def logs_in(out):

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "plugin/files/files.h"
 #include "plugin/format/vdb/openvdb_writer.h"
 
 namespace pelagic::vdb {
@@ -49,10 +50,10 @@ const OpenVdbWriter& writer() {
         void* const library = ::dlopen(PELAGIC_OPENVDB_WRITER, RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
         if (!symbol)
-            throw std::system_error(
-                std::make_error_code(std::errc::not_supported),
+            throw files::FileError(
                 std::string("OpenVDB can't be loaded: ") + ::dlerror() +
-                    "; volumes need that file of Pelagic's, and the OpenVDB that it was built with");
+                    "; volumes need that file of Pelagic's, and the OpenVDB that it was built with",
+                PELAGIC_OPENVDB_WRITER, std::make_error_code(std::errc::not_supported));
         return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(symbol)();
     }();
     return loaded;

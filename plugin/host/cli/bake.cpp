@@ -68,7 +68,8 @@ int run(const RunArguments& arguments) {
     const Scene asked = load_shot(arguments.shot, check_scene);
     Scene scene = without_budget(asked);
     return run_frames(arguments, run_options(arguments, scene.shot),
-                      {.out_of_memory = [&](int threads) { return out_of_memory(scene, threads); },
+                      {.name = "bake",
+                       .out_of_memory = [&](int threads) { return out_of_memory(scene, threads); },
                        .work =
                            [&](RunOptions options, Session& session) {
                                print_warnings(arguments.shot, scene);

@@ -39,7 +39,8 @@ int status_of(const std::exception& error) {
     if (const auto* system = dynamic_cast<const std::system_error*>(&error))
         return status_of_system(system->code());
     if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const NotEnoughMemory*>(&error) ||
-        dynamic_cast<const ChosenMeanwhile*>(&error) || is_about_threads(error))
+        dynamic_cast<const ChosenMeanwhile*>(&error) || dynamic_cast<const TryAgain*>(&error) ||
+        is_about_threads(error))
         return kTryAgain;
     if (dynamic_cast<const ShotError*>(&error) || dynamic_cast<const WrongUsage*>(&error) ||
         dynamic_cast<const std::invalid_argument*>(&error))

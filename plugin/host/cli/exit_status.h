@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <stdexcept>
 
 namespace pelagic::cli {
 
@@ -14,6 +15,11 @@ inline constexpr int kNotWhole = 3;  // what a folder holds isn't whole
 inline constexpr int kTryAgain =
     75;  // later or on another machine it may succeed: disk, memory, threads, lock
 inline constexpr int kSignal = 128;  // plus the signal's number, as in shells
+
+// What kTryAgain is of, where it is no refusal of the system's.
+struct TryAgain : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 // Whether the system's refusals are to be had of another thread, wherever it is asked for; oneTBB's exception says it in words only.
 bool is_about_threads(const std::exception& error);

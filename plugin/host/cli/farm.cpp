@@ -59,11 +59,11 @@ std::string shell_word(const std::string& text) {
     return word + "'";
 }
 
-// A path in a line of #SBATCH, where Slurm takes % for itself.
+// A path in a line of #SBATCH, where Slurm takes % for itself, and strips a \, which no path here has.
 std::string sbatch_path(const fs::path& path, std::string_view pattern = {}) {
     std::string word = "\"";
     for (const char c : path.string()) {
-        if (c == '"' || c == '\\') word += '\\';
+        if (c == '"') word += '\\';
         if (c == '%') word += '%';
         word += c;
     }
@@ -105,12 +105,13 @@ std::size_t tasks_for(const FarmArguments& arguments, std::size_t frames, double
                      frames, kMostTasks});
 }
 
+// own: lines of the one script. What the user asks for comes last: of two lines of one option Slurm takes the second.
 std::string header(const FarmArguments& arguments, const std::string& name, int threads,
-                   std::size_t memory_bytes) {
+                   std::size_t memory_bytes, const std::string& own) {
     std::string text = "#!/bin/bash\n#SBATCH --job-name=" + sbatch_path(name) +
                        "\n#SBATCH --nodes=1 --ntasks=1\n#SBATCH --cpus-per-task=" + std::to_string(threads) +
                        "\n#SBATCH --mem=" + std::to_string((memory_bytes >> 20) + 1) +
-                       "M\n#SBATCH --requeue\n#SBATCH --open-mode=append\n";
+                       "M\n#SBATCH --requeue\n#SBATCH --open-mode=append\n" + own;
     for (const std::string& option : arguments.sbatch) text += "#SBATCH " + option + '\n';
     return text;
 }
@@ -120,29 +121,59 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
                          const fs::path& program, const fs::path& out, double seconds) {
     constexpr double kLeast_s = 3600.0, kTimes = 10.0;  // of what the plan says, which is of another machine
     const fs::path folder = out / "farm";
-    std::string text = header(arguments, job.of.name + ' ' + job.verb, need.threads, need.memory_bytes);
-    text += "#SBATCH --time=" + std::to_string(std::lround(std::max(kLeast_s, kTimes * seconds) / 60.0)) +
-            "\n#SBATCH --array=0-" + std::to_string(job.tasks.size() - 1) +
-            "\n#SBATCH --output=" + sbatch_path(folder / (job.of.name + '.' + job.verb), ".%a.slurm") +
-            "\n# By pelagic farm. Without Slurm: bash THIS N makes task N, 0 to " +
-            std::to_string(job.tasks.size() - 1) + ".\nframes=(";
+    const std::string last = std::to_string(job.tasks.size() - 1);
+    std::string text = header(
+        arguments, job.of.name + ' ' + job.verb, need.threads, need.memory_bytes,
+        "#SBATCH --time=" + std::to_string(std::lround(std::max(kLeast_s, kTimes * seconds) / 60.0)) +
+            "\n#SBATCH --array=0-" + last +
+            "\n#SBATCH --output=" + sbatch_path(folder / (job.of.name + '.' + job.verb), ".%a.slurm") + '\n');
+    text += "# By pelagic farm. Without Slurm: bash THIS N makes task N, 0 to " + last + ".\nframes=(";
     for (const FarmTask& task : job.tasks) text += "\n    " + task.frames;
     text += "\n)\nlogs=(";
     for (const FarmTask& task : job.tasks) text += "\n    " + shell_word(task.log);
-    text += "\n)\nn=${1:-${SLURM_ARRAY_TASK_ID:?\"the number of a task is missing\"}}\ncd " +
-            shell_word(fs::current_path().string()) + " || exit 75\nexec >>" + shell_word(folder.string()) +
-            "/\"${logs[n]}\" 2>&1 || exit 75\n"
-            "id=${SLURM_ARRAY_JOB_ID:-$(hostname -s)-$$}_$n\n"
-            "echo \"" +
-            kFarmBegun +
-            "$id on ${SLURMD_NODENAME:-$(hostname -s)}, $(date '+%F %T')\"\n"
-            "trap : TERM INT HUP # the program ends at its file's end, and then this\n" +
-            shell_word(program.string()) + ' ' + job.verb + ' ' + shell_word(job.shot) + " --out " +
-            shell_word(out.string()) + " --frames \"${frames[n]}\" --threads \"${SLURM_CPUS_PER_TASK:-" +
-            std::to_string(need.threads) + "}\"";
+    text +=
+        "\n)\nn=${1:-${SLURM_ARRAY_TASK_ID:-}}\n"
+        "if ! [[ $n =~ ^[0-9]{1,4}$ ]] || ((10#$n > " +
+        last +
+        ")); then\n"
+        "    echo \"bash $0 N: N is '$n'; accepted: the number of a task, 0 to " +
+        last +
+        "\" >&2\n"
+        "    exit 2\n"
+        "fi\n"
+        "n=$((10#$n))\n"
+        "cd " +
+        shell_word(out.string()) + " || exit 75\nlog=" + shell_word(folder.string()) +
+        "/${logs[n]}\nexec >>\"$log\" 2>&1 || exit 75\n"
+        "id=${SLURM_ARRAY_JOB_ID:-$(hostname -s)-$$}_$n\n"
+        "echo \"" +
+        kFarmBegun +
+        "$id on ${SLURMD_NODENAME:-$(hostname -s)}, $(date '+%F %T')\"\n"
+        "# Told to stop, the program ends at its file's end, and then this. A second signal ends it at once: one that\n"
+        "# the queue has sent to both isn't handed on. TERM for all: what a script has beside it ignores INT.\n"
+        "stop() {\n"
+        "    caught=1\n"
+        "    if ((told++)) || ! { sleep 0.3; tac \"$log\" | sed '/^" +
+        kFarmBegun +
+        "/q' | grep -q '^pelagic: stop'; }; then\n"
+        "        kill -TERM $program 2>/dev/null\n"
+        "    fi\n"
+        "}\n" +
+        shell_word(program.string()) + ' ' + job.verb + ' ' + shell_word(job.shot) + " --out " +
+        shell_word(out.string()) + " --frames \"${frames[n]}\" --threads \"${SLURM_CPUS_PER_TASK:-" +
+        std::to_string(need.threads) + "}\"";
     for (const std::string& word : arguments.passed) text += ' ' + word;
     text +=
-        "\nstatus=$?\n"
+        " &\n"
+        "program=$!\n"
+        "trap stop TERM INT HUP\n"
+        "caught=1\n"
+        "while [ \"$caught\" ]; do # a signal ends the waiting\n"
+        "    caught=\n"
+        "    wait $program\n"
+        "    status=$?\n"
+        "done\n"
+        "trap : TERM INT HUP\n"
         "# Before the word that it has ended: from then on nobody looks whether it runs.\n"
         "if [[ $status = 75 || $status = 137 ]] && [ -n \"${SLURM_ARRAY_JOB_ID:-}\" ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 3 ]; then\n"
         "    echo \"" +
@@ -159,19 +190,28 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
 }
 
 std::string verify_script(const FarmArguments& arguments, const FarmJob& job, const fs::path& program,
-                          const fs::path& out) {
+                          const fs::path& out, bool is_part) {
     constexpr std::size_t kMemory = std::size_t{1} << 30;
     const std::string name = job.of.name + '.' + job.verb;
-    return header(arguments, job.of.name + " verify", 1, kMemory) +
-           "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") +
-           "\n# By pelagic farm: the last job, after all tasks of " + name + ".sh.\nexec " +
-           shell_word(program.string()) + " verify " + shell_word(out.string()) +
-           " --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
+    const std::string verify = shell_word(program.string()) + " verify " + shell_word(out.string()) +
+                               " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
+    const std::string text =
+        header(arguments, job.of.name + " verify", 1, kMemory,
+               "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") + '\n') +
+        "# By pelagic farm: the last job, after all tasks of " + name + ".sh.\n";
+    if (job.verb == "bake" && !is_part) return text + "exec " + verify + '\n';
+    return text + "said=$(" + verify +
+           ")\nstatus=$?\nprintf '%s\\n' \"$said\"\n"
+           "# Pictures that aren't there, verify doesn't know; frames that weren't asked for, it misses.\n"
+           "grep -E '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\" | grep -qv \" lacks frames that aren't baked: \"\n"
+           "[ $status$? = 31 ] && status=0\n" +
+           shell_word(program.string()) + " farm --status " + shell_word(out.string()) +
+           "\nthere=$?\n((status)) || status=$there\nexit $status\n";
 }
 
 // The job's number.
 std::string submitted(const std::string& options, const fs::path& script) {
-    const std::string command = "sbatch --parsable " + options + ' ' + shell_word(script.string()) + " 2>&1";
+    const std::string command = "sbatch --parsable " + options + ' ' + shell_word(script.string());
     std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), [](FILE*) { return 0; });
     if (!pipe) throw std::system_error(errno, std::generic_category(), "sbatch can't be called");
     std::string said;
@@ -184,15 +224,22 @@ std::string submitted(const std::string& options, const fs::path& script) {
         throw WrongUsage("--submit: there is no sbatch here; submit " + line_text(script.string()) +
                          " where there is one");
     if (status != 0)
-        throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again),
-                                "sbatch refuses " + line_text(script.string()) + ": " + line_text(said));
-    return said.substr(0, said.find(';'));  // what follows is the cluster's name
+        throw TryAgain("sbatch refuses " + line_text(script.string()) +
+                       "; what it says of that stands above");
+    // The last line: a site's sbatch may say more before. What follows ; is the cluster's name.
+    std::string job = said.substr(said.rfind('\n') + 1);
+    job = job.substr(0, job.find(';'));
+    if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos)
+        throw std::runtime_error("sbatch gives no number of a job: " + quoted_text(said));
+    return job;
 }
 
 void submit(const fs::path& array, const fs::path& verify) {
     const std::string job = submitted("", array);
+    std::cout << "submitted: array " << job << std::endl;  // it is there, whatever becomes of the second
+    tell_json({{"event", "submitted"}, {"array", job}});
     const std::string last = submitted("--dependency=afterany:" + job, verify);
-    std::cout << "submitted: array " << job << ", and " << last << " after it\n";
+    std::cout << "submitted: verify " << last << ", after it\n";
     tell_json({{"event", "submitted"}, {"array", job}, {"verify", last}});
 }
 
@@ -238,6 +285,9 @@ int run(FarmArguments arguments) {
     const auto has_line = [](const std::string& text) { return text.find('\n') != std::string::npos; };
     if (has_line(out.string()) || std::ranges::any_of(arguments.sbatch, has_line))
         throw WrongUsage("a script of Slurm's takes no line's end in a path or an option");
+    if (out.string().find('\\') != std::string::npos)
+        throw WrongUsage("--out " + quoted_text(out.string()) +
+                         ": Slurm takes no \\ in the path of a task's output; accepted: a path without");
     return guarded_run(
         {.shot = arguments.shot, .threads = arguments.threads, .stops = false}, [&](Session& session) {
             const TaskNeed need = session.threads.execute(
@@ -273,10 +323,12 @@ int run(FarmArguments arguments) {
                            last = folder / (name + ".verify.sh");
             const fs::path program = fs::read_symlink("/proc/self/exe");
             files::ensure_folder(folder);
+            const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
+                                 std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;
             const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
                                                                   static_cast<double>(tasks));
             files::write_atomically(array, array_script(arguments, job, need, program, out, seconds));
-            files::write_atomically(last, verify_script(arguments, job, program, out));
+            files::write_atomically(last, verify_script(arguments, job, program, out, is_part));
             files::write_atomically(folder / (name + ".json"),
                                     told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
             std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
@@ -336,10 +388,14 @@ Verb add_farm(CLI::App& program) {
                         continue;
                     if (i >= of_runs && arguments->verb != "render")
                         throw WrongUsage(name + " is of pictures: --verb render makes them");
-                    for (const std::string& value : options[i]->results())
+                    for (std::string value : options[i]->results()) {
+                        // Tasks run in the folder of their files.
+                        if (name == "--ocio" && value != "env" && fs::exists(value))
+                            value = fs::absolute(value).lexically_normal().string();
                         arguments->passed.push_back(options[i]->get_items_expected_max() == 0
                                                         ? name
                                                         : name + '=' + shell_word(value));
+                    }
                 }
                 return run(*arguments);
             }};

@@ -152,7 +152,7 @@ bool is_gone(const std::string& id, const std::optional<Queue>& queue) {
     if (id.find_first_not_of("0123456789_") == std::string::npos) {
         if (!queue) return false;
         const auto at = queue->find(id);
-        return at == queue->end() || (at->second != "RUNNING" && at->second != "COMPLETING");
+        return at == queue->end();  // squeue lists what hasn't ended: suspended and configuring, too
     }
     std::array<char, 256> host{};
     gethostname(host.data(), host.size() - 1);

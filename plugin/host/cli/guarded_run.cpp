@@ -101,6 +101,7 @@ int run_frames(const RunArguments& arguments, RunOptions options, const FrameVer
                            session.progress.clear();
                            verb.report(report, out);
                            tell_json({{"event", "result"},
+                                      {"verb", verb.name},
                                       {"done", report.done},
                                       {"kept", report.kept},
                                       {"total", report.total},

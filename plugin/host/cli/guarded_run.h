@@ -67,6 +67,7 @@ Settled settled_for(const RunOptions& options, const Scene& scene, Purpose purpo
 
 // What such a verb does, beside that.
 struct FrameVerb {
+    std::string name;                                                      // as programs read it
     std::function<std::string(int threads)> out_of_memory;                 // as Guard's
     std::function<RunReport(const RunOptions& options, Session&)> work;    // on the session's threads
     std::function<void(const RunReport&, const std::string& out)> report;  // what was done, in words

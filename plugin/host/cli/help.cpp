@@ -28,10 +28,10 @@ const char* const kProgramFooter =
     "  0        everything that was asked for is whole\n"
     "  1        an error that nobody knows; please report it\n"
     "  2        what was asked for can't be, and the same again gives the same: the command line, a shot\n"
-    "           file, a folder that can't be written into, a part that this machine lacks\n"
+    "           file, a folder that may not be written into (permissions), a part that this machine lacks\n"
     "  3        not whole: verify or farm --status found something missing or wrong\n"
-    "  75       try again, later or on another machine: the disk (full, failing), memory, threads, or another\n"
-    "           run that was first\n"
+    "  75       try again, later or on another machine: the disk (full, failing, read-only, gone), memory, threads,\n"
+    "           or another run that was first\n"
     "  128 + N  stopped by signal N (130: Ctrl-C)";
 const char* const kVersion = "Print the version and what the program was built with, and exit";
 const char* const kVerbs = "Verbs";
@@ -110,13 +110,14 @@ const char* const kFarmVerb = "What each task runs: bake or render. Default: bak
 const char* const kFarmSubmit = "Submit both jobs with sbatch";
 const char* const kFarmStatus =
     "Say what is whole, missing, running and failed, of the jobs that were written into this folder: from the\n"
-    "record or the pictures, the tasks' logs, and squeue where there is one";
+    "record or the pictures' names, the tasks' logs, and squeue where there is one";
 const char* const kFarmTasks =
     "How many tasks, 1 to 1000.\n"
     "Default: so many that each takes about --minutes";
 const char* const kFarmMinutes = "How long a task should take, in minutes, 0.1 to 1440. Default: 10";
 const char* const kFarmSbatch =
-    "An option for sbatch, as --sbatch=--partition=night; may be given several times";
+    "An option for sbatch, as --sbatch=--partition=night; may be given several times. Of both jobs, and\n"
+    "before what Pelagic itself asks for";
 
 const char* const kRender =
     "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"
@@ -303,7 +304,8 @@ const char* const kVerify =
     "  interrupted  of a bake that was stopped before it wrote its record\n"
     "A frame that a bake is at, or was stopped at, is missing or stale: its files aren't named one by one.\n"
     "Deletes and repairs nothing: the next bake or render makes again what is missing, damaged or stale.\n"
-    "Where a shot is whole, what its tasks have recorded becomes DIR/NAME.json, as a single bake leaves it.";
+    "Where a shot is whole, what its tasks have recorded becomes DIR/NAME.json, as a single bake leaves it;\n"
+    "not of one of more than 32768 frames, where it stays beside that.";
 const char* const kVerifyFooter =
     "Examples:\n"
     "  pelagic verify storm\n"

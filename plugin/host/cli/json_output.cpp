@@ -17,21 +17,24 @@ std::mutex json_writing;
 class Tee final : public std::streambuf {
   public:
     Tee(std::streambuf* to, std::string& last) : to_(to), last_(last) {}
+    ~Tee() override { to_->sputn(line_.data(), static_cast<std::streamsize>(line_.size())); }
 
   private:
+    // A line at a time, though std::cerr is flushed after each of its words: one write, and whole in what several write into.
     int_type overflow(int_type c) override {
         if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
-        const char letter = traits_type::to_char_type(c);
-        if (letter != '\n') {
-            line_ += letter;
-        } else if (!line_.empty()) {
+        line_ += traits_type::to_char_type(c);
+        if (line_.back() != '\n') return c;
+        const auto size = static_cast<std::streamsize>(line_.size());
+        const bool is_written = to_->sputn(line_.data(), size) == size;
+        line_.pop_back();
+        if (!line_.empty()) {
             if (!line_.starts_with("See: ")) last_ = line_;  // the help: no error
             tell_json({{"event", "message"}, {"text", line_}});
-            line_.clear();
         }
-        return to_->sputc(letter);
+        line_.clear();
+        return is_written ? c : traits_type::eof();
     }
-    int sync() override { return to_->pubsync(); }
 
     std::streambuf* const to_;
     std::string& last_;

@@ -1,5 +1,5 @@
 // --json: what a verb says, for programs: an object a line on stdout ("event": "progress", "message", "result", "end"), in place of
-// what people read there. Messages stay on stderr as well. README.md has the keys.
+// what people read there. Messages stay on stderr as well. FARM.md has the keys.
 #pragma once
 
 #include <CLI/CLI.hpp>

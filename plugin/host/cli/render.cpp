@@ -182,7 +182,8 @@ int run(const RenderArguments& arguments) {
         return render_files(order, watched);
     };
     return run_frames(arguments, options,
-                      {.out_of_memory = out_of_memory,
+                      {.name = "render",
+                       .out_of_memory = out_of_memory,
                        .work = work,
                        .report = [&](const RunReport& report,
                                      const std::string& out) { print_rendered(report, order, options, out); },

@@ -169,7 +169,105 @@ TEST_F(Farm, PicturesToo) {
     ASSERT_EQ(
         shell("$P render small.toml --out whole --size 32x18 --samples 1 --layers none --frames 1-4").status,
         0);
+    EXPECT_EQ(shell("bash out/farm/small.render.verify.sh").status, 0);
+    ASSERT_EQ(shell("mkdir kept; mv out/small.0003.* kept").status, 0);
+    EXPECT_EQ(shell("bash out/farm/small.render.verify.sh").status, 3)
+        << "pictures nobody but the job misses";
+    ASSERT_EQ(shell("mv kept/* out").status, 0);
     EXPECT_EQ(without_farm("out", "whole"), "");
+}
+
+TEST_F(Farm, APartOfAShotIsJudgedByItself) {
+    ASSERT_EQ(shell("$P farm small.toml --out out --frames 3-4 --tasks 2").status, 0);
+    const auto check = [&] { return shell("bash out/farm/small.bake.verify.sh").status; };
+    EXPECT_EQ(shell("bash out/farm/small.bake.sh 0").status, 0);
+    EXPECT_EQ(check(), 3) << "frame 4 isn't made";
+    EXPECT_EQ(shell("bash out/farm/small.bake.sh 1").status, 0);
+    EXPECT_EQ(check(), 0);
+    ASSERT_EQ(shell("echo >> out/mesh/small.0003.usda").status, 0);
+    EXPECT_EQ(check(), 3) << "damage";
+}
+
+// What a task needs of the place where the command was given: nothing.
+TEST_F(Farm, TasksRunWithoutTheSubmittersFolder) {
+    ASSERT_EQ(shell("mkdir here && cd here && $P farm ../small.toml --out ../out --tasks 2").status, 0);
+    fs::remove_all(folder() / "here");
+    EXPECT_EQ(shell("bash out/farm/small.bake.sh 1").status, 0);
+    for (const char* number : {"", "x", "-1", "2", "1x", "99999999999999999999"}) {
+        const Ended ended = shell(std::string("bash out/farm/small.bake.sh ") + number);
+        EXPECT_EQ(ended.status, 2) << number;
+        EXPECT_TRUE(has(ended.err, "accepted: the number of a task, 0 to 1\n")) << ended.err;
+    }
+    EXPECT_EQ(shell("$P farm small.toml --out 'a\\b'").status, 2) << "Slurm would strip the \\";
+    ASSERT_EQ(shell("$P farm small.toml --out out --sbatch=--time=7").status, 0);
+    const std::string script = files_below(folder() / "out").at("farm/small.bake.sh");
+    EXPECT_GT(script.find("#SBATCH --time=7\n"), script.find("#SBATCH --time=60\n"))
+        << "the last one counts" << script;
+}
+
+TEST_F(Farm, ATaskHandsASignalOn) {
+    write_file(folder() / "long.toml", text_of({.name = "long", .frames = 2000}));
+    ASSERT_EQ(shell("$P farm long.toml --out out --tasks 1").status, 0);
+    const Ended ended = shell(
+        "bash out/farm/long.bake.sh 0 & for i in {1..600}; do ls out/mesh/long.0003.* && break; sleep 0.1; done; "
+        "kill -TERM $!; wait $!");
+    EXPECT_EQ(ended.status, 143) << ended.err;
+    const std::string log = files_below(folder() / "out").at("farm/long.bake.0001-2000.log");
+    for (const char* part : {"pelagic: stopping after the current file", "with status 143"})
+        EXPECT_TRUE(has(log, part)) << part << log;
+    EXPECT_FALSE(has(log, "stopped at once")) << log;
+}
+
+TEST_F(Farm, SubmitsWithWhateverSbatchSays) {
+    fs::create_directories(folder() / "bin");
+    const auto submit = [&](const std::string& sbatch, const char* more = "") {
+        write_file(folder() / "bin/sbatch", "#!/bin/bash\n" + sbatch + '\n');
+        return shell("chmod +x bin/sbatch; PATH=$PWD/bin:$PATH $P farm small.toml --out out --submit " +
+                     std::string(more));
+    };
+    const Ended noted = submit(
+        "echo \"sbatch: a note; $(touch '1;2')\" >&2; echo 'Welcome'; echo '17;night'; echo \"$*\" >> said");
+    EXPECT_EQ(noted.status, 0) << noted.err;
+    EXPECT_TRUE(has(noted.out, "submitted: array 17\nsubmitted: verify 17, after it\n")) << noted.out;
+    EXPECT_TRUE(has(files_below(folder()).at("said"), "--dependency=afterany:17 ")) << "the number alone";
+    const Ended refused = submit("echo 'no such partition' >&2; exit 1");
+    EXPECT_EQ(refused.status, 75);
+    EXPECT_TRUE(has(refused.err, "sbatch refuses ")) << refused.err;
+    for (const char* wrong : {"thread", "unavailable"}) EXPECT_FALSE(has(refused.err, wrong)) << refused.err;
+    const Ended half = submit("[[ $* != *afterany* ]] && echo 17");
+    EXPECT_EQ(half.status, 75);
+    EXPECT_TRUE(has(half.out, "submitted: array 17\n")) << "it runs";
+    const Ended odd = submit("echo '17; rm -r out'; echo '$(touch odd)'");
+    EXPECT_EQ(odd.status, 1);
+    EXPECT_TRUE(has(odd.err, "sbatch gives no number of a job: ")) << odd.err;
+    EXPECT_FALSE(fs::exists(folder() / "odd"));
+}
+
+TEST_F(Farm, WhatSqueueListsIsntLost) {
+    ASSERT_EQ(shell("$P farm small.toml --out out --tasks 4").status, 0);
+    fs::create_directories(folder() / "bin");
+    write_file(folder() / "out/farm/small.bake.0001-0003.log", "pelagic farm: begun 12_0 on node1, now\n");
+    const auto status = [&](const std::string& listed) {
+        write_file(folder() / "bin/squeue", "#!/bin/bash\necho '" + listed + "'\n");
+        return result("chmod +x bin/squeue; PATH=$PWD/bin:$PATH $P farm --status out --json", 3);
+    };
+    for (const char* state : {"RUNNING", "SUSPENDED", "CONFIGURING", "STOPPED"})
+        EXPECT_EQ(status(std::string("12_0 ") + state).at("running").size(), 1u) << state;
+    EXPECT_EQ(status("12_1 RUNNING").at("failed").size(), 1u);
+}
+
+// Whatever is measured today: it takes long, and another machine may find that the settings err by more.
+TEST_F(Farm, WhatWasChosenIsntMeasuredAgain) {
+    write_file(folder() / "budget.toml", text_of({.frames = 4}) + "[quality]\nmax_error = 0.001\n");
+    const Ended render = shell(
+        "$P render budget.toml --out out --size 32x18 --layers none --frames 2 --chosen='quality.max_error = 0.001: "
+        "quality.level = \"final\", surface.cell_px = 2, 1 × 1 samples a pixel and nine lookups of the sky'");
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_FALSE(has(render.err, "measuring")) << render.err;
+    EXPECT_FALSE(has(render.err, "today")) << render.err;
+    const Ended none = shell("$P bake small.toml --out x --chosen=nothing");
+    EXPECT_EQ(none.status, 2);
+    EXPECT_TRUE(has(none.err, "--chosen is of a budget, and the shot has none")) << none.err;
 }
 
 // As where the two tasks that end last miss each other's, on a file system that shows new files late.
@@ -185,6 +283,10 @@ TEST_F(Farm, VerifyTakesWhatLiesBesideTheRecordOfAWholeShotIntoIt) {
     EXPECT_EQ(shell("$P verify out").status, 3);
     EXPECT_TRUE(fs::exists(folder() / "out/record")) << "what isn't whole stays as it is";
     fs::rename(folder() / "kept", folder() / "out/mesh/small.0003.usda");
+    EXPECT_EQ(shell("exec 9<out; flock 9; timeout --foreground --preserve-status -k 10 3 $P verify out 9<&-")
+                  .status,
+              143)
+        << "who waits for the folder's lock can be stopped";
     EXPECT_EQ(result("$P verify out --json").at("merged"), Json({"small.json"}));
     EXPECT_EQ(differences(folder() / "out", folder() / "whole"), "");
     EXPECT_EQ(result("$P verify out --json").at("merged"), Json::array());
@@ -199,6 +301,7 @@ TEST_F(Farm, ProgramsReadWhatIsSaid) {
             most = event.at("done");
         }
     EXPECT_EQ(most, 12);
+    EXPECT_EQ(baked.at(baked.size() - 2).value("verb", ""), "bake");
     const Json explained = result("$P explain small.toml --json");
     for (const char* of : {"bake", "pictures"})
         for (const char* key : {"seconds_a_frame", "bytes_a_frame", "memory_bytes"})

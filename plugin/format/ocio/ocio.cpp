@@ -2,12 +2,25 @@
 
 #include <dlfcn.h>
 
+#include <stdexcept>
+#include <string>
 #include <system_error>
+#include <utility>
 
-#include "plugin/files/files.h"
 #include "plugin/format/ocio/ocio_module.h"
 
 namespace pelagic::ocio {
+namespace {
+
+// What this machine lacks, in these words alone: std::system_error adds the system's.
+struct NotLoaded : std::system_error {
+    explicit NotLoaded(std::string text)
+        : system_error(std::make_error_code(std::errc::not_supported)), text_(std::move(text)) {}
+    const char* what() const noexcept override { return text_.c_str(); }
+    std::string text_;
+};
+
+}  // namespace
 
 std::shared_ptr<const View> make_view(const ViewChoice& choice) {
     // For as long as the process lives: views have their code in there.
@@ -15,10 +28,9 @@ std::shared_ptr<const View> make_view(const ViewChoice& choice) {
         void* const library = ::dlopen(PELAGIC_OCIO_MODULE, RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_ocio_view") : nullptr;
         if (!symbol)
-            throw files::FileError(
+            throw NotLoaded(
                 std::string("OpenColorIO can't be loaded: ") + ::dlerror() +
-                    "; --ocio needs that file of Pelagic's, and the OpenColorIO that it was built with",
-                PELAGIC_OCIO_MODULE, std::make_error_code(std::errc::not_supported));
+                "; --ocio needs that file of Pelagic's, and the OpenColorIO that it was built with");
         return reinterpret_cast<decltype(&pelagic_ocio_view)>(symbol);
     }();
     return std::shared_ptr<const View>(maker(choice));

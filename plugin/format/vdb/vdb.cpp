@@ -7,11 +7,12 @@
 #include <latch>
 #include <new>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "plugin/files/files.h"
 #include "plugin/format/vdb/openvdb_writer.h"
 
 namespace pelagic::vdb {
@@ -43,6 +44,14 @@ void require_room() {
     are_there.count_down();
 }
 
+// What this machine lacks, in these words alone: std::system_error adds the system's.
+struct NotLoaded : std::system_error {
+    explicit NotLoaded(std::string text)
+        : system_error(std::make_error_code(std::errc::not_supported)), text_(std::move(text)) {}
+    const char* what() const noexcept override { return text_.c_str(); }
+    std::string text_;
+};
+
 // For as long as the process lives: OpenVDB's threads can't be taken away.
 const OpenVdbWriter& writer() {
     static const OpenVdbWriter& loaded = []() -> const OpenVdbWriter& {
@@ -50,10 +59,8 @@ const OpenVdbWriter& writer() {
         void* const library = ::dlopen(PELAGIC_OPENVDB_WRITER, RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
         if (!symbol)
-            throw files::FileError(
-                std::string("OpenVDB can't be loaded: ") + ::dlerror() +
-                    "; volumes need that file of Pelagic's, and the OpenVDB that it was built with",
-                PELAGIC_OPENVDB_WRITER, std::make_error_code(std::errc::not_supported));
+            throw NotLoaded(std::string("OpenVDB can't be loaded: ") + ::dlerror() +
+                            "; volumes need that file of Pelagic's, and the OpenVDB that it was built with");
         return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(symbol)();
     }();
     return loaded;

@@ -33,7 +33,7 @@ on_display() {
 
 status=0
 env -u DISPLAY -u WAYLAND_DISPLAY "$program" preview "$folder/small.toml" 2> "$folder/no-display.txt" || status=$?
-[ "$status" = 1 ] || fail "status $status without a display, not 1"
+[ "$status" = 2 ] || fail "status $status without a display, not 2"
 grep -q -e "--offscreen" "$folder/no-display.txt" || fail "no word of --offscreen: $(cat "$folder/no-display.txt")"
 grep -q "xvfb-run" "$folder/no-display.txt" || fail "no word of xvfb-run: $(cat "$folder/no-display.txt")"
 
@@ -42,7 +42,7 @@ grep -q "xvfb-run" "$folder/no-display.txt" || fail "no word of xvfb-run: $(cat 
 status=0
 on_display "$program" preview "$folder/diving.toml" \
     --size 320x180 --scale 4 --screenshot "$folder/diving.png" 2> "$folder/diving.txt" || status=$?
-[ "$status" = 1 ] && [ ! -e "$folder/diving.png" ] || fail "status $status under water, not 1"
+[ "$status" = 2 ] && [ ! -e "$folder/diving.png" ] || fail "status $status under water, not 2"
 grep -q "the camera is under water" "$folder/diving.txt" || fail "no word of the water: $(cat "$folder/diving.txt")"
 
 on_display "$program" preview "$folder/small.toml" \

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Command lines of anything: verbs, options and files in any number and order, with values at the edges and none.
 
-Each run ends with status 0, 1 or 2 within a minute, and with a message that has no control characters where it isn't 0. One
+Each run ends with a status that is promised, and not 1, within a minute, and with a message that has no control characters where it isn't 0. One
 that ends with 2, an error on the command line, has written nothing.
 """
 

@@ -4,7 +4,7 @@
 A mutation flips, deletes, repeats, swaps or truncates bytes and lines, puts in huge numbers, deep brackets, characters
 that terminals obey and words of the table of keys. Each case is one run of `pelagic validate` over several damaged
 shots (each named once, as fine or refused), or one over a damaged buoy file, sky or record; some of what was taken
-is baked or rendered, small. Each run ends with status 0 or 1 within seconds and bounded memory, with messages of at
+is baked or rendered, small. Each run ends with status 0, 2 or 75 within seconds and bounded memory, with messages of at
 most 64 KiB that name the file and hold no control characters; what it writes is whole and finite.
 """
 

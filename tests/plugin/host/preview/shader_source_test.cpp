@@ -24,7 +24,7 @@ TEST(ShaderFiles, AreConvertedLineByLine) {
         for (const char* cxx : {"inline ", "template", "namespace", "constexpr", "<T>", "::", "(&"})
             EXPECT_EQ(file.glsl.find(cxx), std::string_view::npos) << file.path << ": " << cxx;
     }
-    EXPECT_EQ(found, 14);
+    EXPECT_EQ(found, 15);
     EXPECT_NE(shader_file("core/waves/spline.inl").glsl.find("out T "), std::string_view::npos);
     EXPECT_NE(shader_file("core/waves/gusts.inl").glsl.find("\n    T resolved = weight * amplitude;\n"),
               std::string_view::npos);

@@ -6,7 +6,7 @@ inline constexpr double kWakeWhite = 0.75;     // and its coverage
 inline constexpr double kWakeBeaten_s = 90.0;  // what the propeller beats in
 inline constexpr double kWakeBeaten = 0.6;
 inline constexpr double kWakeDamped = 0.7;  // of short waves' amplitude, by new turbulence
-inline constexpr double kWakeWidest = 1.5;
+inline constexpr double kWakeWidest = 1.5;  // of the reach: a pixel's footprint
 
 // A hull, and the age at which its wake ends.
 template <class T>

@@ -20,7 +20,7 @@ from pictures import LUMINANCE, cycles_exr, read_exr, shot_in_blender
 
 PROGRAM, FOLDER = sys.argv[-1], Path(tempfile.mkdtemp())
 SIZE, SAMPLES, MOST_OFF = ((160, 90), 96, 0.1) if at_night() else ((96, 54), 32, 0.15)  # noise makes a displayed mean darker
-CURVES_OFF = 0.2
+CURVES_OFF = 0.2  # of Blender's curve beside ours: 1.19 in the darkest of the eight shots, whose mean is 0.10
 # A preset, how high the sun is, and where: 90 is in front of the camera, 270 behind it.
 SHOTS = (("beaufort-6", 12.0, 150.0), ("north-sea-storm", 25.0, 120.0), ("beaufort-1", 60.0, 180.0), ("beaufort-3", 8.0, 60.0),
          ("beaufort-4", 30.0, 270.0), ("beaufort-5", 45.0, 90.0), ("beaufort-8", 35.0, 200.0), ("beaufort-11", 6.0, 300.0))

@@ -7,7 +7,7 @@
 namespace pelagic::cli {
 
 inline constexpr int kDone = 0;     // everything requested is complete, on disk or printed
-inline constexpr int kUnknown = 1;  // nothing of what is known: a bug, ours or a library's
+inline constexpr int kUnknown = 1;  // an error of no known kind: a bug, ours or a library's
 inline constexpr int kWrongUsage =
     2;  // what is asked for can't be, and the same again gives the same: the command
         // line, a shot file, a folder that is none, what this machine lacks
@@ -21,7 +21,7 @@ struct TryAgain : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Whether the system's refusals are to be had of another thread, wherever it is asked for; oneTBB's exception says it in words only.
+// Whether the system refused to start another thread, from wherever it was asked; oneTBB's exception says it in words only.
 bool is_about_threads(const std::exception& error);
 
 // Of what ended the program.

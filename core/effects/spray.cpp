@@ -15,12 +15,11 @@
 namespace pelagic {
 namespace {
 
-// Ages of the spray at a height, and their weights: chosen by eye.
+// Ages of the spray at a height, and their weights, whose sum is 1: chosen by eye, as far apart as patches that break are long.
 struct Age {
     int height;
     double age_s, weight;
 };
-// By eye: as far apart as patches that break are long. Weights of a height add up to 1.
 constexpr std::array kAges{Age{0, 0.0, 0.35}, Age{0, 0.5, 0.3},  Age{0, 1.1, 0.2}, Age{0, 1.8, 0.15},
                            Age{1, 0.8, 0.3},  Age{1, 1.6, 0.4},  Age{1, 2.6, 0.3}, Age{2, 2.0, 0.3},
                            Age{2, 3.2, 0.3},  Age{2, 4.5, 0.25}, Age{2, 6.0, 0.15}};

@@ -4,21 +4,65 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <stdexcept>
 
 namespace pelagic {
+namespace {
 
-std::string instruction_set() {
-    // The lowest bit is the best target that the program contains.
-    const std::int64_t targets = hwy::SupportedTargets() & (HWY_TARGETS | HWY_STATIC_TARGET);
-    std::string name = hwy::TargetName(targets & -targets);
+// Highway's bits, the widest set's the lowest. The one that the program is compiled for is there in any case: Debian's Highway
+// finds SSE4 only where the CPU has AES as well, and dispatch then ends there.
+std::int64_t in_use() {
+    return (hwy::SupportedTargets() & HWY_TARGETS) | HWY_STATIC_TARGET;
+}
+// Of this CPU, before anything was narrowed.
+const std::int64_t kAll = in_use();
+
+std::int64_t widest(std::int64_t targets) {
+    return targets & -targets;
+}
+
+std::string name_of(std::int64_t target) {
+    std::string name = hwy::TargetName(target);
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-#if defined(__x86_64__)
-    // FFTW chooses its own instruction set and has one (AVX) between two of ours.
-    if ((targets & -targets) > HWY_AVX2)
-        if (__builtin_cpu_supports("avx")) name += "+avx";
+    return name == "avx3" ? "avx512" : name;
+}
+
+}  // namespace
+
+std::string instruction_set() {
+    return name_of(widest(in_use()));
+}
+
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> names;
+    for (std::int64_t left = kAll; left != 0; left &= left - 1) names.push_back(name_of(widest(left)));
+    std::reverse(names.begin(), names.end());
+    return names;
+}
+
+void use_instruction_set(const std::string& name) {
+    std::string known;
+    for (std::int64_t left = kAll; left != 0; left &= left - 1) {
+        const std::string widest_left = name_of(widest(left));
+        if (widest_left == name) {
+            // (hwy::DisableTargets() doesn't do: asking which there are brings all back.)
+            hwy::SetSupportedTargetsForTest(left);
+            hwy::GetChosenTarget().DeInit();
+            return;
+        }
+        known = widest_left + (known.empty() ? "" : ", ") + known;
+    }
+    throw std::invalid_argument("instruction set \"" + name + "\": this CPU has " + known);
+}
+
+bool is_below_avx2() {
+#if HWY_ARCH_X86
+    return widest(in_use()) > HWY_AVX2;
+#else
+    return false;
 #endif
-    return name;
 }
 
 }  // namespace pelagic

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/buffer.h"
+#include "core/base/instruction_set.h"
 #include "core/waves/planning.h"
 #include "core/waves/wisdom.h"
 
@@ -124,8 +125,9 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
         // Lengths without wisdom use FFTW's estimate, which is good for single 1-D transforms out of place: within
         // a fifth of its longest search. (For 2-D, strided or in-place transforms estimates are up to ten times
         // slower.)
+        const unsigned flags = effort() | FFTW_PRESERVE_INPUT | (is_below_avx2() ? FFTW_NO_SIMD : 0U);
         plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + stride, from.data(),
-                                     to.data() + stride, to.data(), effort() | FFTW_PRESERVE_INPUT);
+                                     to.data() + stride, to.data(), flags);
     }
     if (!plan->handle) throw std::runtime_error("no transform for size " + std::to_string(n));
     plan_ = std::move(plan);

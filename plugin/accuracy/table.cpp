@@ -63,7 +63,7 @@ std::span<const ApproximationRow> approximation_table() {
          rows::train_number},
         {"instruction-sets",
          "Vector instructions",
-         "none: the best that the CPU has",
+         "none in a shot; --instruction-set of bake, render and farm",
          "double precision, quintic spline, four nodes a sample",
          {kPosition, kNormal},
          kPointsTime,

@@ -1,5 +1,4 @@
 // Sweeps of the sum of waves: how many, how they are read between their grids' nodes, and in which arithmetic.
-#include <hwy/highway.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -265,42 +264,24 @@ Trials train_number(const Scene& shot) {
     return trials;
 }
 
-namespace {
-
-// Highway's choice of vectors, narrowed while this lives.
-class OnlyTarget {
-  public:
-    explicit OnlyTarget(std::int64_t target) {
-        hwy::DisableTargets(~target);
-        hwy::GetChosenTarget().DeInit();
-    }
-    ~OnlyTarget() {
-        hwy::DisableTargets(0);
-        hwy::GetChosenTarget().DeInit();
-    }
-    OnlyTarget(const OnlyTarget&) = delete;
-    OnlyTarget& operator=(const OnlyTarget&) = delete;
-};
-
-}  // namespace
-
 Trials instruction_sets(const Scene& shot) {
     const auto exact = std::make_shared<const InDouble>(plain_waves(shot));
     const std::string best = instruction_set();
     Trials trials;
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        const OnlyTarget only(target);
-        const std::string name = instruction_set();
+    for (const std::string& name : pelagic::instruction_sets()) {
+        use_instruction_set(name);
         const auto sea = exact->sea({.spline_taps = 6, .oversampling = 4.0});
         trials.trials.push_back({.setting = name,
                                  .is_shots = name == best,
                                  .run =
                                      [=] {
-                                         const OnlyTarget again(target);
+                                         use_instruction_set(name);
                                          sea->run();
+                                         use_instruction_set(best);
                                      },
                                  .errors = [=] { return exact->errors(*sea); }});
     }
+    use_instruction_set(best);
     return trials;
 }
 

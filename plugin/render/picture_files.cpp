@@ -12,7 +12,6 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "core/base/instruction_set.h"
 #include "core/lighting/air.h"
 #include "core/lighting/primaries.h"
 #include "core/lighting/tone.h"
@@ -145,7 +144,6 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"samplesPerPixel", context.options.samples * context.options.samples},
         {"shutter_frames", context.options.shutter_frames},
         {"fingerprint", context.made_of},
-        {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
     constexpr int kDay_s = 24 * 3600;
     if (const int fps = static_cast<int>(std::lround(scene.shot.fps));

@@ -122,11 +122,13 @@ std::map<int, FrameRecord> sealed_frames(const std::filesystem::path& folder, co
         if (!is_in(shot, frame)) continue;
         FrameRecord& entry = frames[frame];
         entry.fingerprint = parts.front().fingerprint(frame);
+        entry.instruction_set = instruction_set();
         for (const RunPart& part : parts) {
             const std::filesystem::path file = folder / part.file(frame);
-            if (seems_whole(file, entry.fingerprint))
-                entry.files[part.file(frame)] = {.bytes = files::file_size(file).value_or(0),
-                                                 .fingerprint = entry.fingerprint};
+            if (!seems_whole(file, entry.fingerprint)) continue;
+            entry.files[part.file(frame)] = {.bytes = files::file_size(file).value_or(0),
+                                             .fingerprint = entry.fingerprint};
+            if (!says_instruction_set(file, instruction_set())) entry.instruction_set.clear();
         }
     }
     return frames;
@@ -223,10 +225,11 @@ class Run {
     void find() {
         const Shot& shot = work_.shot;
         std::set<int> numbers;
-        const std::map<int, FrameRecord> recorded =
+        std::map<int, FrameRecord> recorded =
             work_.has_record ? recorded_frames(report_, shot, frames_, numbers, options_.cancel)
                              : sealed_frames(options_.out, shot, parts_, options_.cancel);
         named_ = named_frames(shot, frames_, numbers);
+        find_other_sets(recorded);
         std::vector<FileCheck> checks = files_to_check(frames_, recorded, parts_);
         if (options_.trust_times)
             check_times(options_.out, checks, report_.record);
@@ -249,6 +252,17 @@ class Run {
                 report_.stale.push_back(frame);
         std::sort(report_.stale.begin(), report_.stale.end());
         progress_.kept = report_.kept = static_cast<int>(frames_.size() - jobs_.size());
+    }
+
+    void find_other_sets(std::map<int, FrameRecord>& recorded) {
+        for (const int frame : frames_) {
+            const auto entry = recorded.find(frame);
+            if (entry == recorded.end() || entry->second.files.empty() ||
+                entry->second.instruction_set == instruction_set())
+                continue;
+            report_.of_other_sets[entry->second.instruction_set].push_back(frame);
+            if (options_.same_instruction_set) recorded.erase(entry);
+        }
     }
 
     void make() {

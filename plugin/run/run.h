@@ -9,6 +9,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,9 @@ struct RunOptions {
     // Files of the recorded size that are no newer than the record count as whole, unread; pictures that say so at their
     // beginning and end.
     bool trust_times = false;
+    // Files that another instruction set made (instruction_set()) than this process uses are made again, and said; otherwise they are kept,
+    // and said where a record knows of them.
+    bool same_instruction_set = false;
     // What the shot's settings were chosen for, and which they are (plugin/budget): the record or the pictures say it. Empty: they
     // are the shot's own.
     std::string chosen{};
@@ -76,6 +80,9 @@ struct RunReport {
     std::string unlocked;
     std::string
         note;  // of whoever settles a budget for the run: where files that are there say otherwise, and that stays
+    // Frames that were asked for and that another instruction set had made: of which set (empty: pictures don't say which). Kept, or
+    // made again (RunOptions::same_instruction_set).
+    std::map<std::string, std::vector<int>> of_other_sets;
     // What wasn't as it was recorded, and was made again, a line each: "mesh/sea.0007.usdc holds other bytes …".
     std::vector<std::string> damaged;
 };

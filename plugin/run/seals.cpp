@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/base/instruction_set.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/files.h"
 #include "plugin/files/read.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{1} << 20;  // [bytes] holds any header
 constexpr const char* kChecksum = "checksum";
 constexpr const char* kName = "file";
+constexpr const char* kInstructionSet = "instructionSet";
 constexpr const char* kUnknown =
     "is no picture of pelagic render, or an older version's, or its header is damaged";
 constexpr const char* kDamaged = "holds other bytes than were written (its checksum differs)";
@@ -32,6 +34,10 @@ std::size_t digits_at(std::string_view header) {
     const std::size_t found = header.find(before);
     return found == std::string_view::npos || found + filled.size() > header.size() ? std::string::npos
                                                                                     : found + before.size();
+}
+
+std::string in_comment(const std::string& set) {
+    return ", by " + set + '.';
 }
 
 std::string another_name(const std::string& name) {
@@ -81,7 +87,7 @@ std::string png_problem(const std::filesystem::path& path, CheckProgress& progre
 }  // namespace
 
 std::vector<exr::Attribute> seal_attributes(const std::string& name) {
-    return {{kName, name}, {kChecksum, no_digits()}};
+    return {{kInstructionSet, instruction_set()}, {kName, name}, {kChecksum, no_digits()}};
 }
 
 void seal(std::string& exr) {
@@ -91,7 +97,12 @@ void seal(std::string& exr) {
 }
 
 std::string png_comment(const std::string& name, const std::string& made_of) {
-    return "pelagic " + made_of + ' ' + name;
+    return "pelagic " + made_of + ' ' + name + in_comment(instruction_set());
+}
+
+bool says_instruction_set(const std::filesystem::path& file, const std::string& set) {
+    return files::carries(
+        file, file.extension() == ".exr" ? exr::text_attribute_bytes(kInstructionSet, set) : in_comment(set));
 }
 
 std::string picture_problem(const std::filesystem::path& file, CheckProgress& progress) {

@@ -18,6 +18,9 @@ void seal(std::string& exr);
 // The comment of a PNG called `name`.
 std::string png_comment(const std::string& name, const std::string& made_of);
 
+// Whether the picture says that this set (instruction_set()) made it.
+bool says_instruction_set(const std::filesystem::path& file, const std::string& set);
+
 // Whether the picture is there, and says at its beginning and end that it is whole and was made of this.
 bool seems_whole(const std::filesystem::path& file, const std::string& made_of);
 

@@ -5,7 +5,6 @@
 //   bench_cost_model shots [THREADS [sse4 | avx2]]
 #include "plugin/budget/cost.h"
 
-#include <hwy/targets.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -249,20 +248,13 @@ void shots() {
                 100.0 * worst_picture);
 }
 
-// No vectors beyond those of the name. (After hwy::DisableTargets() alone, asking which there are brings all back.)
-void hold_back(const std::string& most) {
-    const std::int64_t beyond = HWY_AVX3 | HWY_AVX3_DL | (most == "sse4" ? HWY_AVX2 : 0);
-    hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~beyond);
-    hwy::GetChosenTarget().DeInit();
-}
-
 }  // namespace
 }  // namespace pelagic
 
 int main(int argc, char** argv) {
     using namespace pelagic;
     if (argc > 1 && std::string(argv[1]) == "shots") {
-        if (argc > 3) hold_back(argv[3]);
+        if (argc > 3) use_instruction_set(argv[3]);
         const int threads = argc > 2 ? std::atoi(argv[2]) : oneapi::tbb::this_task_arena::max_concurrency();
         const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                                 static_cast<std::size_t>(threads));

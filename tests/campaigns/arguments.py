@@ -37,7 +37,7 @@ VALUES = {
     "--terms": ["sun", "sun,sky", "sun,,sky", "sun,sun", ",", "all", "", "spray,air"],
     "--shutter": ["0", "0.5", "4", "4.1", "-1", "nan", "1e-320", ""],
     "--layers": ["all", "none", "depth", "depth,depth", "all,none", ",", "", "x"],
-    "--threads": NUMBERS,
+    "--threads": NUMBERS, "--instruction-set": ["sse4", "avx2", "avx512", "avx3", "", "AVX2"],
     "--max-memory": ["8G", "1", "0", "-1", "1e3G", "512M", "G", "8g", "8 G", "18446744073709551616", "16777216T", "nan", ""],
     "--verb": ["bake", "render", "paint", ""], "--status": ["out", ".", "nothing", "small.toml", ""], "--tasks": [*NUMBERS, "1000", "1001"],
     "--minutes": [*NUMBERS, "0.1", "1440", "1e9"], "--sbatch": ["--partition=night", "", "a\nb"], "--json": None,
@@ -48,9 +48,9 @@ VALUES = {
     "--frame": [*NUMBERS, "100000000", "2147483648"], "--rows": ["sky", "nothing", ",", ""], "--repeats": ["0", "1001", "x"],
 }
 OPTIONS = {
-    "bake": ["--out", "--frames", "--trust-times", "--threads", "--max-memory", "--json", "--chosen"],
+    "bake": ["--out", "--frames", "--trust-times", "--threads", "--max-memory", "--instruction-set", "--json", "--chosen"],
     "render": ["--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms", "--shutter", "--alpha", "--layers",
-               "--trust-times", "--threads", "--max-memory"],
+               "--trust-times", "--threads", "--max-memory", "--instruction-set"],
     "preview": ["--frame", "--size", "--quality", "--scale", "--threads", "--max-memory", "--offscreen", "--after"],
     "explain": ["--threads", "--json"],
     "farm": ["--out", "--frames", "--verb", "--status", "--tasks", "--minutes", "--sbatch", "--json", "--chosen", "--samples", "--threads"],

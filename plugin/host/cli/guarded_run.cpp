@@ -4,16 +4,32 @@
 #include <new>
 
 #include "core/base/build_watch.h"
+#include "core/base/instruction_set.h"
 #include "core/base/text.h"
 #include "core/plan/memory.h"
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/instruction_set.h"
 #include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/memory.h"
 #include "plugin/host/cli/text.h"
 
 namespace pelagic::cli {
+namespace {
+
+void print_other_sets(const RunReport& report, const RunOptions& options, const std::string& out) {
+    for (const auto& [set, frames] : report.of_other_sets)
+        if (!set.empty() || options.same_instruction_set)
+            std::cerr << "pelagic: note: in " << out << ' ' << (set.empty() ? "another instruction set" : set)
+                      << " had made the frames " << frames_text(frames)
+                      << (options.same_instruction_set
+                              ? "; made again by "
+                              : ": kept; for equal bits by one set, give --instruction-set, as ")
+                      << instruction_set() << std::endl;
+}
+
+}  // namespace
 
 int guarded_run(const Guard& guard, const std::function<int(Session&)>& work) {
     std::optional<StopSignals> stop;  // from here on nobody's closing of a log ends the work
@@ -49,6 +65,7 @@ void add_run_options(CLI::App& command, RunArguments& arguments, const char* tru
     command.add_option("--chosen", arguments.chosen, help::kChosen)->type_name("TEXT");
     add_threads(command, arguments.threads, help::kThreads);
     add_max_memory(command, arguments.max_memory, help::kMaxMemory);
+    add_instruction_set(command, arguments.instruction_set);
 }
 
 RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
@@ -60,6 +77,7 @@ RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
     options.max_memory_bytes = memory_of(arguments.max_memory);
     options.trust_times = arguments.trust_times;
     options.settled = arguments.chosen;
+    options.same_instruction_set = !arguments.instruction_set.empty();
     return options;
 }
 
@@ -79,6 +97,7 @@ Settled settled_for(const RunOptions& options, const Scene& scene, Purpose purpo
 }
 
 int run_frames(const RunArguments& arguments, RunOptions options, const FrameVerb& verb) {
+    apply_instruction_set(arguments.instruction_set);
     RunReport report;
     const std::string out = line_text(options.out.string());
     const auto stopped = [&] {
@@ -99,6 +118,7 @@ int run_frames(const RunArguments& arguments, RunOptions options, const FrameVer
                            report = session.threads.execute([&] { return verb.work(options, session); });
                            if (report.cancelled) throw BuildCancelled();
                            session.progress.clear();
+                           print_other_sets(report, options, out);
                            verb.report(report, out);
                            tell_json({{"event", "result"},
                                       {"verb", verb.name},

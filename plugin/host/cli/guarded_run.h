@@ -53,7 +53,7 @@ int guarded_run(const Guard& guard, const std::function<int(Session&)>& work);
 struct RunArguments {
     std::string shot;
     std::optional<std::string> out, frames;
-    std::string threads, max_memory;
+    std::string threads, max_memory, instruction_set;
     std::string chosen;
     bool trust_times = false;
 };

@@ -63,6 +63,11 @@ const char* const kThreads =
     "How many threads, 1 to 256; the files don't depend on it.\n"
     "Default: one for each core that the process may use";
 
+const char* const kInstructionSet =
+    "No wider vectors than these: sse4, avx2 or avx512. CPUs that have them make the same bytes\n"
+    "then; files that another set made are made again.\n"
+    "Default: the widest that this CPU has, and whole files stay, whatever made them";
+
 const char* const kMaxMemory =
     "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
     "Default: what the machine has, or less where a container or ulimit allows less";

@@ -27,6 +27,7 @@
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/instruction_set.h"
 #include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
@@ -198,6 +199,7 @@ int flushed(int status) {
 // run(), and what it throws, as messages.
 int said_run(int argc, const char* const* argv) {
     try {
+        restart_for_instruction_set(argc, argv);
         return run(argc, argv);
     } catch (const ShotError& error) {
         return failed(error.what(),

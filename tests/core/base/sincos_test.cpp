@@ -75,14 +75,14 @@ void expect_close(Work work, double tolerance) {
 
 // Rounding of the angle, the polynomial and the last product: two units in the last place of 1.
 TEST(SinCos, MatchesTheCLibraryOnEveryInstructionSet) {
-    for (int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-        const int64_t target = left & -left;
-        hwy::SetSupportedTargetsForTest(target);
-        SCOPED_TRACE(hwy::TargetName(target));
+    const std::string best = instruction_set();
+    for (const std::string& set : instruction_sets()) {
+        use_instruction_set(set);
+        SCOPED_TRACE(set);
         expect_close<float>(HWY_DYNAMIC_DISPATCH(SinCosFloat), 2 * 1.2e-7);
         expect_close<double>(HWY_DYNAMIC_DISPATCH(SinCosDouble), 2 * 2.3e-16);
     }
-    hwy::SetSupportedTargetsForTest(0);
+    use_instruction_set(best);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "core/evaluate/trains.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <memory>
 
 #include "core/base/constants.h"
+#include "core/base/instruction_set.h"
 #include "core/base/random.h"
 
 namespace pelagic {
@@ -392,20 +392,19 @@ TEST(TrainsKernel, EveryInstructionSetAgrees) {
                                 .cell_of = cells.data(),
                                 .pixel_of = pixels.data()};
     add_trains(args, *best);
-    int sets = 0;
-    for (int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1, ++sets) {
-        const int64_t target = left & -left;
-        hwy::SetSupportedTargetsForTest(target);
-        SCOPED_TRACE(hwy::TargetName(target));
+    const std::string widest = instruction_set();
+    for (const std::string& set : instruction_sets()) {
+        use_instruction_set(set);
+        SCOPED_TRACE(set);
         const auto chunk = scattered<float>(kPoints);
         add_trains(args, *chunk);
-        hwy::SetSupportedTargetsForTest(0);
+        use_instruction_set(widest);
         for (const Field field : kFields)
             for (std::size_t i = 0; i < kPoints; ++i)
                 ASSERT_NEAR(chunk->sums[index(field)][i], best->sums[index(field)][i], 1e-5 * hs)
                     << index(field);
     }
-    EXPECT_GE(sets, 2);
+    EXPECT_GE(instruction_sets().size(), 2U);
 }
 
 }  // namespace

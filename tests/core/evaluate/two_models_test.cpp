@@ -1,6 +1,5 @@
 // Trains and cascades behind one query: alone and together, every instruction set alike.
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 #include "core/surface/patch.h"
 
 #include <algorithm>
@@ -137,18 +136,14 @@ void expect_agreement(const Scene& scene, double tolerance) {
     const auto rows = rest_points<T>({.per_side = 60, .spacing_m = 2.5, .first_m = -75.0});
     rest.insert(rest.end(), rows.begin(), rows.end());
     std::vector<ProductArrays<T>> answers;
-    std::vector<std::string> names;
+    const std::vector<std::string> names = instruction_sets();
     double height_m = 0.0;
-    // The CPU may know targets that the program doesn't contain.
-    const std::int64_t built = HWY_TARGETS | HWY_STATIC_TARGET;
-    for (std::int64_t left = hwy::SupportedTargets() & built; left != 0; left &= left - 1) {
-        hwy::SetSupportedTargetsForTest(left & -left);
-        names.push_back(instruction_set());
+    for (const std::string& set : names) {
+        use_instruction_set(set);
         const auto frame = frame_of<T>(scene, {between}, 5.0);
         height_m = frame.sea().total().significant_height_m();
         answers.push_back(sample(frame, 0, rest));
     }
-    hwy::SetSupportedTargetsForTest(0);
     double largest = 0.0;
     for (std::size_t s = 1; s < answers.size(); ++s) {
         double worst = 0.0;

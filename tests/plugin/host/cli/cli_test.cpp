@@ -62,7 +62,7 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
 TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> verbs{
         {"bake",
-         {"SHOT.toml", "--out", "--frames", "--trust-times", "--threads", "--help",
+         {"SHOT.toml", "--out", "--frames", "--trust-times", "--threads", "--instruction-set", "--help",
           "folder in the working folder"}},
         {"render",
          {"SHOT.toml", "--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms",

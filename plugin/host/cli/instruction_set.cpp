@@ -1,0 +1,81 @@
+#include "plugin/host/cli/instruction_set.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/instruction_set.h"
+#include "core/scene/text.h"
+#include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/help.h"
+
+namespace pelagic::cli {
+namespace {
+
+constexpr std::string_view kOption = "--instruction-set";
+
+// A farm's tasks may run on other CPUs than the one that writes their script.
+const std::vector<std::string>& known_sets() {
+#if defined(__x86_64__)
+    static const std::vector<std::string> sets{"sse4", "avx2", "avx512"};
+#else
+    static const std::vector<std::string> sets = instruction_sets();
+#endif
+    return sets;
+}
+
+std::string refuse_set(const std::string& text) {
+    if (std::find(known_sets().begin(), known_sets().end(), text) != known_sets().end()) return {};
+    return text + " is no instruction set; accepted: " + listed(known_sets()) +
+           ", or no --instruction-set for the widest that this CPU has";
+}
+
+std::string_view asked_set(int argc, const char* const* argv) {
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (argument == kOption && i + 1 < argc) return argv[i + 1];
+        if (argument.starts_with(kOption) && argument.substr(kOption.size()).starts_with('='))
+            return argument.substr(kOption.size() + 1);
+    }
+    return {};
+}
+
+}  // namespace
+
+void add_instruction_set(CLI::App& command, std::string& set) {
+    command.add_option(std::string(kOption), set, help::kInstructionSet)
+        ->type_name("SET")
+        ->check(CLI::Validator(refuse_set, ""));
+}
+
+void apply_instruction_set(const std::string& set) {
+    if (set.empty()) return;
+    asked([&] {
+        use_instruction_set(set);
+        return set;
+    });
+}
+
+void restart_for_instruction_set([[maybe_unused]] int argc, [[maybe_unused]] const char* const* argv) {
+#if defined(__x86_64__) && defined(__GLIBC__)
+    if (asked_set(argc, argv) != "sse4" || !__builtin_cpu_supports("fma")) return;
+    // What glibc's mathematics ask the CPU for, each taken away.
+    constexpr std::string_view kWithout = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4";
+    const char* const before = std::getenv("GLIBC_TUNABLES");
+    std::string tunables = before ? before : "";
+    if (tunables.ends_with(kWithout)) return;
+    if (!tunables.empty()) tunables += ':';
+    tunables += kWithout;
+    if (setenv("GLIBC_TUNABLES", tunables.c_str(), 1) == 0)
+        execv("/proc/self/exe", const_cast<char* const*>(argv));
+    throw std::system_error(errno, std::generic_category(),
+                            "--instruction-set sse4 can't start the program anew");
+#endif
+}
+
+}  // namespace pelagic::cli

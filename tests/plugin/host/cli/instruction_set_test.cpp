@@ -1,0 +1,89 @@
+// --instruction-set: what it accepts, and what becomes of files that another set made.
+#include "core/base/instruction_set.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/plugin/host/cli/program.h"
+#include "tests/plugin/host/cli/small_shot.h"
+
+namespace pelagic::test {
+namespace {
+
+class InstructionSet : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        if (pelagic::instruction_sets().size() < 2) GTEST_SKIP() << "this CPU has one set alone";
+        write_file(folder_.path() / "small.toml", text_of({.frames = 2}));
+    }
+    Ended make(const std::string& verb, const std::string& out, const std::string& set,
+               std::vector<std::string> more = {}) const {
+        std::vector<std::string> arguments{verb, "small.toml", "--out", out};
+        if (!set.empty()) arguments.push_back("--instruction-set=" + set);
+        if (verb == "render")
+            arguments.insert(arguments.end(), {"--size", "32x18", "--samples", "1", "--sky-quality", "one"});
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run({.arguments = arguments, .folder = folder_.path()});
+    }
+    std::string difference(const std::string& a, const std::string& b) const {
+        return differences(folder_.path() / a, folder_.path() / b);
+    }
+    const std::string wide_ = pelagic::instruction_sets().back();
+
+    TempFolder folder_;
+};
+
+TEST_F(InstructionSet, OthersAreRefused) {
+    for (const char* set : {"", "avx", "AVX2", "avx3", "sse4,avx2", "native"}) {
+        const Ended ended = run({.arguments = {"bake", "small.toml", std::string("--instruction-set=") + set},
+                                 .folder = folder_.path()});
+        EXPECT_EQ(ended.status, 2) << set;
+        EXPECT_TRUE(has(ended.err, "--instruction-set")) << ended.err;
+    }
+    const Ended ended = make("bake", "a", "avx3");
+    EXPECT_TRUE(has(ended.err, "accepted: sse4, avx2, avx512")) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a"));
+}
+
+// The narrow set's files are others than the wide one's, and alike on any number of threads.
+TEST_F(InstructionSet, IsUsedAndRecorded) {
+    for (const std::string& set : {std::string(), wide_, std::string("sse4")})
+        EXPECT_EQ(make("bake", "by-" + set, set).status, 0) << set;
+    EXPECT_EQ(difference("by-", "by-" + wide_), "");
+    EXPECT_NE(difference("by-", "by-sse4"), "") << "fused products were used all the same";
+    EXPECT_TRUE(has(read_file(folder_.path() / "by-sse4/small.json"), "\"instruction_set\": \"sse4\""));
+    EXPECT_EQ(make("bake", "alone", "sse4", {"--threads", "1"}).status, 0);
+    EXPECT_EQ(difference("by-sse4", "alone"), "");
+}
+
+TEST_F(InstructionSet, FilesOfAnotherAreKeptAndSaidOrMadeAgain) {
+    for (const std::string& verb : {std::string("bake"), std::string("render")}) {
+        SCOPED_TRACE(verb);
+        ASSERT_EQ(make(verb, "whole", "sse4").status, 0);
+        ASSERT_EQ(make(verb, "mixed", wide_, {"--frames", "1"}).status, 0);
+        const std::string before = difference("whole", "mixed");
+        // Whole files stay, and a record knows of which set they are.
+        const Ended kept = make(verb, "whole", "");
+        EXPECT_EQ(kept.status, 0);
+        EXPECT_TRUE(has(kept.out, "2 kept")) << kept.out;
+        EXPECT_EQ(has(kept.err, "sse4 had made the frames 1-2: kept"), verb == "bake") << kept.err;
+        // Whoever asks for a set gets it.
+        const Ended again = make(verb, "mixed", "sse4");
+        EXPECT_EQ(again.status, 0);
+        EXPECT_TRUE(has(again.err, "had made the frames 1; made again by sse4")) << again.err;
+        EXPECT_TRUE(has(again.out, "2 frames") || has(again.out, "2 pictures")) << again.out;
+        EXPECT_NE(before, "");
+        EXPECT_EQ(difference("whole", "mixed"), "");
+        const Ended same = make(verb, "mixed", "sse4");
+        EXPECT_TRUE(has(same.out, "2 kept")) << same.out;
+        EXPECT_EQ(same.err.find("made again"), std::string::npos) << same.err;
+        std::filesystem::remove_all(folder_.path() / "whole");
+        std::filesystem::remove_all(folder_.path() / "mixed");
+    }
+}
+
+}  // namespace
+}  // namespace pelagic::test

@@ -37,6 +37,7 @@ HWY_AFTER_NAMESPACE();
 #include <cmath>
 #include <vector>
 
+#include "core/base/instruction_set.h"
 #include "core/base/random.h"
 
 namespace pelagic {

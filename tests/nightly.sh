@@ -47,7 +47,7 @@ for share in 1 2 3 4; do part "sanitize-$share" 75 "$here/run.sh sanitize --shar
 for share in 1 2; do part "tsan-$share" 75 "$here/run.sh tsan --share $share/2"; done
 for suite in trixie sid; do part "blender-$suite" 60 "$here/addon/in_debian.sh $suite"; done
 part packages 30 "$here/package/debian.sh"
-part older-cpus 30 "$here/plugin/host/cli/older_cpus.sh"
+part older-cpus 30 "$here/farm/older_cpus.sh"
 part benches 10 benches
 part rays 30 rays
 part random-scenes 75 random_scenes

@@ -4,11 +4,11 @@ set -euo pipefail
 tests=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
-mkdir -p "$root"/{examples,tests/addon,tests/fuzz,tests/campaigns,tests/package}
+mkdir -p "$root"/{examples,tests/addon,tests/fuzz,tests/campaigns,tests/package,tests/farm}
 cp "$tests/nightly.sh" "$root/tests/"
 printf 'PELAGIC_ROOT=%s\ninstall_packages() { :; }\nbuild() { :; }\nctest() { :; }\n' "$root" >"$root/examples/setup.sh"
 mkdir -p "$root/build/release/tests"
-for program in tests/run.sh tests/addon/in_debian.sh tests/fuzz/run.sh tests/campaigns/run.sh tests/package/debian.sh build/release/tests/test_{procedural_rays,random_scenes}; do
+for program in tests/run.sh tests/addon/in_debian.sh tests/fuzz/run.sh tests/campaigns/run.sh tests/package/debian.sh tests/farm/older_cpus.sh build/release/tests/test_{procedural_rays,random_scenes}; do
     printf '#!/bin/sh\necho "%s $*" >>"%s/ran"\n' "$(basename "$program")" "$root" >"$root/$program"
     chmod +x "$root/$program"
 done

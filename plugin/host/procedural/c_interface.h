@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/evaluate/results.h"
+#include "core/plan/memory.h"
 #include "core/scene/limits.h"
 #include "pelagic/procedural.h"
 #include "plugin/format/shot/shot.h"
@@ -50,8 +51,10 @@ pelagic_status guarded(pelagic_error* error, const Work& work) noexcept {
         return work();
     } catch (const ShotError& refused) {
         return failed(PELAGIC_SHOT_REFUSED, refused.what());
-    } catch (const BuildCancelled& cancelled) {
-        return failed(PELAGIC_CANCELLED, cancelled.what());
+    } catch (const BuildCancelled&) {
+        return failed(PELAGIC_CANCELLED, "cancelled by the host");
+    } catch (const NotEnoughMemory& refused) {
+        return failed(PELAGIC_OUT_OF_MEMORY, refused.what());
     } catch (const std::invalid_argument& invalid) {
         return failed(PELAGIC_INVALID_ARGUMENT, invalid.what());
     } catch (const std::bad_alloc&) {

@@ -20,6 +20,7 @@
 #include "core/scene/limits.h"
 #include "core/surface/earth.h"
 #include "core/surface/view.h"
+#include "core/waves/folding.h"
 #include "pelagic/version.h"
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/procedural/c_interface.h"
@@ -30,6 +31,11 @@
 namespace pelagic::procedural {
 namespace {
 
+// That messages use.
+const char* name_of(const pelagic_source& source) {
+    return source.path ? source.path : "shot.toml";
+}
+
 // A budget is left out: a renderer says itself how fine its points are.
 Scene scene_of(const pelagic_source& source) {
     if (source.text) {
@@ -37,8 +43,7 @@ Scene scene_of(const pelagic_source& source) {
         if (length > kMostShotBytes)
             throw std::invalid_argument("source.text has " + std::to_string(length) +
                                         " bytes; accepted: at most " + std::to_string(kMostShotBytes));
-        return without_budget(
-            parse_shot({source.text, length}, source.path ? source.path : "shot.toml", check_scene));
+        return without_budget(parse_shot({source.text, length}, name_of(source), check_scene));
     }
     return without_budget(load_shot(&required(source.path, "source.path"), check_scene));
 }
@@ -196,7 +201,8 @@ pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_opt
                     "options.finest_cell_m, finest_pixel_m are outside the range; accepted: 0 to 1e6 m");
         if (asked.threads < 0)
             throw std::invalid_argument("options.threads is negative; accepted: 0 or more");
-        Scene scene = scene_of(taken(source, "source"));
+        const auto from = taken(source, "source");
+        Scene scene = scene_of(from);
         std::atomic<bool> cancel = false;
         BuildWatch watch;
         if (asked.progress) {
@@ -210,12 +216,23 @@ pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_opt
             if (cancel) throw BuildCancelled();
         };
         tell(0.0);
+        if (asked.note)
+            for (const std::string& warning : sea_warnings(*prepare(scene)))
+                asked.note((std::string(name_of(from)) + ": " + warning).c_str(), asked.user);
         auto shot = std::make_shared<const ShotSea>(
             std::move(scene),
-            SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads, asked.ray_cache_bytes},
+            SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads, asked.ray_cache_bytes,
+                       asked.max_memory_bytes},
             watch);
         tell(1.0);
         out = new pelagic_sea{std::move(shot)};
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_cancel(const pelagic_sea* sea, int cancelled, pelagic_error* error) {
+    return guarded(error, [&] {
+        required(sea, "sea").shot->is_cancelled = cancelled != 0;
         return PELAGIC_OK;
     });
 }
@@ -317,6 +334,7 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
         const Wanted wanted = wanted_in(taken(values, "values"));
         const ShotFrame& of = required(frame, "frame").frame;
         const TimedPoints timed = checked(of, asked);
+        stop_if(&of.shot().is_cancelled);
         if (timed.points.count > 0) of.evaluate(timed, wanted.results, wanted.coverage);
         return PELAGIC_OK;
     });

@@ -128,7 +128,7 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
         Plan plan = plan_of(scene, options, finest_ray_m);
         MemoryNeed need;
         add_sea(need, plan, arena->max_concurrency());
-        require_memory(need, machine::memory_limit(), "a frame of this sea");
+        require_memory(need, machine::memory_limit_or(options.max_memory_bytes), "a frame of this sea");
         sea = std::make_shared<const SeaOverTime<float>>(std::move(plan), watch);
         if (sea->plan().foam) without_past = sea->first()->whitecaps({});
         // As the plan's levels have it; a sea of trains has none.
@@ -157,7 +157,8 @@ void ShotFrame::set(double open_s, double close_s) {
                                     number_text(Frame<float>::kLatest_s) + " s, in order, and open for " +
                                     number_text(kLongestShutter_s) + " s of the sea at most");
     of_->arena->execute([&] {
-        state_.set(0.5 * (open_s + close_s));
+        stop_if(&of_->is_cancelled);
+        state_.set(0.5 * (open_s + close_s), &of_->is_cancelled);
         const ProductSet now = kProducts & ~lasting_products();
         query_.emplace(state_.frame(), 0, now);
         if (of_->without_past) {
@@ -270,7 +271,7 @@ void ShotFrame::ask(const Points<float>& points, const Results<float>& results, 
         now.set(Product::Coverage, Strided<float>{});
         return alone ? without_past_->evaluate_alone(points, now) : without_past_->evaluate(points, now);
     }
-    const auto all = [&] { state_.evaluate(*query_, points, results, {}, alone); };
+    const auto all = [&] { state_.evaluate(*query_, points, results, of_->watch(), alone); };
     // The past is gone through by this thread alone as well.
     if (alone && (results.given() & lasting_products()).any() && state_.has_past(0))
         tbb::task_arena(1).execute(all);
@@ -305,7 +306,8 @@ void ShotFrame::water_at(std::span<const glm::dvec2> places_m, float footprint_m
 }
 
 void ShotFrame::prepare(const Points<float>& points) const {
-    of_->arena->execute([&] { state_.prepare(0, points); });
+    stop_if(&of_->is_cancelled);
+    of_->arena->execute([&] { state_.prepare(0, points, of_->watch()); });
 }
 
 ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px) {

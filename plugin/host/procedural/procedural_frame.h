@@ -3,6 +3,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -33,6 +34,7 @@ struct SeaOptions {
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;  // 0: as the shot's camera needs it
     int threads = 0;                                   // at most; 0: all
     std::size_t ray_cache_bytes = 0;                   // that a frame keeps for rays; 0: 256 MiB
+    std::size_t max_memory_bytes = 0;                  // that a frame may hold; 0: what the system gives
 };
 
 // Immutable. The plan has one query, number 0.
@@ -41,7 +43,9 @@ struct ShotSea {
 
     Scene scene;
     std::size_t ray_cache_bytes;
-    double finest_ray_m = 0.0;               // finer footprints of rays count as that
+    double finest_ray_m = 0.0;                      // finer footprints of rays count as that
+    mutable std::atomic<bool> is_cancelled{false};  // by any thread, while others use the sea
+    BuildWatch watch() const { return {.cancel = &is_cancelled}; }
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const SeaOverTime<float>> sea;
     std::optional<Whitecaps>
@@ -65,7 +69,8 @@ class ShotFrame {
   public:
     ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s);
 
-    // Not while others use the frame. Throws std::invalid_argument for times that aren't accepted.
+    // Not while others use the frame. Throws std::invalid_argument for times that aren't accepted. As all that follow but bounds and
+    // water_at(), BuildCancelled where the sea is.
     void set(double open_s, double close_s);
 
     const ShotSea& shot() const { return *of_; }

@@ -19,6 +19,9 @@ namespace {
 // No ray is followed farther, and none begins farther away: a tenth of a millimetre is lost there.
 constexpr double kFarthest_m = 1e12, kFarthestOffset_m = 1e10;
 
+// So many rays go between two looks at whether the sea is cancelled: some milliseconds.
+constexpr std::size_t kAskedEach = 256;
+
 // The rays of a call, one by one.
 class Batch {
   public:
@@ -151,6 +154,7 @@ void intersect(const ShotFrame& frame, const pelagic_rays& rays, const pelagic_h
     Waiting waiting;
     const bool wants_values = values.given().any();
     for (std::size_t i = 0; i < rays.count; ++i) {
+        if (i % kAskedEach == 0) stop_if(&frame.shot().is_cancelled);
         SeaRay ray;
         SeaHit hit;
         double length_m = 0.0;
@@ -204,6 +208,7 @@ pelagic_status pelagic_occluded(const pelagic_frame* frame, const pelagic_rays* 
         if (asked.count > 0) required(occluded, "occluded");
         RayTracer tracer(batch.sea());
         for (std::size_t i = 0; i < asked.count; ++i) {
+            if (i % kAskedEach == 0) stop_if(&frame->frame.shot().is_cancelled);
             SeaRay ray;
             SeaHit hit;
             double length_m = 0.0;

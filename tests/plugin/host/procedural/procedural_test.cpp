@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -15,6 +16,8 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/effects/sea_at_time.h"
@@ -440,6 +443,116 @@ TEST(Procedural, BuildingASeaCanBeCancelled) {
             EXPECT_EQ(pelagic_open(&source, &options, &sea, nullptr), PELAGIC_CANCELLED) << at;
             EXPECT_EQ(sea, nullptr);
         }
+}
+
+// Each call of a frame that can be long; afterwards all is as before.
+TEST(Procedural, CallsOfACancelledSeaEnd) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 3.0, 3.02);
+    std::vector<float> rest_m{1.0f, 2.0f, -3.0f, 4.0f}, position(6), coverage(2), distance(2);
+    std::vector<unsigned char> occluded(2);
+    std::vector<float> down{0.0f, 0.0f, -1.0f, 0.1f, 0.0f, -1.0f};
+    pelagic_points points = PELAGIC_INIT(pelagic_points);
+    points.count = 2;
+    points.rest_m = rest_m.data();
+    pelagic_values values = PELAGIC_INIT(pelagic_values);
+    values.position_m = position.data();
+    values.coverage = coverage.data();
+    pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+    rays.origin_m[2] = 50.0;
+    rays.count = 2;
+    rays.direction = down.data();
+    pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+    hits.distance = distance.data();
+    pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
+    ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, nullptr), PELAGIC_OK);
+    pelagic_mesh_size mesh_size = PELAGIC_INIT(pelagic_mesh_size);
+    ASSERT_EQ(pelagic_expand_size(frame.get(), &camera, nullptr, &mesh_size, nullptr), PELAGIC_OK);
+    std::vector<float> mesh_position(3 * mesh_size.points);
+    pelagic_values mesh_values = PELAGIC_INIT(pelagic_values);
+    mesh_values.position_m = mesh_position.data();
+    pelagic_mesh_buffers mesh = PELAGIC_INIT(pelagic_mesh_buffers);
+    mesh.points = mesh_size.points;
+    mesh.values = &mesh_values;
+    const std::vector<std::pair<const char*, std::function<pelagic_status()>>> calls{
+        {"prepare", [&] { return pelagic_prepare(frame.get(), &points, nullptr); }},
+        {"evaluate", [&] { return pelagic_evaluate(frame.get(), &points, &values, nullptr); }},
+        {"intersect", [&] { return pelagic_intersect(frame.get(), &rays, &hits, nullptr); }},
+        {"occluded", [&] { return pelagic_occluded(frame.get(), &rays, occluded.data(), nullptr); }},
+        {"expand", [&] { return pelagic_expand(frame.get(), &camera, nullptr, &mesh, nullptr); }},
+        {"set", [&] { return pelagic_frame_set(frame.get(), 3.0, 3.02, nullptr); }},
+        {"create", [&] {
+             pelagic_frame* made = nullptr;
+             const pelagic_status status = pelagic_frame_create(sea.get(), 3.0, 3.02, &made, nullptr);
+             pelagic_frame_release(made);
+             return status;
+         }}};
+    const auto results = [&] {
+        for (const auto& [name, call] : calls) EXPECT_EQ(call(), PELAGIC_OK) << name;
+        return std::tuple(position, coverage, distance, occluded, mesh_position);
+    };
+    const auto before = results();
+    EXPECT_EQ(pelagic_cancel(nullptr, 1, nullptr), PELAGIC_INVALID_ARGUMENT);
+    ASSERT_EQ(pelagic_cancel(sea.get(), 1, nullptr), PELAGIC_OK);
+    for (const auto& [name, call] : calls) EXPECT_EQ(call(), PELAGIC_CANCELLED) << name;
+    ASSERT_EQ(pelagic_cancel(sea.get(), 0, nullptr), PELAGIC_OK);
+    ASSERT_EQ(pelagic_frame_set(frame.get(), 3.0, 3.02, nullptr), PELAGIC_OK);
+    EXPECT_TRUE(results() == before);
+}
+
+// By another thread, in the middle of rays that would take a minute.
+TEST(Procedural, ACallThatRunsIsCancelled) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 3.0, 3.0);
+    constexpr std::size_t kRays = 10'000'000;
+    const std::vector<float> direction = [] {
+        std::vector<float> all(3 * kRays, -0.02f);
+        for (std::size_t i = 0; i < kRays; ++i) all[3 * i] = 1.0f;
+        return all;
+    }();
+    std::vector<unsigned char> occluded(kRays, 2);
+    pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+    rays.origin_m[2] = 5.0;
+    rays.count = kRays;
+    rays.direction = direction.data();
+    std::thread host([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        pelagic_cancel(sea.get(), 1, nullptr);
+    });
+    const pelagic_status status = pelagic_occluded(frame.get(), &rays, occluded.data(), nullptr);
+    host.join();
+    EXPECT_EQ(status, PELAGIC_CANCELLED);
+    EXPECT_EQ(occluded.back(), 2) << "it went on to the end";
+}
+
+TEST(Procedural, ASeaOverTheHostsMemoryIsRefused) {
+    pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+    options.max_memory_bytes = 1 << 16;
+    pelagic_source source = PELAGIC_INIT(pelagic_source);
+    source.text = kShot.c_str();
+    pelagic_sea* sea = nullptr;
+    pelagic_error error;
+    EXPECT_EQ(pelagic_open(&source, &options, &sea, &error), PELAGIC_OUT_OF_MEMORY);
+    EXPECT_EQ(sea, nullptr);
+    EXPECT_NE(std::string(error.message).find("a frame of this sea"), std::string::npos) << error.message;
+    options.max_memory_bytes = std::size_t{4} << 30;
+    EXPECT_EQ(pelagic_open(&source, &options, &sea, &error), PELAGIC_OK) << error.message;
+    pelagic_close(sea);
+}
+
+// What a program would print of a shot, a host is told.
+TEST(Procedural, NotesOnAShotAreTold) {
+    std::vector<std::string> notes;
+    pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+    options.user = &notes;
+    options.note = [](const char* sentence, void* user) {
+        static_cast<std::vector<std::string>*>(user)->emplace_back(sentence);
+    };
+    open_text(kShot, &options);
+    EXPECT_TRUE(notes.empty()) << notes.front();
+    open_text(kShot + "[waves]\nchoppiness = 3.5\n", &options);
+    ASSERT_FALSE(notes.empty());
+    EXPECT_EQ(notes.front().rfind("shot.toml: ", 0), 0u) << notes.front();
 }
 
 // Also across a loop's seam, and in slow motion.

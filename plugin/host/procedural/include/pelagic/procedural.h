@@ -12,6 +12,7 @@
  *   pelagic_evaluate(frame, &points, &values, &error);
  *   pelagic_water_at(frame, places, count, footprint_m, water, &error);
  *   pelagic_intersect(frame, &rays, &hits, &error);
+ *   pelagic_cancel(sea, 1);   from another thread: the calls that run end
  *   pelagic_frame_release(frame);
  *   pelagic_close(sea);
  *
@@ -124,11 +125,21 @@ typedef struct pelagic_open_options {
     int (*progress)(double done, void* user);
     void* user;
     size_t ray_cache_bytes; /* what a frame keeps for rays at most; 0: 256 MiB */
+    /* A sea whose frame would hold more is refused before any work, with what it would hold; 0: what the machine has, or less where a container or a
+     * limit allows less. What rays and foam's past keep comes beside it (pelagic_info). */
+    size_t max_memory_bytes;
+    /* Called by pelagic_open(), on its thread, with each note on a shot that is fine but for something that its author may not have
+     * meant: a sentence, and the shot's name before it; null: nobody is told. With `user`. */
+    void (*note)(const char* sentence, void* user);
 } pelagic_open_options;
 
 /* Reads, validates and builds: from milliseconds to seconds. `options` may be null. */
 PELAGIC_API pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
                                         pelagic_sea** sea, pelagic_error* error);
+/* Not 0: calls that run on the sea's frames, or begin, end with PELAGIC_CANCELLED as soon as they can, until it is set back to 0; what they were to write is
+ * worthless, and a frame that was being set must be set again. Any thread may call it, while others use the sea. Bounds and
+ * pelagic_water_at() are short and go on. */
+PELAGIC_API pelagic_status pelagic_cancel(const pelagic_sea* sea, int cancelled, pelagic_error* error);
 /* Frames keep what they need of it: they may be released later. Null is nothing to close. */
 PELAGIC_API void pelagic_close(pelagic_sea* sea);
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # The files of --instruction-set sse4 and avx2 against those of emulated CPUs that have no more: equal, byte by byte.
-#   tests/plugin/host/cli/older_cpus.sh
+#   tests/farm/older_cpus.sh
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-# shellcheck source=../../../../examples/setup.sh
-source "$here/../../../../examples/setup.sh"
+# shellcheck source=../../examples/setup.sh
+source "$here/../../examples/setup.sh"
 install_packages program emulator
 build release pelagic
 program=$PELAGIC_ROOT/build/release/pelagic

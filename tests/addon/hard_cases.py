@@ -1,5 +1,5 @@
 """Each shot of tests/hard_cases through the add-on: refused with the reader's words and nothing left behind, or a mesh in Blender that is
-finite and at its limit, also at the next frame."""
+finite and at its limit, also at the next frame. By day a third of those that are shown: the core's own tests have them all."""
 
 import sys
 from pathlib import Path
@@ -68,6 +68,9 @@ def expect_shown(obj, limit, shot):
 
 cases = sorted(SHOTS.glob("*.toml"))
 assert len(cases) >= 60, len(cases)
+if not at_night():
+    fine = [path for path in cases if promises(path)["load"] == "fine"]
+    cases = [path for path in cases if path not in fine or path in fine[::3]]
 refusals = 0
 fresh_file()  # once: the water's and the sky's groups of nodes stay, which take longer than most seas
 for path in cases:

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Builds the benchmarks and prints their tables. Some twenty-five minutes on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all of them:
-#     frame construction query sky water living_foam bake cost_model preview rays trace window ocean baked played memory blender_water
+#     frame construction query procedural sky water living_foam bake cost_model preview rays trace window ocean baked played memory blender_water
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
-[ $# -gt 0 ] || set -- frame construction query sky water living_foam bake cost_model preview rays trace window ocean baked played memory blender_water
+[ $# -gt 0 ] || set -- frame construction query procedural sky water living_foam bake cost_model preview rays trace window ocean baked played memory blender_water
 targets=()
 for program in "$@"; do
     case $program in

@@ -373,9 +373,6 @@ TEST_F(Closure, OfFoamThatLives) {
 TEST_F(Closure, OfTrainsOverCascades) {
     expect_closed(trains_shot());
 }
-TEST_F(Closure, OfAProjectedGrid) {
-    expect_closed(only(grid_shot(), {"shot", "surface", "camera", "output"}));
-}
 TEST_F(Closure, OfAProjectedGridByAllKeys) {
     expect_closed(grid_shot());
 }

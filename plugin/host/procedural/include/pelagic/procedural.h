@@ -200,7 +200,7 @@ typedef struct pelagic_box {
     double min_m[3], max_m[3];
 } pelagic_box;
 /* A box in the world that all displaced points of the region stay in while the shutter is open. It is never left by what
- * pelagic_evaluate() answers for those footprints. 1 … 50 ms, more with trains, and some 20 ms more for the first question
+ * pelagic_evaluate() answers for those footprints. Some 0.1 s, more with trains, and as much again for the first question
  * about a footprint. */
 PELAGIC_API pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* region,
                                           pelagic_box* box, pelagic_error* error);

@@ -1,11 +1,11 @@
 #include "plugin/host/procedural/rays.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -189,23 +189,21 @@ bool RayTracer::hit_piece(Piece piece, bool any, SeaHit& best) {
         waiting_.pop_back();
         if (entry.near_m >= best.distance_m) break;
         const Tile& tile = tile_of(entry);
-        if (entry.place.level == piece.level) {
-            is_hit = hit_tile(tile, entry.place, piece, best) || is_hit;
+        if (tile.place.level == piece.level) {
+            is_hit = hit_tile(tile, piece, best) || is_hit;
             if (is_hit && any) return true;
             continue;
         }
-        const glm::dvec3 from_m = piece.from_m - SurfaceTiles::middle_m(entry.place);
-        const double widening_m = tiles.widening_m(entry.place.level, piece.level);
-        for (int q = 0; q < 4; ++q) {
-            const TileBox& box = tile.quarters[static_cast<std::size_t>(q)];
-            double near_m = piece.near_m, far_m = std::min(piece.far_m, best.distance_m);
-            if (enters(from_m, piece.per_direction, glm::dvec3(box.low_m) - widening_m,
-                       glm::dvec3(box.high_m) + widening_m, near_m, far_m))
-                push({near_m,
-                      {entry.place.level - 1, 2 * entry.place.x + q % 2, 2 * entry.place.y + q / 2},
-                      &tile,
-                      q});
-        }
+        QuartersEntered entered;
+        enter_(tile.quarters,
+               {.from_m = piece.from_m - tile.middle_m,
+                .per_direction = piece.per_direction,
+                .near_m = piece.near_m,
+                .far_m = std::min(piece.far_m, best.distance_m),
+                .widening_m = tiles.widening_m(tile.place.level, piece.level)},
+               entered);
+        for (std::size_t q = 0; q < 4; ++q)
+            if (entered.near_m[q] <= entered.far_m[q]) push({entered.near_m[q], &tile, static_cast<int>(q)});
     }
     return is_hit;
 }
@@ -229,36 +227,39 @@ void RayTracer::push_roots(const Piece& piece) {
             double near_m = piece.near_m, far_m = piece.far_m;
             if (enters(piece.from_m - SurfaceTiles::middle_m(place), piece.per_direction, -half_m, half_m,
                        near_m, far_m))
-                push({near_m, place, nullptr, 0});
+                push({near_m, &root_of(place), -1});
         }
 }
 
 void RayTracer::push(const Entry& entry) {
-    auto at = waiting_.end();
-    while (at != waiting_.begin() && std::prev(at)->near_m < entry.near_m) --at;
-    waiting_.insert(at, entry);
+    waiting_.push_back(entry);
+    std::size_t at = waiting_.size() - 1;
+    for (; at > 0 && waiting_[at - 1].near_m < entry.near_m; --at) waiting_[at] = waiting_[at - 1];
+    waiting_[at] = entry;
 }
 
 const Tile& RayTracer::tile_of(const Entry& entry) {
-    if (entry.parent) {
-        std::atomic<const Tile*>& kept = entry.parent->finer[static_cast<std::size_t>(entry.quarter)];
-        if (const Tile* tile = kept.load(std::memory_order_acquire)) return *tile;
-        const Tile& tile = sea_.tiles->tile(*store_, entry.place);
-        kept.store(&tile, std::memory_order_release);
-        return tile;
-    }
+    if (entry.quarter < 0) return *entry.tile;
+    const Tile& parent = *entry.tile;
+    std::atomic<const Tile*>& kept = parent.finer[static_cast<std::size_t>(entry.quarter)];
+    if (const Tile* tile = kept.load(std::memory_order_acquire)) return *tile;
+    const TilePlace& of = parent.place;
+    const Tile& tile =
+        sea_.tiles->tile(*store_, {of.level - 1, 2 * of.x + entry.quarter % 2, 2 * of.y + entry.quarter / 2});
+    kept.store(&tile, std::memory_order_release);
+    return tile;
+}
+
+const Tile& RayTracer::root_of(const TilePlace& place) {
     Root& root =
-        roots_[static_cast<std::size_t>(entry.place.x * 5 + entry.place.y * 29 + entry.place.level * 7) %
-               roots_.size()];
-    if (!root.tile || root.place != entry.place)
-        root = {entry.place, &sea_.tiles->tile(*store_, entry.place)};
+        roots_[static_cast<std::size_t>(place.x * 5 + place.y * 29 + place.level * 7) % roots_.size()];
+    if (!root.tile || root.place != place) root = {place, &sea_.tiles->tile(*store_, place)};
     return *root.tile;
 }
 
-bool RayTracer::hit_tile(const Tile& tile, const TilePlace& place, const Piece& piece, SeaHit& best) const {
-    const glm::dvec3 middle_m = SurfaceTiles::middle_m(place);
+bool RayTracer::hit_tile(const Tile& tile, const Piece& piece, SeaHit& best) const {
     double near_m = piece.near_m, far_m = std::min(piece.far_m, best.distance_m);
-    const glm::dvec3 from_m = piece.from_m - middle_m;
+    const glm::dvec3 from_m = piece.from_m - tile.middle_m;
     if (!enters(from_m, piece.per_direction, glm::dvec3(tile.box.low_m), glm::dvec3(tile.box.high_m), near_m,
                 far_m))
         return false;
@@ -267,7 +268,7 @@ bool RayTracer::hit_tile(const Tile& tile, const TilePlace& place, const Piece& 
         glm::max(glm::max(glm::abs(tile.box.low_m), glm::abs(tile.box.high_m)), glm::abs(begin_m));
     // Some eight roundings: of the points, of the ray's beginning, and of their difference.
     const float rounding_m = 1e-6f * std::max({most_m.x, most_m.y, most_m.z});
-    const auto cell_m = static_cast<float>(std::ldexp(1.0, place.level));
+    const auto cell_m = static_cast<float>(std::ldexp(1.0, tile.place.level));
     TileHit hit;
     if (!nearest_(tile.points,
                   {.from_m = begin_m,
@@ -282,7 +283,7 @@ bool RayTracer::hit_tile(const Tile& tile, const TilePlace& place, const Piece& 
     if (!(distance_m < best.distance_m)) return false;
     best.distance_m = distance_m;
     best.rest_m =
-        glm::dvec2(middle_m) +
+        glm::dvec2(tile.middle_m) +
         static_cast<double>(cell_m) * (glm::dvec2(hit.x, hit.y) - 0.5 * static_cast<double>(kTileCells));
     return true;
 }

@@ -59,9 +59,8 @@ class RayTracer {
     // A tile that the ray enters there.
     struct Entry {
         double near_m;
-        TilePlace place;
-        const Tile* parent;  // null: a root
-        int quarter;
+        const Tile* tile;  // itself, a root; or its parent
+        int quarter;       // of the parent; a root: −1
     };
 
     struct Span {
@@ -75,11 +74,13 @@ class RayTracer {
     bool hit_piece(Piece piece, bool any, SeaHit& best);
     void push_roots(const Piece& piece);
     void push(const Entry& entry);
+    const Tile& root_of(const TilePlace& place);
     const Tile& tile_of(const Entry& entry);
-    bool hit_tile(const Tile& tile, const TilePlace& place, const Piece& piece, SeaHit& best) const;
+    bool hit_tile(const Tile& tile, const Piece& piece, SeaHit& best) const;
 
     RaySea sea_;
     NearestInTile nearest_ = nearest_in_tile();
+    EnterQuarters enter_ = enter_quarters();
     std::shared_ptr<TileStore> store_;
     struct Root {
         TilePlace place;

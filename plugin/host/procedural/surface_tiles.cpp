@@ -186,6 +186,8 @@ std::unique_ptr<Tile> SurfaceTiles::made(const TilePlace& place) const {
                             .cell_m = {cell_m.data()}},
                            results);
     auto tile = std::make_unique<Tile>();
+    tile->place = place;
+    tile->middle_m = middle_m(place);
     tile->values = std::make_unique<float[]>((moves ? 6 : 3) * kTileRoom);
     const float *at_m[3], *velocity_mps[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -200,8 +202,12 @@ std::unique_ptr<Tile> SurfaceTiles::made(const TilePlace& place) const {
     }
     constexpr int kHalf = kTileCells / 2;
     for (int q = 0; q < 4; ++q) {
-        TileBox& quarter = tile->quarters[static_cast<std::size_t>(q)];
-        quarter = box_of(at_m, velocity_mps, half_open_s_, q % 2 * kHalf, q / 2 * kHalf, kHalf);
+        const TileBox quarter = box_of(at_m, velocity_mps, half_open_s_, q % 2 * kHalf, q / 2 * kHalf, kHalf);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<std::size_t>(axis), at = static_cast<std::size_t>(q);
+            tile->quarters.low_m[a][at] = quarter.low_m[axis];
+            tile->quarters.high_m[a][at] = quarter.high_m[axis];
+        }
         tile->box.low_m = q == 0 ? quarter.low_m : glm::min(tile->box.low_m, quarter.low_m);
         tile->box.high_m = q == 0 ? quarter.high_m : glm::max(tile->box.high_m, quarter.high_m);
     }

@@ -33,8 +33,10 @@ struct TileBox {
 };
 
 struct Tile {
-    TileBox box;                                              // of all points while the shutter is open
-    std::array<TileBox, 4> quarters;                          // x fastest
+    TilePlace place;
+    glm::dvec3 middle_m{0.0};  // at rest, in the world
+    TileBox box;               // of all points while the shutter is open
+    TileQuarters quarters;
     mutable std::array<std::atomic<const Tile*>, 4> finer{};  // over the quarters; null: not asked for yet
     std::unique_ptr<float[]> values;  // by axis: positions, then velocities if the shutter is open
     TilePoints points;

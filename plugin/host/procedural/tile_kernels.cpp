@@ -129,8 +129,32 @@ bool Nearest(const TilePoints& points, const TileRay& ray, TileHit& hit) {
     return found < ray.far;
 }
 
-NearestInTile Table() {
+void Enter(const TileQuarters& boxes, const QuartersRay& ray, QuartersEntered& entered) {
+    const hn::CappedTag<double, 4> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    const auto widening = hn::Set(d, ray.widening_m);
+    for (std::size_t q = 0; q < 4; q += hn::Lanes(d)) {
+        auto near = hn::Set(d, ray.near_m), far = hn::Set(d, ray.far_m);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto at = static_cast<glm::length_t>(axis);
+            const auto from = hn::Set(d, ray.from_m[at]), per = hn::Set(d, ray.per_direction[at]);
+            const auto low = hn::PromoteTo(d, hn::LoadU(floats, &boxes.low_m[axis][q]));
+            const auto high = hn::PromoteTo(d, hn::LoadU(floats, &boxes.high_m[axis][q]));
+            const auto a = hn::Mul(hn::Sub(hn::Sub(low, widening), from), per);
+            const auto b = hn::Mul(hn::Sub(hn::Add(high, widening), from), per);
+            near = hn::Max(near, hn::Min(a, b));
+            far = hn::Min(far, hn::Max(a, b));
+        }
+        hn::StoreU(near, d, &entered.near_m[q]);
+        hn::StoreU(far, d, &entered.far_m[q]);
+    }
+}
+
+NearestInTile NearestHere() {
     return &Nearest;
+}
+EnterQuarters EnterHere() {
+    return &Enter;
 }
 
 }  // namespace
@@ -140,10 +164,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace pelagic::procedural {
-HWY_EXPORT(Table);
+HWY_EXPORT(NearestHere);
+HWY_EXPORT(EnterHere);
 
 NearestInTile nearest_in_tile() {
-    return HWY_DYNAMIC_DISPATCH(Table)();
+    return HWY_DYNAMIC_DISPATCH(NearestHere)();
+}
+EnterQuarters enter_quarters() {
+    return HWY_DYNAMIC_DISPATCH(EnterHere)();
 }
 
 }  // namespace pelagic::procedural

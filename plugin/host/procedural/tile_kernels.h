@@ -34,6 +34,24 @@ struct TileHit {
     float x = 0.0f, y = 0.0f;  // of the place in the tile, 0 … kTileCells
 };
 
+// Four boxes side by side, x fastest, by axis: a ray is tried against all at once.
+struct TileQuarters {
+    std::array<std::array<float, 4>, 3> low_m{}, high_m{};
+};
+
+// A ray relative to the middle of the tile that has the quarters, and how much wider their boxes are.
+struct QuartersRay {
+    glm::dvec3 from_m{0.0}, per_direction{0.0};
+    double near_m = 0.0, far_m = 0.0, widening_m = 0.0;
+};
+
+// Where the ray is within each box: near > far where it enters none.
+struct QuartersEntered {
+    alignas(32) std::array<double, 4> near_m, far_m;
+};
+using EnterQuarters = void (*)(const TileQuarters& boxes, const QuartersRay& ray, QuartersEntered& entered);
+EnterQuarters enter_quarters();
+
 // The nearest triangle between near and far, from above or from below; false, and `hit` as it was, where there is none.
 using NearestInTile = bool (*)(const TilePoints& points, const TileRay& ray, TileHit& hit);
 NearestInTile nearest_in_tile();

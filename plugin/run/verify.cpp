@@ -13,6 +13,7 @@
 #include "plugin/run/fragments.h"
 #include "plugin/run/record.h"
 #include "plugin/run/run.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -51,8 +52,8 @@ std::string gaps_text(const Known::Baked& baked) {
     return text;
 }
 
-void read_shot(const fs::path& folder, const std::string& record, const std::atomic<bool>* cancel,
-               Known& known, Verification& found) {
+void read_shot(const fs::path& folder, const std::string& record, const std::string& instruction_set,
+               const std::atomic<bool>* cancel, Known& known, Verification& found) {
     const std::string name = record.substr(0, record.size() - std::string_view(".json").size());
     const auto tell = [&](Flaw flaw, std::string what) {
         found.findings.push_back({record, flaw, std::move(what)});
@@ -62,11 +63,15 @@ void read_shot(const fs::path& folder, const std::string& record, const std::ato
             known.files.push_back({.path = path, .recorded = std::move(file)});
     };
     std::vector<int> baked, stale;
+    std::map<std::string, std::vector<int>> by_set;
     const RecordsReading reading = read_records(
         folder / record,
         [&](int frame, FrameRecord entry) {
             baked.push_back(frame);
-            if (entry.is_stale) stale.push_back(frame);
+            if (entry.is_stale)
+                stale.push_back(frame);
+            else
+                by_set[entry.instruction_set].push_back(frame);
             for (auto& [path, file] : entry.files) {
                 // A bake makes a stale frame's files anew one after another, and then writes its entry: until
                 // then they hold other bytes, and aren't damaged.
@@ -89,6 +94,13 @@ void read_shot(const fs::path& folder, const std::string& record, const std::ato
     if (!reading.problem.empty() || !reading.altered.empty() || !reading.damaged.empty())
         known.uncertain.insert(name);
     if (!stale.empty()) tell(Flaw::Stale, "has frames of another version of the shot: " + frames_text(stale));
+    for (const auto& [set, frames] : by_set) {
+        if (instruction_set.empty() && by_set.size() > 1)
+            found.notes.push_back(record + ": " + set + " has made the frames " + frames_text(frames));
+        if (!instruction_set.empty() && set != instruction_set)
+            tell(Flaw::Stale, "has frames that " + set + " has made: " + frames_text(frames) +
+                                  "; bake them again with --instruction-set " + instruction_set);
+    }
     if (!reading.shot && baked.empty() && !reading.is_blocked) known.unread.insert(record);
     if (!reading.shot) return;
     const ShotRecord& shot = *reading.shot;
@@ -153,7 +165,7 @@ const char* word_of(Flaw flaw) {
     return kWords[static_cast<std::size_t>(flaw)];
 }
 
-Verification verify(const fs::path& folder, const BuildWatch& watch) {
+Verification verify(const fs::path& folder, const BuildWatch& watch, const std::string& instruction_set) {
     std::set<std::string> names;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
@@ -178,7 +190,8 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
             known.files.push_back(
                 {.path = name, .recorded = {.bytes = files::file_size(folder / name).value_or(0)}});
     }
-    for (const std::string& record : records) read_shot(folder, record, watch.cancel, known, found);
+    for (const std::string& record : records)
+        read_shot(folder, record, instruction_set, watch.cancel, known, found);
     for (const FileCheck& file : known.files) found.bytes += file.recorded.bytes;
     check_files(folder, known.files, watch);
     found.files = static_cast<int>(known.files.size());
@@ -187,6 +200,12 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
             found.findings.push_back(
                 {file.path, file.is_missing ? Flaw::Missing : Flaw::Damaged, file.problem});
         if (!file.is_sealed()) continue;
+        if (file.problem.empty() && !instruction_set.empty() &&
+            !says_instruction_set(folder / file.path, instruction_set))
+            found.findings.push_back({file.path, Flaw::Stale,
+                                      "was made by another instruction set: render it again with "
+                                      "--instruction-set " +
+                                          instruction_set});
         const std::string other =
             fs::path(file.path).replace_extension(file.path.ends_with(".png") ? ".exr" : ".png").string();
         if (!names.contains(other))

@@ -11,9 +11,9 @@
 namespace pelagic {
 
 enum class Flaw {
-    Missing,      // a file that the record knows, or frames of the shot that aren't baked
-    Damaged,      // other bytes than were written; a record with a changed number
-    Stale,        // frames of another version of the shot than the record's
+    Missing,  // a file that the record knows, or frames of the shot that aren't baked
+    Damaged,  // other bytes than were written; a record with a changed number
+    Stale,  // frames of another version of the shot than the record's, or of another instruction set than is asked for
     Foreign,      // named as a bake's files are, and no record knows it
     Interrupted,  // of a bake that was stopped before it wrote its record
 };
@@ -31,7 +31,8 @@ struct Verification {
     int files = 0;                      // that the records know, and pictures
     std::uintmax_t bytes = 0;           // that these have
     std::vector<std::string> merged{};  // records that took in what lay beside them: NAME.json
-    std::vector<std::string> notes{};   // and why others couldn't, a line each
+    std::vector<std::string>
+        notes{};  // why others couldn't, and which shots several instruction sets have made; a line each
     bool is_whole() const { return findings.empty() && files > 0; }
 };
 
@@ -39,8 +40,10 @@ struct Verification {
 // about themselves: those that a folder lacks altogether, nobody knows. Of a shot whose record is damaged, files that
 // are in no entry that is left aren't called foreign. Nor are files of a frame that the record lacks, and those of a
 // stale frame aren't looked at: a bake is at them, or was stopped there. Of a shot that is whole, what runs have recorded beside its
-// record is taken into it, which then is the one that a single run leaves; nothing else is written. Throws files::FileError where there is no such folder, and
+// record is taken into it, which then is the one that a single run leaves; nothing else is written. `instruction_set`: that must have made
+// all frames and pictures; empty: any may, and a note says of a shot that several have. Throws files::FileError where there is no such folder, and
 // BuildCancelled.
-Verification verify(const std::filesystem::path& folder, const BuildWatch& watch = {});
+Verification verify(const std::filesystem::path& folder, const BuildWatch& watch = {},
+                    const std::string& instruction_set = {});
 
 }  // namespace pelagic

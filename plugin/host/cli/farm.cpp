@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -193,8 +194,10 @@ std::string verify_script(const FarmArguments& arguments, const FarmJob& job, co
                           const fs::path& out, bool is_part) {
     constexpr std::size_t kMemory = std::size_t{1} << 30;
     const std::string name = job.of.name + '.' + job.verb;
-    const std::string verify = shell_word(program.string()) + " verify " + shell_word(out.string()) +
-                               " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
+    const std::string verify =
+        shell_word(program.string()) + " verify " + shell_word(out.string()) +
+        (job.instruction_set.empty() ? "" : " --instruction-set " + shell_word(job.instruction_set)) +
+        " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
     const std::string text =
         header(arguments, job.of.name + " verify", 1, kMemory,
                "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") + '\n') +
@@ -219,10 +222,6 @@ std::string submitted(const std::string& options, const fs::path& script) {
     while (std::fgets(piece.data(), static_cast<int>(piece.size()), pipe.get())) said += piece.data();
     const int status = pclose(pipe.release());
     while (said.ends_with('\n')) said.pop_back();
-    constexpr int kNoSuchCommand = 127;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == kNoSuchCommand)
-        throw WrongUsage("--submit: there is no sbatch here; submit " + line_text(script.string()) +
-                         " where there is one");
     if (status != 0)
         throw TryAgain("sbatch refuses " + line_text(script.string()) +
                        "; what it says of that stands above");
@@ -281,6 +280,10 @@ int run(FarmArguments arguments) {
     if (options.frames.empty())
         for (std::int64_t frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame)
             options.frames.push_back(static_cast<int>(frame));
+    // Before a script that is there is overwritten.
+    if (arguments.submit && std::system("command -v sbatch >/dev/null 2>&1") != 0)
+        throw WrongUsage(
+            "--submit: there is no sbatch here; without --submit the scripts are written, to be submitted where there is one");
     const fs::path out = fs::absolute(options.out).lexically_normal();
     const auto has_line = [](const std::string& text) { return text.find('\n') != std::string::npos; };
     if (has_line(out.string()) || std::ranges::any_of(arguments.sbatch, has_line))
@@ -295,7 +298,8 @@ int run(FarmArguments arguments) {
             session.progress.clear();
             FarmJob job{.verb = arguments.verb,
                         .shot = fs::absolute(arguments.shot).lexically_normal().string(),
-                        .of = scene.shot};
+                        .of = scene.shot,
+                        .instruction_set = arguments.instruction_set};
             nlohmann::ordered_json told{
                 {"verb", job.verb},
                 {"shot", job.shot},
@@ -304,6 +308,7 @@ int run(FarmArguments arguments) {
                 {"threads", need.threads},
                 {"task_memory_bytes", need.memory_bytes},
                 {"frame", json_of(need.frame)},
+                {"instruction_set", job.instruction_set},
                 {"tasks", nlohmann::ordered_json::array()},
             };
             const std::size_t tasks = tasks_for(arguments, options.frames.size(), need.frame.seconds);
@@ -316,8 +321,10 @@ int run(FarmArguments arguments) {
                 job.tasks.push_back({.frames = frames,
                                      .log = log,
                                      .slurm = name + '.' + std::to_string(job.tasks.size()) + ".slurm"});
-                told["tasks"].push_back(
-                    {{"frames", frames}, {"log", log}, {"slurm", job.tasks.back().slurm}});
+                told["tasks"].push_back({{"task", job.tasks.size() - 1},
+                                         {"frames", frames},
+                                         {"log", log},
+                                         {"slurm", job.tasks.back().slurm}});
             }
             const fs::path folder = out / "farm", array = folder / (name + ".sh"),
                            last = folder / (name + ".verify.sh");

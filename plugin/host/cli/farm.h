@@ -16,8 +16,9 @@ struct FarmTask {
 };
 
 struct FarmJob {
-    std::string verb, shot;  // "bake" or "render", and the path of the shot file
-    Shot of{};               // its name and frames alone
+    std::string verb, shot;         // "bake" or "render", and the path of the shot file
+    Shot of{};                      // its name and frames alone
+    std::string instruction_set{};  // that all must be made by; empty: any
     std::vector<FarmTask> tasks{};
 };
 

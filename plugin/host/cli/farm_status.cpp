@@ -23,6 +23,7 @@
 #include "plugin/host/cli/text.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/run/fragments.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic::cli {
 namespace {
@@ -37,6 +38,7 @@ FarmJob read_job(const fs::path& file) {
         job.of.name = json.at("name");
         job.of.first_frame = json.at("frame_range").at(0);
         job.of.last_frame = json.at("frame_range").at(1);
+        job.instruction_set = json.value("instruction_set", "");
         for (const auto& task : json.at("tasks"))
             job.tasks.push_back({task.at("frames"), task.at("log"), task.at("slurm")});
         return job;
@@ -46,20 +48,30 @@ FarmJob read_job(const fs::path& file) {
     }
 }
 
+bool is_picture_there(const FarmJob& job, const fs::path& out, int frame) {
+    for (const char* extension : {"exr", "png"}) {
+        const fs::path file = out / picture_file(job.of, frame, extension);
+        if (!fs::exists(file) ||
+            (!job.instruction_set.empty() && !says_instruction_set(file, job.instruction_set)))
+            return false;
+    }
+    return true;
+}
+
 // By the record and its fragments, or the pictures: verify reads the files.
 std::set<int> frames_there(const FarmJob& job, const fs::path& out) {
     std::set<int> there;
     if (job.verb == "bake") {
         read_records(out / (job.of.name + ".json"), [&](int number, const FrameRecord& frame) {
-            if (!frame.is_stale) there.insert(number);
+            if (!frame.is_stale &&
+                (job.instruction_set.empty() || frame.instruction_set == job.instruction_set))
+                there.insert(number);
         });
         return there;
     }
     for (const FarmTask& task : job.tasks)
         for (const int frame : parse_frames(task.frames, job.of))
-            if (fs::exists(out / picture_file(job.of, frame, "exr")) &&
-                fs::exists(out / picture_file(job.of, frame, "png")))
-                there.insert(frame);
+            if (is_picture_there(job, out, frame)) there.insert(frame);
     return there;
 }
 
@@ -178,7 +190,9 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
         {"event", "result"}, {"verb", "farm"}, {"name", job.of.name}, {"of", job.verb}};
     told["running"] = told["failed"] = nlohmann::ordered_json::array();
     Counted counted;
-    for (const FarmTask& task : job.tasks) {
+    const std::string script = line_text((out / "farm" / (job.of.name + '.' + job.verb + ".sh")).string());
+    for (std::size_t number = 0; number < job.tasks.size(); ++number) {
+        const FarmTask& task = job.tasks[number];
         std::vector<int> lacking;
         for (const int frame : parse_frames(task.frames, job.of)) {
             ++counted.frames;
@@ -212,11 +226,12 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
         } else if (*log.status > kKilledFrom) {
             message = "stopped by signal " + std::to_string(*log.status - kKilledFrom);
         } else if (*log.status == kDone) {
-            message = "made, and not there any more, or of another version of the shot";
+            message = "made, and not there any more, or of another version of the shot or instruction set";
         }
         failed += "\n  " + frames + ": " + line_text(message);
         if (log.status) failed += " (status " + std::to_string(*log.status) + ')';
-        told["failed"].push_back({{"frames", frames}, {"message", message}});
+        failed += "; again: bash " + script + ' ' + std::to_string(number);
+        told["failed"].push_back({{"task", number}, {"frames", frames}, {"message", message}});
         if (log.status) told["failed"].back()["status"] = *log.status;
     }
     counted.whole = static_cast<int>(whole.size());
@@ -244,8 +259,9 @@ int print_farm_status(const fs::path& out) {
          entry.increment(error))
         if (entry->path().extension() == ".json") jobs.insert(entry->path());
     if (jobs.empty())
-        throw WrongUsage("--status " + quoted_text(out.string()) +
-                         ": pelagic farm has written no job into this folder");
+        throw WrongUsage(
+            "--status " + quoted_text(out.string()) +
+            ": pelagic farm has written no job into this folder; pelagic verify looks at what is in it");
     const auto queue = queued();
     int status = kDone;
     for (const fs::path& file : jobs) {

@@ -65,7 +65,7 @@ void add_run_options(CLI::App& command, RunArguments& arguments, const char* tru
     command.add_option("--chosen", arguments.chosen, help::kChosen)->type_name("TEXT");
     add_threads(command, arguments.threads, help::kThreads);
     add_max_memory(command, arguments.max_memory, help::kMaxMemory);
-    add_instruction_set(command, arguments.instruction_set);
+    add_instruction_set(command, arguments.instruction_set, help::kInstructionSet);
 }
 
 RunOptions run_options(const RunArguments& arguments, const Shot& shot) {

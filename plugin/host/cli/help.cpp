@@ -68,6 +68,10 @@ const char* const kInstructionSet =
     "then; files that another set made are made again.\n"
     "Default: the widest that this CPU has, and whole files stay, whatever made them";
 
+const char* const kVerifySet =
+    "Frames and pictures that another set has made aren't whole: sse4, avx2 or avx512.\n"
+    "Default: any set will do, and a note says of a shot that several have";
+
 const char* const kMaxMemory =
     "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
     "Default: what the machine has, or less where a container or ulimit allows less";

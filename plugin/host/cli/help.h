@@ -17,6 +17,7 @@ extern const char* const kOut;
 extern const char* const kFrames;
 extern const char* const kThreads;
 extern const char* const kInstructionSet;
+extern const char* const kVerifySet;
 extern const char* const kTrustTimes;
 extern const char* const kChosen;
 extern const char* const kJson;

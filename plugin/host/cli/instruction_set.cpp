@@ -12,7 +12,6 @@
 #include "core/base/instruction_set.h"
 #include "core/scene/text.h"
 #include "plugin/host/cli/guarded_run.h"
-#include "plugin/host/cli/help.h"
 
 namespace pelagic::cli {
 namespace {
@@ -47,8 +46,8 @@ std::string_view asked_set(int argc, const char* const* argv) {
 
 }  // namespace
 
-void add_instruction_set(CLI::App& command, std::string& set) {
-    command.add_option(std::string(kOption), set, help::kInstructionSet)
+void add_instruction_set(CLI::App& command, std::string& set, const char* help) {
+    command.add_option(std::string(kOption), set, help)
         ->type_name("SET")
         ->check(CLI::Validator(refuse_set, ""));
 }

@@ -7,7 +7,7 @@
 namespace pelagic::cli {
 
 // Adds the option, which rejects what is no set. `set` must outlive the parsing; it stays empty for the widest that the CPU has.
-void add_instruction_set(CLI::App& command, std::string& set);
+void add_instruction_set(CLI::App& command, std::string& set, const char* help);
 
 // Uses the set, if one is given. Before anything is computed. Throws WrongUsage where this CPU lacks it.
 void apply_instruction_set(const std::string& set);

@@ -123,7 +123,9 @@ void Progress::tell(const RunProgress& progress) {
                {"kept", progress.kept},
                {"total", progress.total},
                {"seconds", progress.seconds},
-               {"share", progress.share}});
+               {"share", progress.stage == RunStage::Frames && progress.total > 0
+                             ? (finished(progress) + progress.share) / progress.total
+                             : progress.share}});
 }
 
 void Progress::show(const RunProgress& progress) {

@@ -12,6 +12,7 @@
 #include "plugin/host/cli/exit_status.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
+#include "plugin/host/cli/instruction_set.h"
 #include "plugin/host/cli/json_output.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/threads.h"
@@ -22,7 +23,7 @@ namespace {
 
 struct VerifyArguments {
     std::vector<std::string> folders;
-    std::string threads;
+    std::string threads, instruction_set;
 };
 
 // "2 shots, 151 files, 1.2 GiB: 3 missing, 1 damaged"
@@ -66,7 +67,8 @@ int run(const VerifyArguments& arguments) {
                                        },
                                    .cancel = &session.stop->cancelled()};
             try {
-                const Verification found = session.threads.execute([&] { return verify(folder, watch); });
+                const Verification found =
+                    session.threads.execute([&] { return verify(folder, watch, arguments.instruction_set); });
                 session.progress.clear();
                 for (const Finding& finding : found.findings)
                     std::cout << word_of(finding.flaw) << ": " << line_text(folder + '/' + finding.path)
@@ -100,6 +102,7 @@ Verb add_verify(CLI::App& program) {
     auto arguments = std::make_shared<VerifyArguments>();
     command->add_option("DIR", arguments->folders, help::kFolders)->required()->type_name("");
     add_threads(*command, arguments->threads, help::kVerifyThreads);
+    add_instruction_set(*command, arguments->instruction_set, help::kVerifySet);
     add_json(*command);
     return {command, [arguments] { return run(*arguments); }};
 }

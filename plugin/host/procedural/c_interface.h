@@ -72,6 +72,15 @@ T& required(T* pointer, const char* name) {
     return *pointer;
 }
 
+// A frame that has a time.
+inline const ShotFrame& frame_of(const pelagic_frame* frame) {
+    const ShotFrame& of = required(frame, "frame").frame;
+    if (!of.is_set())
+        throw std::invalid_argument(
+            "frame has no time, since setting it was cancelled or failed: call pelagic_frame_set() again");
+    return of;
+}
+
 // The size of a structure in its first version; later members follow.
 template <class S>
 inline constexpr std::size_t kFirstSize = sizeof(S);

@@ -312,11 +312,10 @@ pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* 
         for (const double metres : {asked.min_m[0], asked.min_m[1], asked.max_m[0], asked.max_m[1]})
             check_place(metres, "region.min_m, max_m");
         const double any = std::numeric_limits<double>::infinity();
-        const auto [least, greatest] =
-            required(frame, "frame")
-                .frame.bounds({{asked.min_m[0], asked.min_m[1]}, {asked.max_m[0], asked.max_m[1]}},
-                              {.finest_m = asked.finest_cell_m,
-                               .coarsest_m = asked.coarsest_cell_m == 0.0 ? any : asked.coarsest_cell_m});
+        const auto [least, greatest] = frame_of(frame).bounds(
+            {{asked.min_m[0], asked.min_m[1]}, {asked.max_m[0], asked.max_m[1]}},
+            {.finest_m = asked.finest_cell_m,
+             .coarsest_m = asked.coarsest_cell_m == 0.0 ? any : asked.coarsest_cell_m});
         pelagic_box found{};
         for (int axis = 0; axis < 3; ++axis) {
             found.min_m[axis] = least[axis];
@@ -332,7 +331,7 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
     return guarded(error, [&] {
         const auto asked = taken(points, "points");
         const Wanted wanted = wanted_in(taken(values, "values"));
-        const ShotFrame& of = required(frame, "frame").frame;
+        const ShotFrame& of = frame_of(frame);
         const TimedPoints timed = checked(of, asked);
         stop_if(&of.shot().is_cancelled);
         if (timed.points.count > 0) of.evaluate(timed, wanted.results, wanted.coverage);
@@ -343,7 +342,7 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
 pelagic_status pelagic_water_at(const pelagic_frame* frame, const double* places_m, size_t count,
                                 double footprint_m, pelagic_water* water, pelagic_error* error) {
     return guarded(error, [&] {
-        const ShotFrame& of = required(frame, "frame").frame;
+        const ShotFrame& of = frame_of(frame);
         if (!(footprint_m >= 0.0 && footprint_m <= 1e6))
             throw std::invalid_argument("footprint_m is outside the range; accepted: 0 to 1e6 m");
         if (count == 0) return PELAGIC_OK;
@@ -371,7 +370,7 @@ pelagic_status pelagic_prepare(const pelagic_frame* frame, const pelagic_points*
                                pelagic_error* error) {
     return guarded(error, [&] {
         const auto asked = taken(points, "points");
-        const ShotFrame& of = required(frame, "frame").frame;
+        const ShotFrame& of = frame_of(frame);
         of.prepare(checked(of, asked).points);
         return PELAGIC_OK;
     });
@@ -381,7 +380,7 @@ pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_cam
                                    const pelagic_expand_options* options, pelagic_mesh_size* mesh_size,
                                    pelagic_error* error) {
     return guarded(error, [&] {
-        const ShotFrame& of = required(frame, "frame").frame;
+        const ShotFrame& of = frame_of(frame);
         give(of.shot().arena->execute([&] { return size_of(expansion_of(of, camera, options)); }), mesh_size,
              "mesh_size");
         return PELAGIC_OK;
@@ -394,7 +393,7 @@ pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* 
     return guarded(error, [&]() -> pelagic_status {
         auto into = taken(buffers, "buffers");
         const Wanted wanted = into.values ? wanted_in(taken(into.values, "buffers.values")) : Wanted{};
-        const ShotFrame& of = required(frame, "frame").frame;
+        const ShotFrame& of = frame_of(frame);
         const Expansion expansion =
             of.shot().arena->execute([&] { return expansion_of(of, camera, options); });
         const pelagic_mesh_size needed = size_of(expansion);

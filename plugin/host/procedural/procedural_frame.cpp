@@ -35,18 +35,20 @@ constexpr std::size_t kUnasked_bytes = std::size_t{256} << 20;
 // finest_cell_m: becomes what was asked for, or what the shot's camera needs and kUnasked_bytes hold.
 Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
     auto prepared = prepare(scene);
-    double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
-    if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
+    const bool is_asked = options.finest_cell_m > 0.0 || options.finest_pixel_m > 0.0;
+    // One alone stands for both: pixels as the shot's camera sees them beside a host's cells would be what takes most.
+    double cell_m = options.finest_cell_m > 0.0 ? options.finest_cell_m : options.finest_pixel_m;
+    double pixel_m = options.finest_pixel_m > 0.0 ? options.finest_pixel_m : options.finest_cell_m;
+    if (!is_asked) {
         ProjectedGridOptions grid = projected_grid_options(*prepared);
         grid.cell_px = kCell_px;
         std::vector<View> views;
         for (const int frame : representative_frames(scene, 16))
             views.push_back(view_at(scene.camera, frame));
         const ProjectedGridNeeds needs = projected_grid_needs(views, grid);
-        if (!(cell_m > 0.0)) cell_m = needs.finest_cell_m;
-        if (!(pixel_m > 0.0)) pixel_m = needs.finest_pixel_m;
+        cell_m = needs.finest_cell_m;
+        pixel_m = needs.finest_pixel_m;
     }
-    const bool is_asked = options.finest_cell_m > 0.0;
     for (;; cell_m *= 2.0, pixel_m *= 2.0) {
         finest_cell_m = cell_m;
         const Query query = view_query(*prepared, {.products = kProducts,
@@ -156,6 +158,7 @@ void ShotFrame::set(double open_s, double close_s) {
                                     number_text(close_s) + " s: accepted: times within " +
                                     number_text(Frame<float>::kLatest_s) + " s, in order, and open for " +
                                     number_text(kLongestShutter_s) + " s of the sea at most");
+    is_set_ = false;
     of_->arena->execute([&] {
         stop_if(&of_->is_cancelled);
         state_.set(0.5 * (open_s + close_s), &of_->is_cancelled);
@@ -176,6 +179,7 @@ void ShotFrame::set(double open_s, double close_s) {
             fastest_mps_[axis] = most_of(state_.frame(), kVelocities[static_cast<std::size_t>(axis)]);
         });
     });
+    is_set_ = true;
 }
 
 void ShotFrame::check_times(const float* time_s, std::size_t count, const char* name) const {

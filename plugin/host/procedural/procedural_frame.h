@@ -72,6 +72,9 @@ class ShotFrame {
     // Not while others use the frame. Throws std::invalid_argument for times that aren't accepted. As all that follow but bounds and
     // water_at(), BuildCancelled where the sea is.
     void set(double open_s, double close_s);
+    bool is_set() const {
+        return is_set_;
+    }  // false after a set() that was cancelled or failed: all else is undefined then
 
     const ShotSea& shot() const { return *of_; }
 
@@ -114,6 +117,7 @@ class ShotFrame {
     BoundsByLevel<float> bounds_{state_.frame(), 0};
     std::optional<Whitecaps> whitecaps_without_past_;
     std::optional<PreparedQuery<float>> query_, without_past_;
+    bool is_set_ = false;
     double half_open_s_ = 0.0;
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
     mutable std::mutex lock_;      // of members that are made when asked for

@@ -195,7 +195,7 @@ pelagic_status pelagic_intersect(const pelagic_frame* frame, const pelagic_rays*
         const auto asked = taken(rays, "rays");
         const auto into = taken(hits, "hits");
         const Wanted wanted = into.values ? wanted_in(taken(into.values, "hits.values")) : Wanted{};
-        intersect(required(frame, "frame").frame, asked, into, wanted);
+        intersect(frame_of(frame), asked, into, wanted);
         return PELAGIC_OK;
     });
 }
@@ -204,11 +204,11 @@ pelagic_status pelagic_occluded(const pelagic_frame* frame, const pelagic_rays* 
                                 pelagic_error* error) {
     return guarded(error, [&] {
         const auto asked = taken(rays, "rays");
-        const Batch batch(asked, required(frame, "frame").frame);
+        const Batch batch(asked, frame_of(frame));
         if (asked.count > 0) required(occluded, "occluded");
         RayTracer tracer(batch.sea());
         for (std::size_t i = 0; i < asked.count; ++i) {
-            if (i % kAskedEach == 0) stop_if(&frame->frame.shot().is_cancelled);
+            if (i % kAskedEach == 0) stop_if(&frame_of(frame).shot().is_cancelled);
             SeaRay ray;
             SeaHit hit;
             double length_m = 0.0;

@@ -67,6 +67,16 @@ TEST_F(InstructionSet, FilesOfAnotherAreKeptAndSaidOrMadeAgain) {
         const Ended kept = make(verb, "whole", "");
         EXPECT_EQ(kept.status, 0);
         EXPECT_TRUE(has(kept.out, "2 kept")) << kept.out;
+        // A farm's status and the check at its end count what the set has made alone.
+        const Ended shared = make("farm", "mixed", "sse4", {"--verb", verb, "--tasks", "2"});
+        EXPECT_EQ(shared.status, 0) << shared.err;
+        const auto in_folder = [&](std::vector<std::string> arguments) {
+            return run({.arguments = std::move(arguments), .folder = folder_.path()});
+        };
+        EXPECT_TRUE(has(in_folder({"farm", "--status", "mixed"}).out, "0 of 2 frames whole"));
+        const Ended checked = in_folder({"verify", "mixed", "--instruction-set", "sse4"});
+        EXPECT_EQ(checked.status, 3);
+        EXPECT_TRUE(has(checked.out, "again with --instruction-set sse4")) << checked.out;
         EXPECT_EQ(has(kept.err, "sse4 had made the frames 1-2: kept"), verb == "bake") << kept.err;
         // Whoever asks for a set gets it.
         const Ended again = make(verb, "mixed", "sse4");
@@ -74,6 +84,11 @@ TEST_F(InstructionSet, FilesOfAnotherAreKeptAndSaidOrMadeAgain) {
         EXPECT_TRUE(has(again.err, "had made the frames 1; made again by sse4")) << again.err;
         EXPECT_TRUE(has(again.out, "2 frames") || has(again.out, "2 pictures")) << again.out;
         EXPECT_NE(before, "");
+        EXPECT_TRUE(has(in_folder({"farm", "--status", "mixed"}).out, "2 of 2 frames whole"));
+        EXPECT_EQ(in_folder({"verify", "mixed", "--instruction-set", "sse4"}).status, 0);
+        EXPECT_TRUE(has(read_file(folder_.path() / "mixed/farm" / ("small." + verb + ".verify.sh")),
+                        "--instruction-set 'sse4'"));
+        std::filesystem::remove_all(folder_.path() / "mixed/farm");
         EXPECT_EQ(difference("whole", "mixed"), "");
         const Ended same = make(verb, "mixed", "sse4");
         EXPECT_TRUE(has(same.out, "2 kept")) << same.out;

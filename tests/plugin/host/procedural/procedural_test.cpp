@@ -496,8 +496,35 @@ TEST(Procedural, CallsOfACancelledSeaEnd) {
     ASSERT_EQ(pelagic_cancel(sea.get(), 1, nullptr), PELAGIC_OK);
     for (const auto& [name, call] : calls) EXPECT_EQ(call(), PELAGIC_CANCELLED) << name;
     ASSERT_EQ(pelagic_cancel(sea.get(), 0, nullptr), PELAGIC_OK);
+    // Setting the frame was cancelled: it has no time.
+    pelagic_error error;
+    for (const auto& [name, call] : calls) {
+        if (std::string(name) == "set") break;
+        EXPECT_EQ(call(), PELAGIC_INVALID_ARGUMENT) << name;
+    }
+    EXPECT_EQ(pelagic_evaluate(frame.get(), &points, &values, &error), PELAGIC_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(error.message).find("pelagic_frame_set() again"), std::string::npos)
+        << error.message;
     ASSERT_EQ(pelagic_frame_set(frame.get(), 3.0, 3.02, nullptr), PELAGIC_OK);
     EXPECT_TRUE(results() == before);
+}
+
+// A coarser sea takes less, whichever of the two its host says.
+TEST(Procedural, OneFootprintStandsForBoth) {
+    const auto bytes_of = [](double cell_m, double pixel_m) {
+        pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+        options.finest_cell_m = cell_m;
+        options.finest_pixel_m = pixel_m;
+        pelagic_info info = PELAGIC_INIT(pelagic_info);
+        const SeaHandle sea = open_text(kShot, &options);
+        EXPECT_EQ(pelagic_get_info(sea.get(), &info, nullptr), PELAGIC_OK);
+        return info.frame_bytes;
+    };
+    const std::size_t both = bytes_of(0.3, 0.3);
+    EXPECT_EQ(bytes_of(0.3, 0.0), both);
+    EXPECT_EQ(bytes_of(0.0, 0.3), both);
+    EXPECT_LT(bytes_of(1.0, 0.0), both);
+    EXPECT_LT(both, bytes_of(0.0, 0.0));
 }
 
 // By another thread, in the middle of rays that would take a minute.

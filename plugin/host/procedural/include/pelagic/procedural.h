@@ -12,7 +12,7 @@
  *   pelagic_evaluate(frame, &points, &values, &error);
  *   pelagic_water_at(frame, places, count, footprint_m, water, &error);
  *   pelagic_intersect(frame, &rays, &hits, &error);
- *   pelagic_cancel(sea, 1);   from another thread: the calls that run end
+ *   pelagic_cancel(sea, 1, &error);  from another thread: the calls that run end
  *   pelagic_frame_release(frame);
  *   pelagic_close(sea);
  *
@@ -115,7 +115,7 @@ typedef struct pelagic_source {
 
 typedef struct pelagic_open_options {
     size_t size;
-    /* No finer cells and pixels will be asked for; those that are count as this. 0: as fine as the shot's own camera sees the
+    /* No finer cells and pixels will be asked for; those that are count as this. One alone stands for both. Both 0: as fine as the shot's own camera sees the
      * sea with cells of 2 pixels, or coarser where a frame of that would hold more than 256 MiB (pelagic_get_info() says what it is).
      * What a frame holds and takes rises with them. Pixels are no coarser than cells. */
     double finest_cell_m, finest_pixel_m;
@@ -125,8 +125,9 @@ typedef struct pelagic_open_options {
     int (*progress)(double done, void* user);
     void* user;
     size_t ray_cache_bytes; /* what a frame keeps for rays at most; 0: 256 MiB */
-    /* A sea whose frame would hold more is refused before any work, with what it would hold; 0: what the machine has, or less where a container or a
-     * limit allows less. What rays and foam's past keep comes beside it (pelagic_info). */
+    /* A sea whose frame would hold more, with its foam's past as if coverage were asked for everywhere (pelagic_info.frame_bytes,
+     * foam_bytes), is refused before any work, and the message says what takes how much; 0: what the machine has, or less where a container or a
+     * limit allows less. What rays keep comes beside it. Coarser: finest_cell_m; no past: effects.foam_decay_s = 0 in the shot. */
     size_t max_memory_bytes;
     /* Called by pelagic_open(), on its thread, with each note on a shot that is fine but for something that its author may not have
      * meant: a sentence, and the shot's name before it; null: nobody is told. With `user`. */
@@ -137,7 +138,7 @@ typedef struct pelagic_open_options {
 PELAGIC_API pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
                                         pelagic_sea** sea, pelagic_error* error);
 /* Not 0: calls that run on the sea's frames, or begin, end with PELAGIC_CANCELLED as soon as they can, until it is set back to 0; what they were to write is
- * worthless, and a frame that was being set must be set again. Any thread may call it, while others use the sea. Bounds and
+ * worthless, and a frame that was being set has no time until it is set again: whatever is asked of it is PELAGIC_INVALID_ARGUMENT until then. Any thread may call it, while others use the sea. Bounds and
  * pelagic_water_at() are short and go on. */
 PELAGIC_API pelagic_status pelagic_cancel(const pelagic_sea* sea, int cancelled, pelagic_error* error);
 /* Frames keep what they need of it: they may be released later. Null is nothing to close. */

@@ -6,8 +6,10 @@
 //     displacement, Float   1.00, 1×   1.00, 4×   1.00, 27×  0.96, 39×  0.93, 61×
 //     normal, Half          1.00, 1×   0.87, 3×   0.77, 12×  0.77, 11×  1.00, 31×
 //     whitecaps, Float      1.00, 1×   1.00, 4×   0.99, 30×  0.99, 34×  1.00, 74×
+//     slope variance, Float 1.00, 1×                         0.97, 25×
+//     whitecaps by default  1.00, 1×                         0.52, 15×
 //     a constant map        1.00, 1×   1.00, 4×   0.01, 3×   0.01, 3×   0.11, 10×
-// The low bits of a sea are noise. In the best case of a map that varies, ZIP saves a quarter of the normals.
+// The low bits of a sea are noise. All four maps by default take 0.75 of the bytes, and 25 times as long (3 s of CPU).
 // That takes longer than computing the whole frame, saves time only on disks slower than some 10 MB/s, and
 // every read pays again. Callers that know a map to be constant ask for Zip.
 #include "plugin/format/exr/exr.h"

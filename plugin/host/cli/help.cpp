@@ -308,7 +308,7 @@ const char* const kVerify =
     "Reads the files of all shots that were baked there, and the pictures, and names each that is\n"
     "  missing      recorded and not there, or a frame of the shot that isn't baked\n"
     "  damaged      not the bytes that were written, or a record with a changed number\n"
-    "  stale        a frame of another version of the shot than the record's\n"
+    "  stale        a frame of another version of the shot than the record's, or of another --instruction-set\n"
     "  foreign      named as a bake's files are, and in no record\n"
     "  interrupted  of a bake that was stopped before it wrote its record\n"
     "A frame that a bake is at, or was stopped at, is missing or stale: its files aren't named one by one.\n"

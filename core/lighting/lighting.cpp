@@ -317,10 +317,12 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
     Variant shading(sky.map, nullptr, choice, nullptr, floor.values);
     const auto light = sea_shading::light_of<Variant>(sky, water, floor);
     const float n = shading.kWaterIndex;
-    const auto below = [&](glm::vec3 direction) {
+    // The wedge turns sights by 40° a millimetre, over which the lens mixes them.
+    constexpr float kMixed = 0.6f;
+    const auto below = [&](glm::vec3 direction, float mixed) {
         if (!choice.water) return glm::vec3(0.0f);
         return kBehindGlass *
-               shading.water_between(glm::vec3(0.0f), direction, height_m, -1.0f, 0.0f, light).light;
+               shading.water_between(glm::vec3(0.0f), direction, height_m, -1.0f, mixed, light).light;
     };
     const auto above = [&](glm::vec3 direction) {
         return choice.sky ? shading.sky_lookup(shading.sky_place(direction), 0.0f) : glm::vec3(0.0f);
@@ -338,11 +340,11 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
             glm::normalize(std::sin(inclined) * side + glm::vec3(0.0f, 0.0f, std::cos(inclined)));
         const float cosine = glm::dot(d, normal);
         if (cosine <= 0.0f) {
-            radiance[i].sea = below(d);
+            radiance[i].sea = below(d, 0.0f);
             continue;
         }
         const float mirrored = shading.fresnel_exact(cosine, 1.0f / n);
-        radiance[i].sea = mirrored * below(d - 2.0f * cosine * normal);
+        radiance[i].sea = mirrored * below(d - 2.0f * cosine * normal, kMixed);
         if (mirrored >= 1.0f) continue;
         const float beyond = std::sqrt(std::max(1.0f - n * n * (1.0f - cosine * cosine), 0.0f));
         const glm::vec3 out = glm::normalize(n * d - (n * cosine - beyond) * normal);
@@ -354,7 +356,7 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
         const float by_sea = shading.fresnel_exact(-out.z, n);
         radiance[i].sky = through * by_sea * above({out.x, out.y, -out.z});
         radiance[i].sea += through * (1.0f - by_sea) *
-                           below({out.x / n, out.y / n, -shading.refracted_cosine(-out.z)});
+                           below({out.x / n, out.y / n, -shading.refracted_cosine(-out.z)}, kMixed);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>

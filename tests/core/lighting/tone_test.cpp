@@ -136,6 +136,20 @@ TEST(Tone, KeepsHueAndSaturation) {
     EXPECT_GT(saturation(glm::dvec3(path)) / saturation(glm::dvec3(66.6, 34.1, 8.2)), 0.6);
 }
 
+// Light that has come through metres of water has no red, and isn't shown as neon; what has a quarter of each component stays.
+TEST(Tone, HasSomeOfEachComponent) {
+    for (const glm::vec3 light : {glm::vec3(0.0f, 0.8f, 1.0f), glm::vec3(0.0f, 0.3f, 0.6f)}) {
+        const glm::vec3 shown = display_colour(light, 1.0f);
+        const double red = light_of(shown.x) / light_of(shown.z);
+        EXPECT_GT(red, 0.05);
+        EXPECT_LT(red, 0.12);
+        EXPECT_NEAR(hue_deg({light_of(shown.x), light_of(shown.y), light_of(shown.z)}),
+                    hue_deg(glm::dvec3(light)), 5.0);
+    }
+    const glm::vec3 stays = display_colour(glm::vec3(0.3f, 0.8f, 1.0f), 0.5f);
+    EXPECT_NEAR(light_of(stays.x) / light_of(stays.z), 0.3, 1e-4);
+}
+
 // The glitter of suns at 2 … 10° and the sky within 40° of them, from dark to two stops above white.
 TEST(Tone, KeepsTheColoursOfLowSuns) {
     double least_kept = 1.0, most_turned_deg = 0.0;

@@ -51,14 +51,12 @@ vec3 colour_of_oklab(vec3 lab) {
                 dot(vec3(-0.0041960863f, -0.7034186147f, 1.7076147010f), cones));
 }
 
-// What a component gets that is weak beside the strongest, both of 1: filters of sensors and layers of film overlap, and no light comes
-// without some of each component (as the reference gamut compression of ACES 1.3 has it for cameras' extremes). Light through metres of clear
-// water has no red, and would be neon. Up to a quarter, by eye; it keeps the order of components, and their slope is at least 0.36.
-float overlapping(float part) {
-    float reach = 0.25f;
-    float most = 0.08f;
-    float lack = max(1.0f - part / reach, 0.0f);
-    return part + most * lack * lack;
+// How much paler a colour is shown whose weakest component is that part of its strongest: filters of sensors and layers of film overlap, and
+// no photograph has light without some of each component (the reference gamut compression of ACES 1.3 is for the same). Light through metres
+// of clear water has no red, and would be neon. None from a quarter on, by eye.
+float paler(float weakest) {
+    float lack = max(1.0f - 4.0f * weakest, 0.0f);
+    return 0.15f * lack * lack;
 }
 
 // The sRGB display value, 0 … 1, of a radiance. exposure: radiance × exposure = 0.18 is middle grey.
@@ -76,9 +74,13 @@ vec3 display_colour(vec3 radiance, float exposure) {
     float sixteenth = (fourth * fourth) * (fourth * fourth);
     float white = sixteenth * sixteenth * sixteenth;
     vec3 colour = light / strongest;
-    colour = vec3(overlapping(colour.x), overlapping(colour.y), overlapping(colour.z));
+    float pale = paler(min(min(colour.x, colour.y), colour.z));
     // Where nothing is to be changed rounding shouldn't change anything.
-    if (white > 1e-5f) colour = colour_of_oklab(mix(oklab_of(colour), vec3(1.0f, 0.0f, 0.0f), white));
+    if (max(white, pale) > 1e-5f) {
+        vec3 lab = oklab_of(colour);
+        lab = vec3(lab.x, (1.0f - pale) * lab.y, (1.0f - pale) * lab.z);
+        colour = colour_of_oklab(mix(lab, vec3(1.0f, 0.0f, 0.0f), white));
+    }
     vec3 linear = shown * clamp(colour, vec3(0.0f), vec3(1.0f));
     return vec3(srgb_encoded(linear.x), srgb_encoded(linear.y), srgb_encoded(linear.z));
 }

@@ -235,6 +235,33 @@ TEST(FromBelow, HalfUnderShowsBoth) {
     EXPECT_EQ(picture.alpha[10 * 80 + 40], 0.0f);
 }
 
+// Water climbs the glass: a little over the line there is already no sky in the picture, and over that it comes back softly.
+TEST(FromBelow, WaterClimbsTheGlass) {
+    constexpr double kHeight_m = 0.005;
+    Scene scene = level({0.0, 0.0, kHeight_m}, {0.0, 1.0, 0.0});
+    scene.camera.fov_deg = 3.0;
+    scene.camera.resolution = {20, 200};
+    const Picture picture = picture_under(scene, uniform_sky());
+    const double pixel_m = kFrontGlass_m * 2.0 * std::tan(1.5 * kPi / 180.0) / 20.0;
+    const auto above_the_line = [&](double height_m) {
+        const auto row = static_cast<std::size_t>(100.0 + (kHeight_m - height_m) / pixel_m);
+        return row * 20 + 10;
+    };
+    const auto of_sky = [&](double height_m) { return picture.layers[above_the_line(height_m)].sky.y; };
+    for (const double height_m : {-1e-3, 5e-4, 1.5e-3}) {
+        EXPECT_EQ(of_sky(height_m), 0.0f) << height_m;
+        EXPECT_EQ(picture.alpha[above_the_line(height_m)], 1.0f);
+    }
+    EXPECT_GT(of_sky(5e-3), 0.9f * kSkyRadiance);  // mirrored at a glance
+    double before = 0.0;
+    for (double height_m = 1.5e-3; height_m < 4e-3; height_m += pixel_m) {
+        const double here = of_sky(height_m) / kSkyRadiance;
+        EXPECT_GE(here, before - 0.01) << height_m;
+        EXPECT_LT(here, before + 0.25) << height_m;
+        before = here;
+    }
+}
+
 // Waves cross the glass, too: some columns have more water than others.
 TEST(FromBelow, TheLineFollowsTheWaves) {
     Scene scene = with_body(sea_of(WaveModel::Fft));

@@ -312,8 +312,7 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
     using Variant = sea_shading::FromBelow;
     if (sights.size() != radiance.size())
         throw std::invalid_argument("shade_meniscus: give one SeaRadiance for each sight");
-    if (choice.sky && sky.map.size() == 0)
-        throw std::invalid_argument("shade_meniscus: the sky has no map");
+    if (choice.sky && sky.map.size() == 0) throw std::invalid_argument("shade_meniscus: the sky has no map");
     Variant shading(sky.map, nullptr, choice, nullptr, floor.values);
     const auto light = sea_shading::light_of<Variant>(sky, water, floor);
     const float n = shading.kWaterIndex;
@@ -334,8 +333,8 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
         radiance[i] = {};
         const glm::vec3 d = sights[i].direction;
         const auto climbed = static_cast<double>(sights[i].height_m);
-        const auto inclined = static_cast<float>(
-            2.0 * std::asin(std::clamp(climbed, 0.0, kMeniscus_m) / (2.0 * kCapillary_m)));
+        const auto inclined =
+            static_cast<float>(2.0 * std::asin(std::clamp(climbed, 0.0, kMeniscus_m) / (2.0 * kCapillary_m)));
         const glm::vec3 normal =
             glm::normalize(std::sin(inclined) * side + glm::vec3(0.0f, 0.0f, std::cos(inclined)));
         const float cosine = glm::dot(d, normal);

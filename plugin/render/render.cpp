@@ -458,9 +458,8 @@ class RendererOf final : public Impl {
         batch_.lit.resize(sights.size());
         sea_.light_meniscus(eye(), glm::vec3(view_.forward), sights, batch_.lit);
         for (std::size_t i = 0; i < sights.size(); ++i)
-            batch_.radiance[batch_.climbed[i]] =
-                mixed(batch_.radiance[batch_.climbed[i]], batch_.lit[i],
-                      meniscus_share(batch_.glass_m[batch_.climbed[i]]));
+            batch_.radiance[batch_.climbed[i]] = mixed(batch_.radiance[batch_.climbed[i]], batch_.lit[i],
+                                                       meniscus_share(batch_.glass_m[batch_.climbed[i]]));
     }
 
     // Over what the samples of the rows show, from the farthest on.

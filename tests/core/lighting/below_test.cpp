@@ -170,8 +170,7 @@ TEST(Meniscus, MirrorsTheWaterAndShowsTheSeaBeforeIt) {
         const double down = out - within;  // below the horizon
         const double into = std::sqrt(1.0 - std::pow(std::cos(down * kOneDegree) / kIndex, 2));
         const double expected = let_by_facet(std::cos(within * kOneDegree)) * (1.0 - let_by_facet(into));
-        const SeaRadiance lit =
-            through_meniscus(level, height_m(inclined_deg), water, sky, {.water = false});
+        const SeaRadiance lit = through_meniscus(level, height_m(inclined_deg), water, sky, {.water = false});
         EXPECT_NEAR(lit.sky.y, expected, 1e-3) << inclined_deg;
     }
     for (const double inclined_deg : {40.0, 20.0, 2.0}) {
@@ -180,7 +179,8 @@ TEST(Meniscus, MirrorsTheWaterAndShowsTheSeaBeforeIt) {
         shade_water({}, sky, water, 0.0f, {&mirrored, 1}, {&seen, 1});
         const SeaRadiance lit = through_meniscus(level, height_m(inclined_deg), water, sky);
         EXPECT_EQ(lit.sky, vec3(0.0f)) << inclined_deg;
-        EXPECT_NEAR(lit.sea.y / seen.sea.y * static_cast<float>(kIndex * kIndex), 1.0f, 1e-3f) << inclined_deg;
+        EXPECT_NEAR(lit.sea.y / seen.sea.y * static_cast<float>(kIndex * kIndex), 1.0f, 1e-3f)
+            << inclined_deg;
     }
 }
 
@@ -203,8 +203,8 @@ TEST(Meniscus, IsFiniteFromEverySide) {
     for (const double glass : {0.0, 1e-4, 90.0, 179.99, 180.0})
         for (const double theta : {0.0, 1e-4, 60.0, 90.0, 120.0, 180.0})
             for (const double height_m : {0.0, 1e-9, 1e-3, 2.7e-3, 1.0}) {
-                const SeaRadiance lit = through_meniscus(tilted(theta * kOneDegree, 0.7), height_m, water, sky,
-                                                         {}, tilted(glass * kOneDegree, 0.7));
+                const SeaRadiance lit = through_meniscus(tilted(theta * kOneDegree, 0.7), height_m, water,
+                                                         sky, {}, tilted(glass * kOneDegree, 0.7));
                 for (const vec3& part : {lit.sky, lit.sea})
                     for (int c = 0; c < 3; ++c)
                         ASSERT_TRUE(std::isfinite(part[c]) && part[c] >= 0.0f)

@@ -32,9 +32,9 @@ struct MeniscusSight {
     float height_m = 0.0f;
 };
 
-// Writes for sights[i] what a camera behind the glass sees, radiance[i]: height_m is that of the eye above the sea at rest, as in shade_water(), forward (unit) the glass'
-// normal. The sea that is seen through it is level, and the sun's disc isn't seen in it. Throws std::invalid_argument if the spans differ in
-// length, or if choice.sky is on and the sky has no map.
+// Writes for sights[i] what a camera behind the glass sees, radiance[i]. height_m: of the eye above the sea at rest, as in shade_water();
+// forward (unit): the glass' normal. The sea that is seen through it is level, and the sun's disc isn't seen in it. Throws
+// std::invalid_argument if the spans differ in length, or if choice.sky is on and the sky has no map.
 void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBody& water, float height_m,
                     glm::vec3 forward, std::span<const MeniscusSight> sights, std::span<SeaRadiance> radiance,
                     const FloorSeen& floor = {});

@@ -24,6 +24,8 @@ VIEW = "pelagic_view"  # on the world: the camera that they were metered by, Pin
 # By how much a view transform has to be exposed more for a sea that is as bright as by the program's own: of the two shots of a day's
 # tests/addon/displays.py. Filmic shows a grey of 0.18 as 0.214.
 VIEW_STOPS = {"Filmic": -0.05, "AgX": 0.25}
+# The core's camera is in air, behind its front glass, and sees 1/n² of the light in the water; Blender's is in it.
+BEHIND_GLASS = 2.0 * math.log2(1.34)
 SKY_WIDTH = 1024
 STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp
 # Where Cycles clamps indirect light: ten times white, which is 1 in the start-up file, and here a sunlit white of some 25 kcd/m². With the
@@ -109,6 +111,8 @@ def meter(bpy_scene, scene):
     world = bpy_scene.world
     if world is not None and EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
         stops = exposure_stops(sky_of(scene), scene) + VIEW_STOPS.get(bpy_scene.view_settings.view_transform, 0.0)
+        if scene.camera.position_m[2] < 0.0:
+            stops -= BEHIND_GLASS
         bpy_scene.view_settings.exposure = world[EXPOSURE] = stops
 
 

@@ -2,6 +2,9 @@
 //
 // Seen upside down the surface is a sea over air: z is turned round, slopes change their sign, and everything of slopes.glsl holds.
 
+// A camera is in air, behind its front glass: of radiance in the water it sees that part, as in meniscus.h.
+const float kBehindGlass = 1.0f / (kWaterIndex * kWaterIndex);
+
 vec3 upside_down(vec3 direction) { return vec3(direction.x, direction.y, -direction.z); }
 
 // ---- The water between

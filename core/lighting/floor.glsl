@@ -26,7 +26,10 @@ struct SeenFloor {
 };
 
 const float kFloorLightStep = 4.0f;  // texels of the coarser map over those of the finer
-const float kFloorLightEdge = 16.0f;  // texels over which a map gives way to what is around it
+// Over which a map gives way to what is around it: of the floor's light, whose end is seen where waves gather much, a part of its side; of the
+// shafts', texels.
+const float kFloorLightEdge = 0.25f;
+const float kShaftsEdge = 16.0f;
 const float kLeastFloor_m = 0.01f;    // a trough touches the floor
 const int kFloorSteps = 8;            // towards a mapped floor, and as many back: to a millimetre over a slope of 5 (floor_test.cpp)
 const float kFarFloor_m = 3.0e4f;     // how far a parabola stands for the earth, to a centimetre
@@ -55,9 +58,9 @@ float floor_height(vec2 place, FloorView of) {
 }
 
 // How much a map of n × n texels counts at a place in it: all, and nothing from its edge on.
-float floor_light_share(vec2 at, float n) {
+float floor_light_share(vec2 at, float n, float edge) {
     vec2 inside = min(at, vec2(n) - at) - 1.0f;
-    return smoothstep(0.0f, kFloorLightEdge, min(inside.x, inside.y));
+    return smoothstep(0.0f, edge, min(inside.x, inside.y));
 }
 
 // The sun's light on the floor over what a level sea lets fall there. width_m: over which it is seen as one. Maps are of texels
@@ -70,10 +73,10 @@ float floor_light(vec2 place, float width_m, FloorView of) {
     float octaves = 0.5f * log2(max(width_m * of.light.z, 1.0f));  // in steps of the maps
     float light = 1.0f;
     vec2 at = (place - vec2(of.coarse.x, of.coarse.y)) * (of.light.z / kFloorLightStep);
-    float share = floor_light_share(at, n) * clamp(2.0f - octaves, 0.0f, 1.0f);
+    float share = floor_light_share(at, n, kFloorLightEdge * n) * clamp(2.0f - octaves, 0.0f, 1.0f);
     if (share > 0.0f) light = mix(1.0f, floor_between(at, side, side, first + side * side), share);
     at = (place - vec2(of.light.x, of.light.y)) * of.light.z;
-    share = floor_light_share(at, n) * clamp(1.0f - octaves, 0.0f, 1.0f);
+    share = floor_light_share(at, n, kFloorLightEdge * n) * clamp(1.0f - octaves, 0.0f, 1.0f);
     if (share > 0.0f) light = mix(light, floor_between(at, side, side, first), share);
     return max(1.0f + of.coarse.w * (light - 1.0f), 0.0f);
 }
@@ -84,7 +87,7 @@ float shaft_light(vec2 place, float width_m, FloorView of) {
     int side = int(of.shafts_look.y);
     int first = int(of.shafts_look.x);
     vec2 at = (place - vec2(of.shafts.x, of.shafts.y)) * of.shafts.z;
-    float share = floor_light_share(at, of.shafts_look.y);
+    float share = floor_light_share(at, of.shafts_look.y, kShaftsEdge);
     if (!(share > 0.0f)) return 1.0f;
     float level = log2(max(width_m * of.shafts.z, 1.0f));
     while (level >= 1.0f && side > 1) {

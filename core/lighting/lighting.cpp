@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/lighting/air.h"
+#include "core/lighting/meniscus.h"
 
 namespace pelagic {
 namespace sea_shading {
@@ -292,6 +293,69 @@ void shade_water(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         if (choice.water)
             radiance[i].sea =
                 shading.water_between(glm::vec3(0.0f), direction[i], height_m, -1.0f, 0.0f, light).light;
+    }
+}
+
+float meniscus_share(double height_m) {
+    return static_cast<float>(
+        std::clamp((kMeniscus_m + kMeniscusBlur_m - height_m) / (2.0 * kMeniscusBlur_m), 0.0, 1.0));
+}
+
+SeaRadiance mixed(const SeaRadiance& a, const SeaRadiance& b, float share) {
+    return {glm::mix(a.sun, b.sun, share), glm::mix(a.sky, b.sky, share), glm::mix(a.sea, b.sea, share),
+            glm::mix(a.foam, b.foam, share), glm::mix(a.air, b.air, share)};
+}
+
+void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBody& water, float height_m,
+                    glm::vec3 forward, std::span<const MeniscusSight> sights, std::span<SeaRadiance> radiance,
+                    const FloorSeen& floor) {
+    using Variant = sea_shading::FromBelow;
+    if (sights.size() != radiance.size())
+        throw std::invalid_argument("shade_meniscus: give one SeaRadiance for each sight");
+    if (choice.sky && sky.map.size() == 0) throw std::invalid_argument("shade_meniscus: the sky has no map");
+    Variant shading(sky.map, nullptr, choice, nullptr, floor.values);
+    const auto light = sea_shading::light_of<Variant>(sky, water, floor);
+    const float n = shading.kWaterIndex;
+    // The wedge turns sights by 40° a millimetre, over which the lens mixes them.
+    constexpr float kMixed = 0.6f;
+    const auto below = [&](glm::vec3 direction, float mixed) {
+        if (!choice.water) return glm::vec3(0.0f);
+        return kBehindGlass *
+               shading.water_between(glm::vec3(0.0f), direction, height_m, -1.0f, mixed, light).light;
+    };
+    const auto above = [&](glm::vec3 direction) {
+        return choice.sky ? shading.sky_lookup(shading.sky_place(direction), 0.0f) : glm::vec3(0.0f);
+    };
+    // Water doesn't climb a glass that looks straight up or down.
+    const glm::vec3 across(forward.x, forward.y, 0.0f);
+    const glm::vec3 side = glm::length(across) > 1e-3f ? glm::normalize(across) : glm::vec3(0.0f);
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+        radiance[i] = {};
+        const glm::vec3 d = sights[i].direction;
+        const auto climbed = static_cast<double>(sights[i].height_m);
+        const auto inclined =
+            static_cast<float>(2.0 * std::asin(std::clamp(climbed, 0.0, kMeniscus_m) / (2.0 * kCapillary_m)));
+        const glm::vec3 normal =
+            glm::normalize(std::sin(inclined) * side + glm::vec3(0.0f, 0.0f, std::cos(inclined)));
+        const float cosine = glm::dot(d, normal);
+        if (cosine <= 0.0f) {
+            radiance[i].sea = below(d, 0.0f);
+            continue;
+        }
+        const float mirrored = shading.fresnel_exact(cosine, 1.0f / n);
+        radiance[i].sea = mirrored * below(d - 2.0f * cosine * normal, kMixed);
+        if (mirrored >= 1.0f) continue;
+        const float beyond = std::sqrt(std::max(1.0f - n * n * (1.0f - cosine * cosine), 0.0f));
+        const glm::vec3 out = glm::normalize(n * d - (n * cosine - beyond) * normal);
+        const float through = 1.0f - mirrored;
+        if (out.z >= 0.0f) {
+            radiance[i].sky = through * above(out);
+            continue;
+        }
+        const float by_sea = shading.fresnel_exact(-out.z, n);
+        radiance[i].sky = through * by_sea * above({out.x, out.y, -out.z});
+        radiance[i].sea += through * (1.0f - by_sea) *
+                           below({out.x / n, out.y / n, -shading.refracted_cosine(-out.z)}, kMixed);
     }
 }
 

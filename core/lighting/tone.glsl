@@ -51,6 +51,14 @@ vec3 colour_of_oklab(vec3 lab) {
                 dot(vec3(-0.0041960863f, -0.7034186147f, 1.7076147010f), cones));
 }
 
+// How much paler a colour is shown whose weakest component is that part of its strongest: filters of sensors and layers of film overlap, and
+// no photograph has light without some of each component (the reference gamut compression of ACES 1.3 is for the same). Light through metres
+// of clear water has no red, and would be neon. None from a quarter on, by eye.
+float paler(float weakest) {
+    float lack = max(1.0f - 4.0f * weakest, 0.0f);
+    return 0.15f * lack * lack;
+}
+
 // The sRGB display value, 0 … 1, of a radiance. exposure: radiance × exposure = 0.18 is middle grey.
 //
 // The curve is applied to the largest component, and the others keep their ratio to it: a curve per component would turn the orange
@@ -66,8 +74,13 @@ vec3 display_colour(vec3 radiance, float exposure) {
     float sixteenth = (fourth * fourth) * (fourth * fourth);
     float white = sixteenth * sixteenth * sixteenth;
     vec3 colour = light / strongest;
+    float pale = paler(min(min(colour.x, colour.y), colour.z));
     // Where nothing is to be changed rounding shouldn't change anything.
-    if (white > 1e-5f) colour = colour_of_oklab(mix(oklab_of(colour), vec3(1.0f, 0.0f, 0.0f), white));
+    if (max(white, pale) > 1e-5f) {
+        vec3 lab = oklab_of(colour);
+        lab = vec3(lab.x, (1.0f - pale) * lab.y, (1.0f - pale) * lab.z);
+        colour = colour_of_oklab(mix(lab, vec3(1.0f, 0.0f, 0.0f), white));
+    }
     vec3 linear = shown * clamp(colour, vec3(0.0f), vec3(1.0f));
     return vec3(srgb_encoded(linear.x), srgb_encoded(linear.y), srgb_encoded(linear.z));
 }

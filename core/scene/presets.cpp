@@ -37,10 +37,11 @@ struct Force {
 };
 
 // What the sea looks like: after the same table's descriptions, shortened. Each is whiter than the one before, and none of them by the sun's
-// glitter alone: foam is lit from the side or from behind the eye, and a hurricane's spray against the light. Force 2 is silk at dawn. From 4 to 8
-// the camera stands before waves that break, on a boat's deck; from 9 on it is low, as in a trough, where the next sea stands over the horizon: from
-// the seas' own height they are low hills. The places are those of the default seed, found by a search: the water stays below the camera for ten
-// seconds, and breaking water or a crest is ahead, on the default patch, which a bake of the preset shows.
+// glitter alone: foam is lit from the side or from behind the eye. Force 2 is silk at dawn. From 4 to 8 the camera stands before waves that
+// break, on a boat's deck; from 9 on it is low, as in a trough, where the next sea stands over the horizon: from the seas' own height they are
+// low hills. Storms have no fair sky: at force 9 it is grey with haze, and from 10 on with spray. The places are those of the default seed,
+// found by a search: the water stays below the camera for ten seconds, and breaking water or a crest is ahead, on the default patch, which a
+// bake of the preset shows.
 // clang-format off
 constexpr std::array<Force, 13> kForces{{
     {"Calm", 0.0, 100.0, 1.0, {5.0, 75.0, 2.4}, {2.2, 2.6, 45.0}, "like a mirror"},
@@ -52,10 +53,10 @@ constexpr std::array<Force, 13> kForces{{
     {"Strong breeze", 12.3, 180.0, 1.2, {30.0, 150.0, 2.0}, {1.5, 1.8, 28.0, -90.0, 90.0, 286.0}, "large waves, white crests everywhere; 3 m"},
     {"Near gale", 15.5, 190.0, 1.4, {30.0, 350.0, 2.2}, {1.8, 2.2, 30.0, 30.0, 36.0, 116.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
     {"Gale", 18.9, 240.0, 1.7, {28.0, 30.0, 2.4}, {2.3, 3.0, 34.0, 60.0, 66.0, 164.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
-    {"Strong gale", 22.6, 270.0, 2.0, {30.0, 200.0, 2.6}, {0.5, 3.0, 32.0, -2.0, -63.0, 340.0}, "high waves, dense streaks, crests begin to topple; 7 m"},
+    {"Strong gale", 22.6, 270.0, 2.0, {50.0, 200.0, 8.0}, {0.5, 3.0, 32.0, -2.0, -63.0, 340.0, -0.5}, "high waves, dense streaks, crests begin to topple; 7 m"},
     {"Storm", 26.4, 320.0, 3.2, {24.0, 300.0, 3.0}, {3.3, 4.4, 34.0, 50.0, 58.0, 220.0, -0.3}, "very high waves with overhanging crests, the sea looks white; 9 m"},
     {"Violent storm", 30.5, 385.0, 4.5, {26.0, 300.0, 3.0}, {3.9, 5.0, 34.0, 77.0, 69.0, 200.0, -0.2}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
-    {"Hurricane", 35.0, 425.0, 7.5, {24.0, 100.0, 3.5}, {3.9, 5.0, 34.0, -2.0, -5.0, 40.0}, "the air is full of foam, the sea white; 14 m"},
+    {"Hurricane", 35.0, 425.0, 7.5, {45.0, 100.0, 3.5}, {3.9, 5.0, 34.0, -2.0, -5.0, 40.0, -0.5}, "the air is full of foam, the sea white; 14 m"},
 }};
 // clang-format on
 
@@ -228,10 +229,10 @@ std::vector<Preset> named_seas() {
     gale.sea.spectrum = SpectrumKind::Tma;
     gale.sea.spreading = SpreadingKind::DonelanBanner;
     gale.waves.choppiness = 1.15;
-    gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 150.0};
+    gale.light = {.sun_elevation_deg = 45.0, .sun_azimuth_deg = 150.0, .turbidity = 8.0};
     gale.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 1.0};
     out.push_back(named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam",
-                        gale, {1.3, 2.9, 40.0, -5.0, -68.0, 20.0}, {.spray = true}));
+                        gale, {1.3, 2.9, 40.0, -5.0, -68.0, 20.0, -0.4}, {.spray = true}));
 
     Scene southern;
     southern.sea.wind_speed_mps = 17.0;

@@ -13,6 +13,7 @@
 #include "core/lighting/colour.h"
 #include "core/lighting/floor.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/meniscus.h"
 #include "core/lighting/tone.h"
 #include "core/plan/effects.h"
 #include "core/scene/number_keys.h"
@@ -117,8 +118,8 @@ class Meter {
         } else {
             shade_water({}, sky_, water_, eye_m_, {&to, 1}, {&lit, 1});
         }
-        const double calm = luminance(glm::dvec3(lit.sky + lit.sea));
-        return {calm + luminance(glm::dvec3(lit.sun)), calm};
+        const double calm = kBehindGlass * luminance(glm::dvec3(lit.sky + lit.sea));
+        return {calm + kBehindGlass * luminance(glm::dvec3(lit.sun)), calm};
     }
 
     Seen along(glm::dvec3 direction) const {

@@ -40,9 +40,11 @@ struct Batch {
     std::vector<float> spray;              // by sample: what it hides of the sky; empty where nobody asks
     std::vector<float> sea_m;              // by sample: how far the sea is; empty where nobody asks
     std::vector<std::uint8_t> under;       // by sample: it looks through water; empty where none may
-    std::vector<std::size_t> water;        // which samples show water without a surface, rising
-    std::vector<std::size_t> sea;          // which samples show the sea, rising
-    SeenSea<T> seen;                       // from here on by entry of `sea`
+    std::vector<double> glass_m;  // by sample: its height above the water at the camera's glass [m]; likewise
+    std::vector<std::size_t> climbed;  // which samples look through what climbs the glass, rising
+    std::vector<std::size_t> water;    // which samples show water without a surface, rising
+    std::vector<std::size_t> sea;      // which samples show the sea, rising
+    SeenSea<T> seen;                   // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;
 };
 

@@ -313,11 +313,13 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             std::lower_bound(picture.skyline.begin(), picture.skyline.end(), width * row,
                              [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
         for (auto both = from; both != picture.skyline.end() && both->pixel < width * (row + 1); ++both) {
-            const glm::vec3 light = radiance_of(picture.layers[both->pixel]),
-                            glare = glaring.empty() ? glm::vec3(0.0f) : glaring[both->pixel] - light;
-            std::array parts{(light - both->light) / (1.0f - both->sky) + glare,
-                             both->light / both->sky + glare};
-            for (glm::vec3& part : parts) part = balance * glm::max(part, 0.0f);
+            const glm::vec3 light = radiance_of(picture.layers[both->pixel]);
+            std::array parts{(light - both->light) / (1.0f - both->sky), both->light / both->sky};
+            // Each has its own light less what is scattered of it, and what is scattered of others.
+            const float own = glaring.empty() ? 1.0f : 1.0f - static_cast<float>(camera.glare);
+            const glm::vec3 others =
+                glaring.empty() ? glm::vec3(0.0f) : glm::max(glaring[both->pixel] - own * light, 0.0f);
+            for (glm::vec3& part : parts) part = balance * glm::max(own * part + others, 0.0f);
             show(parts);
             lights[both->pixel - width * row] = glm::mix(parts[0], parts[1], both->sky);
         }

@@ -8,6 +8,7 @@
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 
 #include "core/base/precision.h"
 #include "core/lighting/background.h"
+#include "core/lighting/meniscus.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/pixel_footprint.h"
@@ -113,6 +115,7 @@ class RendererOf final : public Impl {
                 }
                 if (is_lit) light_sea();
                 if (is_lit) light_water(row);
+                if (is_lit) light_meniscus(row);
                 if (is_lit && !drops_.empty()) draw_drops(row, rows);
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
@@ -347,22 +350,33 @@ class RendererOf final : public Impl {
             }
             raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });
+        find_water(first_row);
         batch_.sea.clear();
         for (std::size_t i = 0; i < batch_.triangles.size(); ++i)
             if (batch_.triangles[i] != Rasteriser::kNone) batch_.sea.push_back(i);
-        find_water(first_row);
     }
 
-    // Which samples look through water, and which of these meet no surface.
+    // Which samples look through water, which of these meet no surface, and which look through what climbs the glass: where they do with
+    // all of their light, nothing else is seen.
     void find_water(int first_row) {
         batch_.water.clear();
-        batch_.under.assign(waterline_ ? batch_.triangles.size() : 0, 0);
-        in_parallel(batch_.under.size(), [&](std::size_t i) {
-            if (batch_.places.empty() || batch_.places[i].is_taken())
-                batch_.under[i] = waterline_->is_under(seen_at(first_row, i)) ? 1 : 0;
+        batch_.climbed.clear();
+        const std::size_t count = waterline_ ? batch_.triangles.size() : 0;
+        batch_.under.assign(count, 0);
+        batch_.glass_m.assign(count, std::numeric_limits<double>::infinity());
+        in_parallel(count, [&](std::size_t i) {
+            if (!batch_.places.empty() && !batch_.places[i].is_taken()) return;
+            batch_.glass_m[i] = waterline_->height_m(seen_at(first_row, i));
+            batch_.under[i] = batch_.glass_m[i] < 0.0 || meniscus_share(batch_.glass_m[i]) == 1.0f;
         });
-        for (std::size_t i = 0; i < batch_.under.size(); ++i)
-            if (is_under(i) && batch_.triangles[i] == Rasteriser::kNone) batch_.water.push_back(i);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (batch_.glass_m[i] >= 0.0) {
+                if (meniscus_share(batch_.glass_m[i]) > 0.0f) batch_.climbed.push_back(i);
+                if (is_under(i)) batch_.triangles[i] = Rasteriser::kNone;
+            } else if (batch_.triangles[i] == Rasteriser::kNone) {
+                batch_.water.push_back(i);
+            }
+        }
     }
     bool is_under(std::size_t sample) const { return !batch_.under.empty() && batch_.under[sample] != 0; }
     bool is_sea(std::size_t sample) const {
@@ -433,6 +447,19 @@ class RendererOf final : public Impl {
         sea_.light_water(eye(), direction, batch_.lit);
         for (std::size_t i = 0; i < batch_.water.size(); ++i)
             batch_.radiance[batch_.water[i]] = batch_.lit[i];
+    }
+
+    void light_meniscus(int first_row) {
+        if (batch_.climbed.empty()) return;
+        std::vector<MeniscusSight> sights;
+        for (const std::size_t sample : batch_.climbed)
+            sights.push_back({glm::vec3(view_.direction(seen_at(first_row, sample))),
+                              static_cast<float>(batch_.glass_m[sample])});
+        batch_.lit.resize(sights.size());
+        sea_.light_meniscus(eye(), glm::vec3(view_.forward), sights, batch_.lit);
+        for (std::size_t i = 0; i < sights.size(); ++i)
+            batch_.radiance[batch_.climbed[i]] = mixed(batch_.radiance[batch_.climbed[i]], batch_.lit[i],
+                                                       meniscus_share(batch_.glass_m[batch_.climbed[i]]));
     }
 
     // Over what the samples of the rows show, from the farthest on.

@@ -177,6 +177,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                 if (is_below(first)) {
                     shade_sea_from_below(choice_, sky, water_, static_cast<float>(seen.eye->position_m.z),
                                          part(points_), part(seen.distance_m), part(lit), foam, floor);
+                    for (SeaRadiance& of : part(lit)) of = mixed({}, of, kBehindGlass);
                     continue;
                 }
                 shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam, floor);
@@ -194,6 +195,19 @@ void SeaLight<T>::light_water(const FloorEye& eye, std::span<const glm::vec3> di
                           shade_water(choice_, sky_, water_, static_cast<float>(eye.position_m.z),
                                       direction.subspan(range.begin(), range.size()),
                                       lit.subspan(range.begin(), range.size()), floor_.seen_from(eye));
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              lit[i] = mixed({}, lit[i], kBehindGlass);
+                      });
+}
+
+template <class T>
+void SeaLight<T>::light_meniscus(const FloorEye& eye, const glm::vec3& forward,
+                                 std::span<const MeniscusSight> sights, std::span<SeaRadiance> lit) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sights.size(), kShadeGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          shade_meniscus(choice_, sky_, water_, static_cast<float>(eye.position_m.z), forward,
+                                         sights.subspan(range.begin(), range.size()),
+                                         lit.subspan(range.begin(), range.size()), floor_.seen_from(eye));
                       });
 }
 

@@ -16,6 +16,7 @@
 #include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/meniscus.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/spray.h"
 #include "core/lighting/water.h"
@@ -104,9 +105,13 @@ class SeaLight {
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
 
-    // What an eye in the water sees in these directions (unit) where there is no surface.
+    // What a camera in the water sees in these directions (unit) where there is no surface.
     void light_water(const FloorEye& eye, std::span<const glm::vec3> direction,
                      std::span<SeaRadiance> lit) const;
+
+    // What a camera sees through the water that climbs its glass, whose normal is `forward` (core/lighting/meniscus.h).
+    void light_meniscus(const FloorEye& eye, const glm::vec3& forward, std::span<const MeniscusSight> sights,
+                        std::span<SeaRadiance> lit) const;
 
     // SeaPoint::crest at places of a flat sea at rest, by their footprints [m], width and long axis; empty where the water knows no crests.
     void find_crests(glm::dvec2 origin_m, const std::vector<glm::vec<2, T>>& rest, std::vector<T> width_m,

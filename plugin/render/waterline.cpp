@@ -6,6 +6,9 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vector_relational.hpp>
+#include <limits>
+
+#include "core/lighting/meniscus.h"
 
 namespace pelagic {
 namespace {
@@ -60,22 +63,25 @@ glm::ivec2 Waterline::cell_of(glm::dvec2 place_m) const {
     return glm::ivec2(glm::clamp((place_m - low_m_) / cell_m_, 0.0, kCells - 1.0));
 }
 
-bool Waterline::is_under(glm::dvec2 pixel) const {
+double Waterline::height_m(glm::dvec2 pixel) const {
+    constexpr double kEndless_m = std::numeric_limits<double>::infinity();
     const glm::dvec3 place_m = on_glass(view_, pixel);
-    if (place_m.z > highest_m_) return false;
-    if (place_m.z < -highest_m_) return true;
+    if (place_m.z > highest_m_ + kMeniscus_m + kMeniscusBlur_m) return kEndless_m;
+    if (place_m.z < -highest_m_) return -kEndless_m;
     const glm::ivec2 cell = cell_of(glm::dvec2(place_m));
     const auto cross = [](glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; };
-    return std::ranges::any_of(over_[cell.y * kCells + cell.x], [&](const glm::dmat3& corner) {
+    double surface_m = -kEndless_m;
+    for (const glm::dmat3& corner : over_[cell.y * kCells + cell.x]) {
         std::array<glm::dvec2, 3> from;
         for (int i = 0; i < 3; ++i) from[i] = glm::dvec2(corner[i] - place_m);
         const glm::dvec3 parts(cross(from[1], from[2]), cross(from[2], from[0]), cross(from[0], from[1]));
         const double twice_area = parts.x + parts.y + parts.z;
-        if (twice_area == 0.0 || glm::any(glm::lessThan(parts * twice_area, glm::dvec3(0.0)))) return false;
-        double height_m = 0.0;
-        for (int i = 0; i < 3; ++i) height_m += parts[i] / twice_area * corner[i].z;
-        return height_m > place_m.z;
-    });
+        if (twice_area == 0.0 || glm::any(glm::lessThan(parts * twice_area, glm::dvec3(0.0)))) continue;
+        double here_m = 0.0;
+        for (int i = 0; i < 3; ++i) here_m += parts[i] / twice_area * corner[i].z;
+        surface_m = std::max(surface_m, here_m);
+    }
+    return place_m.z - surface_m;
 }
 
 bool Waterline::is_any_under() const {

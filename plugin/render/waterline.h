@@ -29,8 +29,10 @@ class Waterline {
     Waterline(const View& view, double highest_m, glm::dvec2 origin_m,
               std::span<const glm::vec<3, T>> position_m, std::span<const std::uint32_t> triangles);
 
-    // Whether the surface, its highest sheet where it has folded, lies over the glass at a place of the picture in pixels.
-    bool is_under(glm::dvec2 pixel) const;
+    // How high a place of the picture, in pixels, is on the glass above the surface, its highest sheet where it has folded [m]; negative
+    // under it. Infinite where no wave reaches, or all do.
+    double height_m(glm::dvec2 pixel) const;
+    bool is_under(glm::dvec2 pixel) const { return height_m(pixel) < 0.0; }
     // Whether it does anywhere, as far as a coarse grid of places shows.
     bool is_any_under() const;
 

@@ -69,7 +69,7 @@ def run():
                 scene.shot.name, scene.shot.frames = "below", (1, 1)
                 scene.save(Path(folder) / "below.toml")
                 layers = core_layers(Path(folder) / "below.toml", SIZE)
-            mine, core = picture(4), sum(layers.values())
+            mine, core = picture(4), 1.34**2 * sum(layers.values())  # whose camera is in air, behind its glass
             x, y = np.meshgrid(*((np.arange(count) + 0.5 - 0.5 * count) * 2.0 * math.tan(math.radians(0.5 * fov_deg)) / SIZE[0] for count in SIZE))
             up = (np.stack([x, y, -np.ones_like(x)], axis=-1) / np.sqrt(x * x + y * y + 1.0)[..., None]) @ np.array(camera.matrix_world.to_3x3())[2]
             no_sun = layers["sun"][..., 1] == 0.0

@@ -207,6 +207,13 @@ with checking("stops that an artist or a preset adds brighten the view, a meter'
     metered = view.exposure
     change(obj, camera__ev100=13.0)
     assert math.isclose(view.exposure, metered + 2.0, abs_tol=1e-3), (view.exposure, metered)
+    # Blender's camera is in the water, the core's in air behind its glass, where light from the water is 1/n².
+    above, camera = view.exposure, bpy.context.scene.camera
+    camera.location.z, before = -6.0, camera.location.z
+    bpy.context.view_layer.update()
+    assert math.isclose(view.exposure, above - 2.0 * math.log2(1.34), abs_tol=1e-3), (view.exposure, above)
+    camera.location.z = before
+    bpy.context.view_layer.update()
     for frame, stops in ((1, 0.0), (11, -2.0)):
         obj.pelagic.camera.exposure_ev = stops
         obj.keyframe_insert("pelagic.camera.exposure_ev", frame=frame)

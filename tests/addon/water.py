@@ -169,7 +169,7 @@ def from_below(z_m, pitch_deg, fov_deg):
     scene = ocean.scene_of(obj, bpy_scene)
     scene.shot.name, scene.shot.frames = "below", (1, 1)
     scene.save(FOLDER / "below.toml")
-    core = sum(core_layers(FOLDER / "below.toml", size).values())
+    core = 1.34**2 * sum(core_layers(FOLDER / "below.toml", size).values())  # whose camera is in air, behind its glass
     x, y = np.meshgrid(*((np.arange(count) + 0.5 - 0.5 * count) * 2.0 * math.tan(math.radians(0.5 * fov_deg)) / size[0] for count in size))
     towards = np.stack([x, y, -np.ones_like(x)], axis=-1) @ np.array(camera.matrix_world.to_3x3()).T
     return cycles_exr(FOLDER / "below.exr", size, 32)[..., :3], core, towards / np.linalg.norm(towards, axis=-1, keepdims=True)

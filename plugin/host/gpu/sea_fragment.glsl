@@ -39,7 +39,7 @@ void main() {
                                      answer.slope_variance_at_rest, mesh_variance_along());
         SeaTerms below = sea_from_below(to_eye, vec3(-normal.x, -normal.y, normal.z), answer.slope_variance, foam, body,
                                         view_height_m, point_distance_m(), sea_light());
-        write_terms(below.sun, below.sky, below.sea, below.foam, vec3(0.0), 1.0);
+        write_terms(kBehindGlass * below.sun, kBehindGlass * below.sky, kBehindGlass * below.sea, kBehindGlass * below.foam, vec3(0.0), 1.0);
         return;
     }
     SeaTerms terms =

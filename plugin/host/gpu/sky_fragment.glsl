@@ -10,7 +10,7 @@ void main() {
     if (kFromBelow) {  // water without a surface
         vec3 sea = kWater ? water_between(vec3(0.0), direction, view_height_m, -1.0, 0.0, sea_light()).light
                           : vec3(0.0);
-        write_terms(vec3(0.0), vec3(0.0), sea, vec3(0.0), vec3(0.0), 1.0);
+        write_terms(vec3(0.0), vec3(0.0), kBehindGlass * sea, vec3(0.0), vec3(0.0), 1.0);
         return;
     }
     vec3 sky = vec3(0.0);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/evaluate/values.h"
+#include "core/lighting/meniscus.h"
 #include "core/plan/plan.h"
 #include "core/plan/quality.h"
 #include "core/scene/number_keys.h"
@@ -207,13 +208,30 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
 
 namespace {
 
-// Takes the pixels that look through water from another picture.
-void take_below(const Waterline& waterline, const Picture& below, Picture& picture) {
+// Takes the pixels that look through water from another picture, and draws those that look through what of it climbs the glass.
+void take_below(const Waterline& waterline, const View& view, const LightingChoice& lighting, const Sky& sky,
+                const WaterBody& water, const FloorSeen& floor, const Picture& below, Picture& picture) {
     const auto width = static_cast<std::size_t>(picture.resolution.x);
+    std::vector<std::size_t> climbed;
+    std::vector<MeniscusSight> sights;
     for (std::size_t at = 0; at < picture.layers.size(); ++at) {
-        if (!waterline.is_under(glm::dvec2(at % width, at / width) + 0.5)) continue;
-        picture.layers[at] = below.layers[at];
-        picture.sea[at] = below.sea[at];
+        const glm::dvec2 pixel = glm::dvec2(at % width, at / width) + 0.5;
+        const double height_m = waterline.height_m(pixel);
+        if (height_m < 0.0) {
+            picture.layers[at] = below.layers[at];
+            picture.sea[at] = below.sea[at];
+        } else if (meniscus_share(height_m) > 0.0f) {
+            climbed.push_back(at);
+            sights.push_back({glm::vec3(view.direction(pixel)), static_cast<float>(height_m)});
+        }
+    }
+    std::vector<SeaRadiance> lit(sights.size());
+    shade_meniscus(lighting, sky, water, static_cast<float>(view.position_m.z), glm::vec3(view.forward),
+                   sights, lit, floor);
+    for (std::size_t i = 0; i < climbed.size(); ++i) {
+        const float share = meniscus_share(static_cast<double>(sights[i].height_m));
+        picture.layers[climbed[i]] = mixed(picture.layers[climbed[i]], lit[i], share);
+        if (share == 1.0f) picture.sea[climbed[i]] = 1;
     }
 }
 
@@ -295,7 +313,12 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
         return renderer.read_layers();
     };
     OffscreenPicture drawn{draw(from_below), renderer.device(), {}};
-    if (waterline) take_below(*waterline, draw(true), drawn.picture);
+    if (waterline)
+        take_below(*waterline, view, lighting, sky, water,
+                   floor->seen_from({.position_m = view.position_m,
+                                     .curvature_per_m = planned.mesh.points.curvature_per_m,
+                                     .pixel_tangent = view.pixel_tangent()}),
+                   draw(true), drawn.picture);
     if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =
             "the preview computes in single precision, quality.level \"reference\" in double: "

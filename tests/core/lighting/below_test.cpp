@@ -9,6 +9,7 @@
 
 #include "core/lighting/floor.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/meniscus.h"
 #include "tests/core/lighting/optics.h"
 
 namespace pelagic::optics {
@@ -142,6 +143,72 @@ TEST(Below, JustBelowTheSurfaceIsTheWaterThatIsSeenFromAbove) {
                 for (int c = 0; c < 3; ++c)
                     EXPECT_NEAR(shown * below.sea[c], above.sea[c], 0.005 * above.sea[c] + 1e-6)
                         << chlorophyll << ' ' << sun_deg << ' ' << floor_m << ' ' << c;
+            }
+}
+
+SeaRadiance through_meniscus(vec3 direction, double height_m, const WaterBody& water, const Sky& sky,
+                             const LightingChoice& choice = {}, vec3 forward = {0.0f, 1.0f, 0.0f}) {
+    const MeniscusSight sight{direction, static_cast<float>(height_m)};
+    SeaRadiance lit;
+    shade_meniscus(choice, sky, water, 0.0f, forward, {&sight, 1}, {&lit, 1});
+    return lit;
+}
+
+// A level sight at the glass meets water that is inclined by φ, 60° at the top. From 41.7° on it comes out, and looks down at the sea before
+// it; below that it is mirrored, and looks down by 2φ.
+TEST(Meniscus, MirrorsTheWaterAndShowsTheSeaBeforeIt) {
+    const WaterBody water = deep_body(0.1);
+    const Sky sky = lit_by(-10.0, 1.0f);
+    const vec3 level(0.0f, 1.0f, 0.0f);
+    const auto height_m = [](double inclined_deg) {
+        return 2.0 * kCapillary_m * std::sin(0.5 * inclined_deg * kOneDegree);
+    };
+    EXPECT_NEAR(height_m(60.0), kMeniscus_m, 1e-9);
+    for (const double inclined_deg : {60.0, 50.0, 43.0}) {
+        const double within = 90.0 - inclined_deg;  // of incidence
+        const double out = std::asin(kIndex * std::sin(within * kOneDegree)) / kOneDegree;
+        const double down = out - within;  // below the horizon
+        const double into = std::sqrt(1.0 - std::pow(std::cos(down * kOneDegree) / kIndex, 2));
+        const double expected = let_by_facet(std::cos(within * kOneDegree)) * (1.0 - let_by_facet(into));
+        const SeaRadiance lit = through_meniscus(level, height_m(inclined_deg), water, sky, {.water = false});
+        EXPECT_NEAR(lit.sky.y, expected, 1e-3) << inclined_deg;
+    }
+    for (const double inclined_deg : {40.0, 20.0, 2.0}) {
+        const vec3 mirrored = tilted((90.0 + 2.0 * inclined_deg) * kOneDegree, 0.5 * oracle::kPi);
+        SeaRadiance seen;
+        shade_water({}, sky, water, 0.0f, {&mirrored, 1}, {&seen, 1});
+        const SeaRadiance lit = through_meniscus(level, height_m(inclined_deg), water, sky);
+        EXPECT_EQ(lit.sky, vec3(0.0f)) << inclined_deg;
+        EXPECT_NEAR(lit.sea.y / seen.sea.y * static_cast<float>(kIndex * kIndex), 1.0f, 1e-3f)
+            << inclined_deg;
+    }
+}
+
+// At the water's level it goes over into what is below, and above its top into what is seen there.
+TEST(Meniscus, HasNoEdges) {
+    EXPECT_EQ(meniscus_share(0.0), 1.0f);
+    EXPECT_NEAR(meniscus_share(kMeniscus_m), 0.5f, 1e-5f);
+    EXPECT_EQ(meniscus_share(kMeniscus_m + 1.01 * kMeniscusBlur_m), 0.0f);
+    const WaterBody water = deep_body(1.0, 3.0, 0.4);
+    const Sky sky = lit_by(40.0, 0.1f);
+    const vec3 down = tilted(100.0 * kOneDegree, 0.5);
+    SeaRadiance below;
+    shade_water({}, sky, water, 0.0f, {&down, 1}, {&below, 1});
+    EXPECT_NEAR(through_meniscus(down, 0.0, water, sky).sea.y, kBehindGlass * below.sea.y, 1e-6f);
+}
+
+TEST(Meniscus, IsFiniteFromEverySide) {
+    const WaterBody water = deep_body(0.1, 2.0, 1.0);
+    const Sky sky = lit_by(40.0, 0.1f);
+    for (const double glass : {0.0, 1e-4, 90.0, 179.99, 180.0})
+        for (const double theta : {0.0, 1e-4, 60.0, 90.0, 120.0, 180.0})
+            for (const double height_m : {0.0, 1e-9, 1e-3, 2.7e-3, 1.0}) {
+                const SeaRadiance lit = through_meniscus(tilted(theta * kOneDegree, 0.7), height_m, water,
+                                                         sky, {}, tilted(glass * kOneDegree, 0.7));
+                for (const vec3& part : {lit.sky, lit.sea})
+                    for (int c = 0; c < 3; ++c)
+                        ASSERT_TRUE(std::isfinite(part[c]) && part[c] >= 0.0f)
+                            << glass << ' ' << theta << ' ' << height_m;
             }
 }
 

@@ -127,6 +127,15 @@ TEST(Floor, LightIsLookedUpWhereItsMapsAreAndFadesToEven) {
     EXPECT_EQ(optics.floor_light(vec2(40.0f, 0.0f), 0.05f, view), 1.0f);
     EXPECT_EQ(optics.floor_light(vec2(0.0f), 0.4f, view), 3.0f);  // as wide as the coarser one's texels
     EXPECT_EQ(optics.floor_light(vec2(0.0f), 1.7f, view), 1.0f);
+    // The finer one gives way over a quarter of its side, or its corner is seen.
+    constexpr int kLarge = 2 * kSide;
+    const std::span<float> large =
+        floor.set_light({.side = kLarge, .texel_m = 0.1, .from_m = {glm::dvec2(-6.4), glm::dvec2(-25.6)}});
+    std::fill(large.begin(), large.begin() + kLarge * kLarge, 2.0f);
+    std::fill(large.begin() + kLarge * kLarge, large.end(), 3.0f);
+    EXPECT_NEAR(shading_of(floor).floor_light(vec2(-4.7f, 0.0f), 0.05f,
+                                              glsl(floor.seen_from({.position_m = {0.0, 0.0, 1.0}}))),
+                2.5f, 1e-3f);
     floor.set_light({.side = kSide, .texel_m = 0.1, .gain = 0.5});
     EXPECT_EQ(shading_of(floor).floor_light(vec2(1e9f), 0.05f, glsl(floor.seen_from({}))), 1.0f);
     floor.set_light({});

@@ -8,12 +8,16 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/base/constants.h"
 #include "core/lighting/background.h"
 #include "core/lighting/colour.h"
+#include "core/lighting/lighting.h"
+#include "core/lighting/sky.h"
 #include "core/lighting/sky_bake.h"
+#include "core/lighting/sky_map.h"
 
 namespace pelagic {
 namespace {
@@ -130,6 +134,54 @@ TEST(Tone, KeepsHueAndSaturation) {
     // A low sun's path, at the exposure with which it was a pale pink before: (238, 218, 201), 0.18 of its saturation.
     const glm::vec3 path = display_colour(glm::vec3(66.6f, 34.1f, 8.2f), 2.5f / 66.6f);
     EXPECT_GT(saturation(glm::dvec3(path)) / saturation(glm::dvec3(66.6, 34.1, 8.2)), 0.6);
+}
+
+// Light that has come through metres of water has no red, and isn't shown as neon; what has a quarter of each component stays.
+TEST(Tone, HasSomeOfEachComponent) {
+    for (const glm::vec3 light : {glm::vec3(0.0f, 0.8f, 1.0f), glm::vec3(0.0f, 0.3f, 0.6f)}) {
+        const glm::vec3 shown = display_colour(light, 1.0f);
+        const double red = light_of(shown.x) / light_of(shown.z);
+        EXPECT_GT(red, 0.05);
+        EXPECT_LT(red, 0.15);
+        EXPECT_NEAR(hue_deg({light_of(shown.x), light_of(shown.y), light_of(shown.z)}),
+                    hue_deg(glm::dvec3(light)), 5.0);
+    }
+    const glm::vec3 stays = display_colour(glm::vec3(0.3f, 0.8f, 1.0f), 0.5f);
+    EXPECT_NEAR(light_of(stays.x) / light_of(stays.z), 0.3, 1e-4);
+}
+
+// The glitter of suns at 2 … 10° and the sky within 40° of them, from dark to four and a half stops above middle grey: half of the saturation
+// to four of them, and a little less above, where colours go to white.
+TEST(Tone, KeepsTheColoursOfLowSuns) {
+    double least_kept = 1.0, least_kept_brightest = 1.0, most_turned_deg = 0.0;
+    const auto judge = [&](glm::dvec3 colour) {
+        const glm::dvec3 unit = colour / std::max({colour.x, colour.y, colour.z});
+        if (saturation(unit) < 0.5) return;  // the display's encoding alone takes half of a pale colour's
+        for (double strength = 1e-2; strength < 4.0; strength *= 1.5) {
+            const glm::vec3 shown = display_colour(glm::vec3(unit * strength), 1.0f);
+            const glm::dvec3 light(light_of(shown.x), light_of(shown.y), light_of(shown.z));
+            double& least = strength < 16.0 * 0.18 ? least_kept : least_kept_brightest;
+            least = std::min(least, saturation(glm::dvec3(shown)) / saturation(unit));
+            most_turned_deg = std::max(most_turned_deg, std::abs(hue_deg(light) - hue_deg(unit)));
+        }
+    };
+    for (const double sun_deg : {2.0, 4.0, 6.0, 8.0, 10.0}) {
+        const Sky sky =
+            daylight_sky({.sun_elevation_deg = sun_deg, .sun_azimuth_deg = 0.0, .turbidity = 2.0}, 64);
+        judge(glm::dvec3(sky.sun_radiance));
+        for (const double elevation_deg : {1.0, 5.0, 15.0})
+            for (const double azimuth_deg : {0.0, 10.0, 40.0}) {
+                const double e = elevation_deg * kPi / 180.0, a = azimuth_deg * kPi / 180.0;
+                const glm::vec3 towards(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+                judge(glm::dvec3(sky.map.radiance(sky_map_place(towards), 0.0f)));
+            }
+    }
+    RecordProperty("least_saturation_kept", std::to_string(least_kept));
+    RecordProperty("least_saturation_kept_brightest", std::to_string(least_kept_brightest));
+    RecordProperty("most_turned_deg", std::to_string(most_turned_deg));
+    EXPECT_GE(least_kept, 0.5);
+    EXPECT_GE(least_kept_brightest, 0.4);
+    EXPECT_LE(most_turned_deg, 5.0);
 }
 
 // By day a brighter light looks slightly brighter; in twilight a tenth of it looks half as bright.

@@ -2,6 +2,7 @@
 // try.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,6 +24,16 @@ double simpson(double a, double b, int n, F&& f) {
     for (int i = 1; i < 2 * n; ++i) sum += (i % 2 == 1 ? 4.0 : 2.0) * f(a + i * h);
     return sum * h / 3.0;
 }
+
+// The least and the most of some numbers, as tests print them.
+struct Extent {
+    double least = kInfinity, most = -kInfinity;
+    void add(double value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    std::string text() const { return std::to_string(least) + " … " + std::to_string(most); }
+};
 
 // ∫ f dx over the logarithm of x.
 template <class F>

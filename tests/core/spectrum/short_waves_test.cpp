@@ -45,6 +45,7 @@ TEST(ShortWaves, SlopesAreThoseOfTheSunsGlitter) {
 // Whatever the height and the directionality that are asked for, the slopes are those of the wind. By height alone a low sea under a
 // strong wind had a fifth of them, and directionality 6 made up over cross 25.
 TEST(ShortWaves, SlopesAreTheWindsWhateverTheLongOnesAre) {
+    oracle::Extent slopes, up_over_cross;
     for (double wind : {3.0, 5.0, 8.0, 12.0, 16.0, 20.0, 25.0})
         for (double fetch : {30e3, 300e3, 1000e3}) {
             SeaState state;
@@ -56,6 +57,8 @@ TEST(ShortWaves, SlopesAreTheWindsWhateverTheLongOnesAre) {
                     state.significant_height_m = share * own;
                     state.directionality = directionality;
                     const SpectralMoments sea = moments(DirectionalSpectrum(state), 0.0, oracle::kInfinity);
+                    slopes.add(sea.mss() / CoxMunk::at_wind(wind).total);
+                    up_over_cross.add(sea.xx / sea.yy);
                     EXPECT_NEAR(sea.mss() / CoxMunk::at_wind(wind).total, 1.0, 0.15)
                         << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
                     EXPECT_GT(sea.xx / sea.yy, 1.1)
@@ -64,6 +67,8 @@ TEST(ShortWaves, SlopesAreTheWindsWhateverTheLongOnesAre) {
                         << wind << ' ' << fetch << ' ' << share << ' ' << directionality;
                 }
         }
+    RecordProperty("mss_over_cox_and_munk", slopes.text());
+    RecordProperty("up_over_cross", up_over_cross.text());
 }
 
 // A height that is asked for is that of an older or a younger sea: the peak goes with it, without a jump at the sea's own.

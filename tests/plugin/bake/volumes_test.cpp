@@ -292,6 +292,7 @@ TEST_F(Volumes, SprayIsAsMuchAsBreaksByAnotherCount) {
         flux += balance.mass_flux;
         breaking += balance.breaking;
     }
+    RecordProperty("thickness_over_the_laws", std::to_string(thickness / breaking));
     EXPECT_NEAR(thickness / breaking, 1.0, 0.03);
     EXPECT_NEAR(flux / breaking, 1.0, 0.03);
     EXPECT_NEAR(breaking / 3.0, 1.0, 0.35);

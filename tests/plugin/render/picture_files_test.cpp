@@ -370,6 +370,8 @@ TEST(PictureFiles, SkylinesAreMeansOfWhatIsShown) {
     EXPECT_EQ(png(0.075f + 2.5f), mean);
     scene.camera.glare = 0.1;  // of one pixel nothing goes elsewhere but out of the picture
     EXPECT_NE(png(0.075f + 2.5f), white);
+    // What the sun's glint in a pixel's sea scatters isn't taken from its sky, which would be black.
+    EXPECT_EQ(png(1e4f), white);
 }
 
 // A studio's display transform gets exposed light, and its values are those of the PNG; the EXR's primaries say what it holds.

@@ -199,8 +199,9 @@ TEST(FromBelow, TheSkyIsInSnellsWindow) {
     EXPECT_NEAR(half_deg, std::asin(1.0 / 1.34) * 180.0 / kPi, 0.1);
 }
 
-// Nothing is brighter than the sky's light in the water, which is n² of that above it, and through a metre of water most of it comes.
-TEST(FromBelow, NothingIsBrighterThanTheSkyInTheWater) {
+// Nothing is brighter than the sky: its light in the water is n² of that above it, of which a camera behind its glass, in air, sees 1/n².
+// Through a metre of water most of it comes.
+TEST(FromBelow, NothingIsBrighterThanTheSky) {
     for (const bool is_calm : {true, false}) {
         Scene scene = is_calm ? level({0.0, 0.0, -1.0}, {0.0, 0.0, 1.0})
                               : seen_from(with_body(sea_of(WaveModel::Fft)), {0.0, 0.0, -6.0});
@@ -210,8 +211,8 @@ TEST(FromBelow, NothingIsBrighterThanTheSkyInTheWater) {
         float brightest = 0.0f;
         for (const SeaRadiance& of : picture_under(scene, uniform_sky()).layers)
             brightest = std::max(brightest, (of.sky + of.sea).y);
-        EXPECT_LT(brightest, 1.34 * 1.34 * kSkyRadiance);
-        EXPECT_GT(brightest, (is_calm ? 0.8 : 0.5) * 1.34 * 1.34 * kSkyRadiance);
+        EXPECT_LT(brightest, kSkyRadiance);
+        EXPECT_GT(brightest, (is_calm ? 0.8 : 0.5) * kSkyRadiance);
     }
 }
 
@@ -232,6 +233,33 @@ TEST(FromBelow, HalfUnderShowsBoth) {
         EXPECT_EQ(picture.alpha[static_cast<std::size_t>(row) * 80 + 40], 1.0f);
     }
     EXPECT_EQ(picture.alpha[10 * 80 + 40], 0.0f);
+}
+
+// Water climbs the glass: a little over the line there is already no sky in the picture, and over that it comes back softly.
+TEST(FromBelow, WaterClimbsTheGlass) {
+    constexpr double kHeight_m = 0.005;
+    Scene scene = level({0.0, 0.0, kHeight_m}, {0.0, 1.0, 0.0});
+    scene.camera.fov_deg = 3.0;
+    scene.camera.resolution = {20, 200};
+    const Picture picture = picture_under(scene, uniform_sky());
+    const double pixel_m = kFrontGlass_m * 2.0 * std::tan(1.5 * kPi / 180.0) / 20.0;
+    const auto above_the_line = [&](double height_m) {
+        const auto row = static_cast<std::size_t>(100.0 + (kHeight_m - height_m) / pixel_m);
+        return row * 20 + 10;
+    };
+    const auto of_sky = [&](double height_m) { return picture.layers[above_the_line(height_m)].sky.y; };
+    for (const double height_m : {-1e-3, 5e-4, 1.5e-3}) {
+        EXPECT_EQ(of_sky(height_m), 0.0f) << height_m;
+        EXPECT_EQ(picture.alpha[above_the_line(height_m)], 1.0f);
+    }
+    EXPECT_GT(of_sky(5e-3), 0.9f * kSkyRadiance);  // mirrored at a glance
+    double before = 0.0;
+    for (double height_m = 1.5e-3; height_m < 4e-3; height_m += pixel_m) {
+        const double here = of_sky(height_m) / kSkyRadiance;
+        EXPECT_GE(here, before - 0.01) << height_m;
+        EXPECT_LT(here, before + 0.25) << height_m;
+        before = here;
+    }
 }
 
 // Waves cross the glass, too: some columns have more water than others.

@@ -90,9 +90,10 @@ class VesselWaves {
     int radius_ = 0;
     std::vector<std::size_t> columns_;
     std::vector<double> fastest_mps_;  // by column: the greatest group velocity
-    std::vector<double> cycles_per_s_;
+    Buffer<double> cycles_per_s_;
     Buffer<float> ky_, omega_, depth_, group_x_, group_y_, turn_re_, turn_im_;
-    Buffer<float> cosine_[4], sine_[4];  // of half a step of 1, 2, 4, 8 in a block
+    Buffer<float> cosine_[VesselPlan::kStepLengths],
+        sine_[VesselPlan::kStepLengths];  // of half a step of 1, 2, 4, … in a block
     std::map<std::int64_t, Leg> blocks_;
     std::vector<const Leg*> order_;  // of the time that is set, the oldest first
     Leg begun_, last_;               // of the block that isn't over: its steps that are, and the rest

@@ -107,11 +107,10 @@ const float* VesselWaves::ky_of(int mx) const {
     return ky_.data() + (radius_ - 1 - half_height(radius_, mx));
 }
 
-// So many that no straight one is off by more than a small part of the shortest wave.
-int VesselWaves::steps_of(std::int64_t block) const {
-    const double most_m = 0.02 * plan_.size_m / VesselPlan::kRadius,
-                 from_s = static_cast<double>(block) * plan_.block_s;
-    const auto at = [&](int of, int in) { return plan_.path.at(from_s + plan_.block_s * of / in); };
+// So many that no straight one is off by more than a part of the shortest wave.
+int VesselWaves::steps_of(double from_s, double lasts_s, double part, int most) const {
+    const double most_m = part * plan_.size_m / VesselPlan::kRadius;
+    const auto at = [&](int of, int in) { return plan_.path.at(from_s + lasts_s * of / in); };
     const auto are_straight = [&](int steps) {
         for (int i = 0; i < steps; ++i)
             for (const int quarter : {1, 2, 3})
@@ -121,8 +120,19 @@ int VesselWaves::steps_of(std::int64_t block) const {
         return true;
     };
     int steps = 1;
-    while (steps < VesselPlan::kMostSteps && !are_straight(steps)) steps *= 2;
+    while (steps < most && !are_straight(steps)) steps *= 2;
     return steps;
+}
+
+int VesselWaves::steps_of(std::int64_t block) const {
+    return steps_of(static_cast<double>(block) * plan_.block_s, plan_.block_s, 0.02, VesselPlan::kMostSteps);
+}
+
+void VesselWaves::head(Step& step, double at_s) const {
+    const glm::dvec2 velocity = plan_.path.velocity_mps(at_s);
+    if (glm::length(velocity) > 0.0) step.along = glm::normalize(velocity);
+    step.bow = phases(-0.5 * plan_.length_m * step.along);
+    step.board = phases(0.5 * plan_.beam_m * glm::dvec2(step.along.y, -step.along.x));
 }
 
 VesselWaves::Leg VesselWaves::leg(double from_s, double step_s, int steps) const {
@@ -140,12 +150,9 @@ VesselWaves::Leg VesselWaves::leg(double from_s, double step_s, int steps) const
         const glm::dvec2 a = path.at(begin_s), b = i + 1 < steps ? path.at(begin_s + step_s) : end_m;
         Step& step = made.steps.emplace_back();
         step.velocity_mps = (b - a) / step_s;
-        const glm::dvec2 velocity = path.velocity_mps(begin_s + 0.5 * step_s);
-        if (glm::length(velocity) > 0.0) step.along = glm::normalize(velocity);
+        head(step, begin_s + 0.5 * step_s);
         step.place = phases(0.5 * (a + b) - end_m);
         step.half_way = phases(0.5 * (a - b));
-        step.bow = phases(-0.5 * plan_.length_m * step.along);
-        step.board = phases(0.5 * plan_.beam_m * glm::dvec2(step.along.y, -step.along.x));
     }
     return made;
 }
@@ -230,7 +237,15 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
     const int over =
         static_cast<int>(std::clamp((t_s - begin_s) / step_s, 0.0, VesselPlan::kMostSteps - 1.0));
     begun_ = leg(begin_s, step_s, over);
-    last_ = leg(begun_.end_s, std::max(t_s - begun_.end_s, 1e-9 * step_s), 1);
+    // As the last step grows it turns, and what it has made with it: finer ones, or velocities miss that.
+    constexpr double kPart = 0.02 / 32.0;
+    constexpr int kMostParts = 8;
+    const double since_s = std::max(t_s - begun_.end_s, 1e-9 * step_s);
+    const int parts = steps_of(begun_.end_s, since_s, kPart, kMostParts);
+    last_ = leg(begun_.end_s, since_s / parts, parts);
+    now_ = {};
+    now_.velocity_mps = plan_.path.velocity_mps(t_s);
+    head(now_, t_s);
     middle_m_ = plan_.middle_m(t_s);
 }
 
@@ -299,11 +314,12 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
         if (!begun_.steps.empty())
             add_begun(begun_, cosine_[begun_.table].data() + first, sine_[begun_.table].data() + first,
                       own.of_begun, own.begun_re, own.begun_im);
-        kernels_.turn({.count = count,
-                       .duration_s = 0.5 * (last_.end_s - last_.from_s),
-                       .cycles_per_s = cycles_per_s_.data() + first,
-                       .cosine = own.cosine.data(),
-                       .sine = own.sine.data()});
+        kernels_.turn(
+            {.count = count,
+             .duration_s = 0.5 * (last_.end_s - last_.from_s) / static_cast<double>(last_.steps.size()),
+             .cycles_per_s = cycles_per_s_.data() + first,
+             .cosine = own.cosine.data(),
+             .sine = own.sine.data()});
         add_begun(last_, own.cosine.data(), own.sine.data(), own.of_last, own.last_re, own.last_im);
         kernels_.blocks({.count = count,
                          .blocks = own.blocks,
@@ -319,14 +335,13 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
         if (rate_re) {
             std::fill_n(lift_re, count, 0.0f);
             std::fill_n(lift_im, count, 0.0f);
-            const Step& step = last_.steps.front();
             kernels_.lift({.count = count,
                            .kx = static_cast<float>(mx * kTwoPi / plan_.size_m),
-                           .ux = static_cast<float>(step.velocity_mps.x),
-                           .uy = static_cast<float>(step.velocity_mps.y),
+                           .ux = static_cast<float>(now_.velocity_mps.x),
+                           .uy = static_cast<float>(now_.velocity_mps.y),
                            .ky = ky_of(mx),
                            .place = phase(last_.place, mx),
-                           .hull = hull(step, mx),
+                           .hull = hull(now_, mx),
                            .re = lift_re,
                            .im = lift_im});
         }

@@ -237,7 +237,7 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
     const int over =
         static_cast<int>(std::clamp((t_s - begin_s) / step_s, 0.0, VesselPlan::kMostSteps - 1.0));
     begun_ = leg(begin_s, step_s, over);
-    // As the last step grows it turns, and what it has made with it: finer ones, or velocities miss that.
+    // The last step's line turns as it grows, and what it has made with it: velocities don't have that, so it is cut finely.
     constexpr double kPart = 0.02 / 32.0;
     constexpr int kMostParts = 8;
     const double since_s = std::max(t_s - begun_.end_s, 1e-9 * step_s);

@@ -4,6 +4,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -141,11 +143,20 @@ void SeaAtTime<T>::add_wakes(const Points<T>& points, const FoamResults<T>& foam
     const std::span<const WakeStrip> strips = frame_.strips();
     if (strips.empty()) return;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
+        glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            low = glm::min(low, glm::dvec2(points.rest_m[i]));
+            high = glm::max(high, glm::dvec2(points.rest_m[i]));
+        }
+        std::vector<const WakeStrip*> here;
+        for (const WakeStrip& strip : strips)
+            if (strip.reaches(points.origin_m + low, points.origin_m + high)) here.push_back(&strip);
+        if (here.empty()) return;
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-            for (const WakeStrip& strip : strips) {
+            for (const WakeStrip* strip : here) {
                 const WakeWater<double> water =
-                    strip.at(points.origin_m + glm::dvec2(points.rest_m[i]),
-                             points.pixel_m ? static_cast<double>(points.pixel_m[i]) : 0.0);
+                    strip->at(points.origin_m + glm::dvec2(points.rest_m[i]),
+                              points.pixel_m ? static_cast<double>(points.pixel_m[i]) : 0.0);
                 if (!(water.foam > 0.0)) continue;
                 const WakeWater<T> at{static_cast<T>(water.foam), static_cast<T>(water.age_s), T(0)};
                 if (foam.coverage) foam.coverage[i] = with_wake_foam(foam.coverage[i], at.foam);

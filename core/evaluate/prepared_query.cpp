@@ -161,6 +161,8 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
     has_masks_ = plan.masks && !query.only_cascade;
     sea_cascades_ = plan.sea_cascades();
     has_vessels_ = sea_cascades_ < plan.cascades.size() && !query.only_cascade;
+    for (int c = static_cast<int>(sea_cascades_); c < static_cast<int>(plan.cascades.size()); ++c)
+        if (plan.hides_slopes(c)) hiding_vessels_.push_back(c);
     for (const std::vector<int>* levels :
          {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels, &planned_->calm_cells,
           &planned_->calm_pixels})
@@ -552,8 +554,7 @@ bool PreparedQuery<T>::hide_vessels(const Call& call, Work& work) const {
     const Plan& plan = frame_->sea().plan();
     typename Chunk<T>::Values within;
     bool any = false;
-    for (std::size_t c = sea_cascades_; c < plan.cascades.size(); ++c) {
-        const auto cascade = static_cast<int>(c);
+    for (const int cascade : hiding_vessels_) {
         if (!is_within(cascade, call.place.origin_m, work.chunk, within.data())) continue;
         if (!any && !call.differ_in_unresolved && !work.masked)
             for (std::size_t m = 0; m < moments.size(); ++m)
@@ -566,7 +567,7 @@ bool PreparedQuery<T>::hide_vessels(const Call& call, Work& work) const {
                 call.place.origin_m + glm::dvec2(work.chunk.rest_x[i], work.chunk.rest_y[i]);
             const auto hidden = [&](std::size_t level) {
                 return frame_->hidden_slopes(
-                    cascade, plan.cascades[c].grid_of_level[planned_->pixel_levels[level]], place_m);
+                    cascade, plan.cascades[cascade].grid_of_level[planned_->pixel_levels[level]], place_m);
             };
             glm::dvec3 sum = hidden(blend.lower);
             if (const double t = static_cast<double>(blend.t); t > 0.0)

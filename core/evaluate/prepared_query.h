@@ -118,7 +118,8 @@ class PreparedQuery {
     const EllipseMoments* ellipses_;
     std::size_t sea_cascades_ = 0;  // those behind are vessels'
     bool has_vessels_ = false;
-    std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
+    std::vector<int> hiding_vessels_;  // whose slopes pixels hide: their cascades
+    std::vector<T> whole_m_;           // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
     bool has_trains_ = false, has_random_tiling_ = false, breaks_ = false, has_masks_ = false;

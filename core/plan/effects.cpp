@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "core/scene/keys.h"
 #include "core/scene/limits.h"
 #include "core/scene/text.h"
 
@@ -168,7 +169,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .is_asked_for =
          [](const Scene& scene) { return scene.sea.gust_strength > 0.0 && scene.sea.wind_speed_mps > 0.0; },
      .why_not = "sea.gust_strength is 0, or there is no wind",
-     .turn_off = [](Scene& scene) { scene.sea.gust_strength = 0.0; },
+     .turn_off = [](Scene& scene) { key_of("sea.gust_strength").set(scene, 0.0); },
      .plan = [](Plan& plan) { plan.gusts = plan_gusts(plan.from->scene); },
      .key_parts = key_parts(KeyPart::Gusts),
      .shapes =

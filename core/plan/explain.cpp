@@ -217,12 +217,12 @@ std::string explain(const Plan& plan) {
         for (const Grid& grid : cascade.grids) {
             const std::size_t bytes =
                 grid.fields.count() * grid_bytes(grid.resolution, plan.knobs.double_precision);
-            page += format("     %d × %d, %zu real transforms of %d lines, %s, read %s:", grid.resolution,
-                           grid.resolution, grid.fields.count(), grid.lines_per_field(),
-                           bytes_text(bytes).c_str(),
-                           grid.sampling == Sampling::Nodes
-                               ? "at its nodes"
-                               : (plan.knobs.spline_taps == 6 ? "by quintic spline" : "by cubic spline"));
+            page +=
+                format("     %d × %d, %zu real transforms of %ld lines in all, %s, read %s:", grid.resolution,
+                       grid.resolution, grid.fields.count(), grid.lines(), bytes_text(bytes).c_str(),
+                       grid.sampling == Sampling::Nodes
+                           ? "at its nodes"
+                           : (plan.knobs.spline_taps == 6 ? "by quintic spline" : "by cubic spline"));
             for (std::size_t f = 0; f < kFieldCount; ++f)
                 if (grid.fields[f]) page += std::string(" ") + field_name(static_cast<Field>(f));
             page += "\n";

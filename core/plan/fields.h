@@ -58,6 +58,13 @@ inline constexpr Gradient kGradients[]{{Field::SlopeX, Field::Height, false},
                                        {Field::Dyy, Field::Dy, true},
                                        {Field::Dxy, Field::Dx, true}};
 
+// The columns of a grid are transformed along y alone: those of a derivative along x are i kx times those of what it is of.
+struct AlongX {
+    Field derivative, of;
+};
+inline constexpr AlongX kAlongX[]{
+    {Field::SlopeX, Field::Height}, {Field::Dxx, Field::Dx}, {Field::Dxy, Field::Dy}};
+
 // The fields that derivatives among these need for that: Dyx, which has no transform of its own, needs Dy as well.
 inline FieldSet gradient_fields(FieldSet derivatives) {
     FieldSet needed;

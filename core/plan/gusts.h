@@ -21,7 +21,7 @@ struct GustsPlan {
         double amplitude = 0.0;
         double shortest_m = 0.0;  // where those before press it together
     };
-    double strength = 0.0;  // above 0, at most 1
+    double strength = 0.0;  // at most 1; of a shot the largest
     std::array<Wave, kWaves> waves{};
 
     // Each wave's phase at a place, 0 … 1, anywhere in the world and at any time.

@@ -231,8 +231,13 @@ void add_grids(Plan& plan, int cascade_index) {
         cascade.grid_of_level[level] = static_cast<int>(cascade.grids.size());
         cascade.grids.push_back(std::move(grid));
     }
-    if (cascade.vessel && !plan.hides_slopes(cascade_index))
-        for (Grid& grid : cascade.grids) leave_rows_out(plan, cascade, grid);
+    if (cascade.vessel)
+        for (Grid& grid : cascade.grids) {
+            for (const AlongX& along : kAlongX)
+                grid.along_x[index(along.derivative)] =
+                    grid.fields[index(along.derivative)] && grid.fields[index(along.of)];
+            if (!plan.hides_slopes(cascade_index)) leave_rows_out(plan, cascade, grid);
+        }
     if (cascade.grids.empty() && cascade.why_empty.empty())
         cascade.why_empty = "all its waves are too short for the footprints asked for: kept as variance";
 }
@@ -456,7 +461,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     for (VesselPlan& vessel : plan_vessels(scene)) {
         CascadePlan cascade;
         cascade.size_m = vessel.size_m;
-        cascade.resolution = 2 * VesselPlan::kRadius;
+        cascade.resolution = 2 * vessel.radius;
         cascade.choppiness = plan.breaking.choppiness.at(kGravity / std::pow(vessel.speed_mps, 2));
         cascade.k_upper = std::numeric_limits<double>::infinity();
         cascade.grid_of_level.assign(plan.levels.size(), -1);
@@ -589,8 +594,7 @@ int Plan::transforms_per_frame() const {
 long Plan::lines_per_frame() const {
     long count = 0;
     for (const CascadePlan& cascade : cascades) {
-        for (const Grid& grid : cascade.grids)
-            count += static_cast<long>(grid.fields.count()) * grid.lines_per_field();
+        for (const Grid& grid : cascade.grids) count += grid.lines();
         if (cascade.second_order) count += cascade.second_order->lines();
     }
     return count;

@@ -46,9 +46,14 @@ struct Grid {
     // The rows that are transformed, from one on and round: all, but for a vessel's tile that only a lattice's points read.
     int first_row = 0, rows = 0;
 
-    // One-dimensional complex transforms of N points that a frame takes for each field: a column for each mx
-    // below radius, and two real rows at a time.
-    int lines_per_field() const { return radius + (rows + 1) / 2; }
+    FieldSet along_x{};  // those of kAlongX that have no columns of their own
+
+    // One-dimensional complex transforms of N points that a frame takes: of a field a column for each mx below
+    // radius, and two real rows at a time.
+    long lines() const {
+        const auto of = [](const FieldSet& some) { return static_cast<long>(some.count()); };
+        return of(fields & ~along_x) * radius + of(fields) * ((rows + 1) / 2);
+    }
 };
 
 struct CascadePlan {

@@ -1,8 +1,10 @@
 #include "core/plan/vessels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
@@ -14,7 +16,61 @@ namespace {
 
 constexpr double kLeastLengths = 4.0;  // of a hull in its tile
 
+// 3 (sin u − u cos u)/u³, the transform of a parabola.
+double parabola(double u) {
+    return std::abs(u) < 0.05 ? 1.0 - u * u / 10.0 : 3.0 * (std::sin(u) - u * std::cos(u)) / (u * u * u);
+}
+
+constexpr int kBands = 8;  // of modes, by their size
+// The square slopes of Kelvin's waves behind a steady course, summed across it, by the bands of their size: wave resistance's integral,
+// ∫ |A|² cos³θ dθ (Havelock 1934), times k².
+std::array<double, kBands> square_slopes(const VesselPlan& plan, double speed_mps) {
+    constexpr int kAngles = 400;
+    std::array<double, kBands> bands{};
+    const double k0 = kGravity / (speed_mps * speed_mps), end = kTwoPi * VesselPlan::kRadius / plan.size_m;
+    if (!(k0 < end)) return bands;
+    const double last = std::acos(std::sqrt(k0 / end));
+    for (int i = 0; i < kAngles; ++i) {
+        const double angle = last * (i + 0.5) / kAngles, cosine = std::cos(angle), k = k0 / (cosine * cosine);
+        const double hull = below_water_m(k, plan.draught_m) * parabola(0.5 * plan.length_m * k * cosine) *
+                            parabola(0.5 * plan.beam_m * k * std::sin(angle));
+        const double amplitude = speed_mps * k * k * hull * k;
+        bands[static_cast<std::size_t>(kBands * k / end)] +=
+            last * amplitude * amplitude * std::pow(cosine, 3);
+    }
+    return bands;
+}
+
+// The fewest modes that leave out no more than a thousandth of the square slopes, at any speed between its least and its greatest.
+int radius_of(const VesselPlan& plan) {
+    constexpr double kLost = 1e-3;
+    constexpr int kSpeeds = 4, kFewest = kBands / 2;
+    const double slowest_mps = plan.path.slowest_mps();
+    double all = 0.0;
+    std::array<double, kBands> most{};
+    for (int i = 0; i < kSpeeds; ++i) {
+        const double speed_mps = std::lerp(plan.speed_mps, slowest_mps, i / (kSpeeds - 1.0));
+        if (!(speed_mps > 0.0)) continue;
+        const std::array<double, kBands> bands = square_slopes(plan, speed_mps);
+        if (i == 0) all = std::reduce(bands.begin(), bands.end());
+        double lost = 0.0;
+        for (int band = kBands - 1; band >= 0; --band) {
+            lost += bands[static_cast<std::size_t>(band)];
+            most[static_cast<std::size_t>(band)] = std::max(most[static_cast<std::size_t>(band)], lost);
+        }
+    }
+    int bands = kBands;
+    while (bands > kFewest && most[static_cast<std::size_t>(bands) - 1] <= kLost * all) --bands;
+    return bands * VesselPlan::kRadius / kBands;
+}
+
 }  // namespace
+
+double below_water_m(double k, double draught_m) {
+    const double q = k * draught_m;
+    if (q < 0.05) return draught_m * (2.0 / 3.0 - q / 4.0 + q * q / 15.0);
+    return draught_m * (1.0 / q - 2.0 / (q * q * q) + std::exp(-q) * (2.0 / (q * q) + 2.0 / (q * q * q)));
+}
 
 glm::dvec2 VesselPlan::middle_m(double time_s) const {
     constexpr double kBehind = 0.6;  // of the tile's side, twice as far as the vessel is before its middle
@@ -29,7 +85,8 @@ double VesselPlan::highest_m(double depth_m) const {
 }
 
 std::size_t VesselPlan::bytes(int radius) {
-    constexpr std::size_t kTables = 15 + sizeof(double) / sizeof(float);  // core/waves/vessel_waves.h
+    constexpr std::size_t kTables =
+        6 + 2 * kStepLengths + sizeof(double) / sizeof(float);  // core/waves/vessel_waves.h
     return (kBlocks * 4 + kTables) * lattice_modes(radius) * sizeof(float);
 }
 
@@ -57,6 +114,7 @@ std::vector<VesselPlan> plan_vessels(const Scene& scene) {
                                kLeastLengths * plan.length_m);
         // Energy is left behind at half the vessel's speed or more.
         constexpr double kSides = 1.5;
+        plan.radius = radius_of(plan);
         plan.block_s = kSides * plan.size_m / plan.speed_mps / VesselPlan::kBlocks;
         plans.push_back(std::move(plan));
     }

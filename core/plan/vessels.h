@@ -2,6 +2,7 @@
 // computed on (core/waves/vessel_waves.h).
 #pragma once
 
+#include <bit>
 #include <glm/vec2.hpp>
 #include <vector>
 
@@ -16,12 +17,14 @@ struct VesselPlan {
     double waves = 1.0;      // times their amplitude
     double foam = 1.0;       // times its coverage
     double speed_mps = 0.0;  // its greatest
+    int radius = 0;          // of modes, at most kRadius: those that its waves need
     double size_m = 0.0;     // the tile's side
     double block_s = 0.0;    // of the lattice of times
 
-    static constexpr int kRadius = 256;    // of modes: the shortest waves are a 256th of the tile
-    static constexpr int kBlocks = 48;     // that are remembered
-    static constexpr int kMostSteps = 8;   // of a block where the vessel turns
+    static constexpr int kRadius = 256;    // of modes at most: the shortest waves are a 256th of the tile
+    static constexpr int kBlocks = 32;     // that are remembered
+    static constexpr int kMostSteps = 16;  // of a block where the vessel turns: a power of 2
+    static constexpr int kStepLengths = std::bit_width(static_cast<unsigned>(kMostSteps));
     static constexpr double kEdge = 0.06;  // of the side, at each border: where waves fade to none
 
     // How high its waves are nowhere [m], and how far they move water to the side: of Froude's numbers from 0.15 to 3 they are up to
@@ -32,6 +35,9 @@ struct VesselPlan {
     glm::dvec2 middle_m(double time_s) const;
     static std::size_t bytes(int radius);  // of what is remembered of the modes within
 };
+
+// ∫ (1 − z²/T²) e^{kz} dz from −T to 0, Wigley's hull below the water [m].
+double below_water_m(double k, double draught_m);
 
 // Slower ones make waves that are too short for a tile that holds the hull.
 double slowest_mps(const Vessel& vessel);

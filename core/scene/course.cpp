@@ -61,14 +61,21 @@ glm::dvec2 VesselPath::velocity_mps(double time_s) const {
         });
 }
 
-double VesselPath::fastest_mps() const {
+std::vector<double> VesselPath::speeds_mps() const {
     constexpr int kParts = 16;
-    double fastest = 0.0;
+    std::vector<double> speeds;
     for (std::size_t i = 0; i + 1 < keys.size(); ++i)
         for (int part = 0; part <= kParts; ++part)
-            fastest = std::max(fastest, glm::length(velocity_mps(std::lerp(keys[i].time_s, keys[i + 1].time_s,
-                                                                           part / double{kParts}))));
-    return fastest;
+            speeds.push_back(glm::length(
+                velocity_mps(std::lerp(keys[i].time_s, keys[i + 1].time_s, part / double{kParts}))));
+    return speeds;
+}
+
+double VesselPath::fastest_mps() const {
+    return std::ranges::max(speeds_mps());
+}
+double VesselPath::slowest_mps() const {
+    return std::ranges::min(speeds_mps());
 }
 
 VesselPath path_of(const Shot& shot, const Vessel& vessel) {

@@ -30,8 +30,10 @@ struct VesselPath {
     glm::dvec2 at(double time_s) const;
     glm::dvec2 velocity_mps(double time_s) const;
     double fastest_mps() const;  // between its keys, nearly
+    double slowest_mps() const;
 
   private:
+    std::vector<double> speeds_mps() const;  // between its keys
     template <class Linear, class Cubic>
     glm::dvec2 on(double time_s, Linear linear, Cubic cubic) const;
 };

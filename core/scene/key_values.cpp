@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/scene/key_rows.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -216,10 +217,11 @@ std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& v
     if (!key.set) return Problem{key.path, value_text(key, value), "can't be set", key.accepted};
     if (key.set(scene, value)) return std::nullopt;
     if (std::holds_alternative<NumberKeys>(value))
-        return Problem{
-            key.path, value_text(key, value),
-            key.may_have_keys ? "has no keys in it" : "is a number's keys, and this key can't have any",
-            key.accepted};
+        return Problem{key.path, value_text(key, value),
+                       key.may_have_keys
+                           ? "has no keys in it"
+                           : "is a number's keys, and this key can't have any" + why_no_keys(key.path),
+                       key.accepted};
     const auto is_unknown = [&](const std::string& word) {
         return std::find(key.choices.begin(), key.choices.end(), word) == key.choices.end();
     };

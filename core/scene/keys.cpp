@@ -205,7 +205,8 @@ void add_sea(Built& out) {
                  "how much the wind varies over the surface, in patches that drift with it: 0, not at all; 1, from calm "
                  "to twice its speed. Ripples too small to be shown and foam follow; over area both stay as much",
              .range = limits::kGustStrength,
-             .key_parts = key_parts(KeyPart::Gusts)}),
+             .key_parts = key_parts(KeyPart::Gusts),
+             .may_have_keys = true}),
         row<&SeaState::gust_size_m>({.name = "gust_size_m",
                                      .help = "of those patches; along the wind they are longer",
                                      .unit = "m",

@@ -69,6 +69,16 @@ void refuse_keys(const Scene& scene, std::string_view table) {
         if (number.path.starts_with(table)) refuse(number);
 }
 
+std::string why_no_keys(std::string_view path) {
+    if (path.find("[]") != std::string_view::npos)
+        return ": an entry of a list has one value for all of the shot";
+    if (path == "sea.depth_m") return ": waves keep their frequencies, and another depth has others";
+    if (path == "sea.gust_size_m") return ": patches far away would race over the sea as they grow";
+    if (path == "waves.choppiness" || path == "waves.lean_deg" || path == "waves.second_order")
+        return ": where waves break, what that leaves and all bounds are those of one displacement";
+    return " yet";
+}
+
 bool is_of_sea(const KeyedNumber& number) {
     return number.path.starts_with("sea.") || number.path.starts_with("waves.");
 }

@@ -20,6 +20,9 @@ Scene scene_at(const Scene& scene, double frame);
 // any) has keys.
 void refuse_keys(const Scene& scene, std::string_view table = {});
 
+// Why a number of this path can't have keys, as a sentence's end: ": waves keep …", or " yet" where nothing but the work is in the way.
+std::string why_no_keys(std::string_view path);
+
 // Of numbers that the sea is made of.
 bool is_of_sea(const KeyedNumber& number);
 

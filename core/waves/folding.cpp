@@ -13,6 +13,7 @@
 #include "core/plan/random_tiling.h"
 #include "core/plan/vessels.h"
 #include "core/plan/weather.h"
+#include "core/scene/canonical.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
@@ -307,7 +308,10 @@ std::vector<std::string> weather_warnings(const Weather& weather) {
             warnings.push_back("at frame " + std::to_string(key.frame) + ' ' + warning);
     for (std::size_t i = 0; i + 1 < weather.keys.size(); ++i) {
         const Weather::Key &key = weather.keys[i], &next = weather.keys[i + 1];
-        if (key.sea == next.sea) continue;
+        const auto waves = [](const Weather::Key& of) {
+            return canonical(of.sea->scene, key_parts(KeyPart::Waves));
+        };
+        if (waves(key) == waves(next)) continue;
         double period_s = 0.0;
         for (const DirectionalSpectrum* of : {&key.sea->spectrum, &next.sea->spectrum})
             if (!of->empty())

@@ -63,6 +63,14 @@ Turned<T> turned_by(double angle_rad) {
     return {static_cast<T>(std::cos(angle_rad)), static_cast<T>(std::sin(angle_rad))};
 }
 
+// The derivatives that a field's columns do for.
+FieldSet along_x(const Grid& grid, Field field) {
+    FieldSet derivatives;
+    for (const AlongX& along : kAlongX)
+        if (along.of == field) derivatives[index(along.derivative)] = grid.along_x[index(along.derivative)];
+    return derivatives;
+}
+
 // The rows of a grid that are transformed: one or two ranges.
 std::vector<std::pair<int, int>> row_ranges(const Grid& grid) {
     const int n = grid.resolution, end = grid.first_row + grid.rows;
@@ -133,6 +141,7 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
                     grid.rows < n
                         ? Buffer<T>(grid_samples<T>(n))
                         : Buffer<T>::uncleared(grid_samples<T>(n));  // set() writes all that is read
+                if (grid.along_x[f]) continue;                       // with those of what it is of
                 for (const auto& [from, end] : row_ranges(grid))
                     for (int first = from; first < end; first += kBlockRows)
                         rows_.push_back(
@@ -195,9 +204,9 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
         sum_of_each(blocks_, [&](const Block& block) { return go_on(), transform_columns(block); });
     executed_lines_ += sum_of_each(rows_, [&](const Rows& rows) { return go_on(), transform_rows(rows); });
     const Plan& plan = sea_->plan();
-    executed_transforms_ += std::count_if(rows_.begin(), rows_.end(), [&](const Rows& rows) {
-        return rows.first == plan.cascades[rows.cascade].grids[rows.grid].first_row;
-    });
+    for (const Rows& rows : rows_)
+        if (const Grid& grid = plan.cascades[rows.cascade].grids[rows.grid]; rows.first == grid.first_row)
+            executed_transforms_ += 1 + static_cast<long>(along_x(grid, rows.field).count());
     for (int c = static_cast<int>(plan.sea_cascades()); c < static_cast<int>(plan.cascades.size()); ++c)
         for (int g = 0; g < static_cast<int>(plan.cascades[c].grids.size()); ++g) fade(c, g);
     squares_.assign(vessels_.size(), {});
@@ -443,7 +452,7 @@ long Frame<T>::transform_columns(const Block& block) {
         }
         const std::size_t stride = line_stride<T>(grid.resolution);
         for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
-            if (!grid.fields[f]) continue;
+            if (!grid.fields[f] || grid.along_x[f]) continue;
             // The horizontal displacement has no second order: where points stand at rest is chosen so.
             const Heights& heights = has_pairs && vertical_fields()[f]      ? at.vertical
                                      : is_leaning && horizontal_fields()[f] ? at.leaning
@@ -488,11 +497,13 @@ long Frame<T>::transform_rows(const Rows& rows) {
     const int n = grid.resolution;
     const std::size_t stride = line_stride<T>(n);
     Scratch& at = scratch();
+    const T step = static_cast<T>(kTwoPi / sea_->plan().cascades[rows.cascade].size_m);
+    const FieldSet derivatives = along_x(grid, rows.field);
     long lines = 0;
-    for (int y = rows.first; y < rows.first + rows.count; y += 2, ++lines) {
-        T* row = state.planes[index(rows.field)].data() + y * stride;
-        kernels_.pair({.first = row,
-                       .second = y + 1 < n ? row + stride : nullptr,
+    const auto transform = [&](const T* from, T* row, int y) {
+        ++lines;
+        kernels_.pair({.first = from,
+                       .second = y + 1 < n ? from + stride : nullptr,
                        .radius = grid.radius,
                        .n = n,
                        .line_re = at.line.data(),
@@ -501,6 +512,23 @@ long Frame<T>::transform_rows(const Rows& rows) {
         for (T* real : {row, row + stride})
             for (std::size_t i = 0; i < kRowSkirt; ++i)
                 real[n + i] = real[i];  // N may be shorter than the skirt, which then repeats itself
+    };
+    for (int y = rows.first; y < rows.first + rows.count; y += 2) {
+        T* const row = state.planes[index(rows.field)].data() + y * stride;
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            if (!derivatives[f]) continue;
+            for (int line = 0; line < (y + 1 < n ? 2 : 1); ++line) {
+                const T *re = row + line * stride, *im = re + stride / 2;
+                T *to_re = at.lines.data() + line * stride, *to_im = to_re + stride / 2;
+                for (int m = 0; m < grid.radius; ++m) {
+                    const T kx = static_cast<T>(m) * step;
+                    to_re[m] = -kx * im[m];
+                    to_im[m] = kx * re[m];
+                }
+            }
+            transform(at.lines.data(), state.planes[f].data() + y * stride, y);
+        }
+        transform(row, row, y);  // the last: its columns were theirs
     }
     return lines;
 }

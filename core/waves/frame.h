@@ -100,7 +100,7 @@ class Frame {
     struct Scratches;  // of all
 
     std::size_t vessel_of(int cascade) const {
-        return static_cast<std::size_t>(cascade) - sea_->plan().sea_cascades();
+        return static_cast<std::size_t>(cascade) - (grids_.size() - vessels_.size());
     }
     Scratch& scratch() const;  // of the calling thread
     void advance(const Block&, Scratch&) const;

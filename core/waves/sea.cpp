@@ -153,10 +153,13 @@ Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const Foa
         found.left_coverage = pelagic::left_coverage(deviate, left);
         found.residual_coverage = residual_foam(found.left_coverage, coverage(j, found.threshold, third));
     }
-    if (plan.gusts)
+    if (plan.gusts) {
+        GustsPlan gusts = *plan.gusts;  // of the whole shot
+        gusts.strength = plan.from->scene.sea.gust_strength;
         found.gusts =
-            make_gusts(*plan.gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
+            make_gusts(gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
                        found.threshold, law_exponent(plan.from->scene));
+    }
     return found;
 }
 

@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "core/base/pack-inl.h"
+#include "core/base/sincos-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pelagic {
@@ -40,9 +41,6 @@ HWY_INLINE Complex At(const PlanePhase& phase, std::size_t i) {
 HWY_INLINE void Put(Complex value, float* re, float* im, std::size_t i) {
     hn::StoreU(value.re.v, D(), re + i);
     hn::StoreU(value.im.v, D(), im + i);
-}
-HWY_INLINE bool IsZero(N a) {
-    return hn::AllTrue(D(), hn::Eq(a.v, hn::Zero(D())));
 }
 HWY_INLINE Complex Conjugate(Complex a) {
     return {a.re, -a.im};
@@ -99,33 +97,62 @@ void Lift(const LiftArgs& args) {
     }
 }
 
-HWY_INLINE N Within(N from, N half, N per_edge) {
-    return smooth_rise(minimum(maximum((half - magnitude(from)) * per_edge, N(0)), N(1)));
+// How far a place lies within an edge, in widths of it.
+HWY_INLINE N Depth(N from, N half, N per_edge) {
+    return (half - magnitude(from)) * per_edge;
+}
+HWY_INLINE N Within(N depth) {
+    return smooth_rise(minimum(maximum(depth, N(0)), N(1)));
 }
 
-void Block(const BlockArgs& args) {
-    const N x(args.from_x), y(args.from_y), age(args.age_s), share(args.share), half(args.half_m),
-        per_edge(args.per_edge_m);
+void Blocks(const BlocksArgs& args) {
+    constexpr std::size_t kAhead = 4 * 64 / sizeof(float);
+    const N half(args.half_m), per_edge(args.per_edge_m);
     for (std::size_t i = 0; i < args.count; i += hn::Lanes(D())) {
-        const Complex turn = At(args.turn_re, args.turn_im, i);
-        const N east = age * At(args.group_x, i), north = age * At(args.group_y, i);
-        // e^{i(k·x + ωt)} goes against k.
-        const N later = share * Within(x - east, half, per_edge) * Within(y - north, half, per_edge),
-                earlier = share * Within(x + east, half, per_edge) * Within(y + north, half, per_edge);
-        const auto add = [&](Complex sum, N weight, const float* re, const float* im) {
+        const N group_x = At(args.group_x, i), group_y = At(args.group_y, i);
+        Complex later{N(), N()}, earlier{N(), N()};
+        for (const pelagic::Block& block : args.blocks) {
+            const Complex turn = At(block.turn_re, block.turn_im, i);
+            later = turn * later;
+            earlier = Conjugate(turn) * earlier;
+            const N x(block.from_x), y(block.from_y), age(block.age_s), share(block.share);
+            const N east = age * group_x, north = age * group_y;
             // Most of what is old has left the tile: it isn't read.
-            return IsZero(weight) ? sum : sum + weight * (At(args.place, i) * At(re, im, i));
-        };
-        Put(add(turn * At(args.later_re, args.later_im, i), later, args.of_later_re, args.of_later_im),
-            args.later_re, args.later_im, i);
-        Put(add(Conjugate(turn) * At(args.earlier_re, args.earlier_im, i), earlier, args.of_earlier_re,
-                args.of_earlier_im),
-            args.earlier_re, args.earlier_im, i);
+            const auto add = [&](Complex& sum, N from_x, N from_y, const float* re, const float* im) {
+                const N across = Depth(from_x, half, per_edge), up = Depth(from_y, half, per_edge),
+                        least = minimum(across, up);
+                if (hn::AllFalse(D(), least > N(0))) return;
+                // There are more arrays than hardware prefetchers follow.
+                __builtin_prefetch(re + i + kAhead);
+                __builtin_prefetch(im + i + kAhead);
+                const N weight =
+                    hn::AllFalse(D(), least < N(1)) ? share : share * Within(across) * Within(up);
+                sum = sum + weight * (At(block.place, i) * At(re, im, i));
+            };
+            // e^{i(k·x + ωt)} goes against k.
+            add(later, x - east, y - north, block.later_re, block.later_im);
+            add(earlier, x + east, y + north, block.earlier_re, block.earlier_im);
+        }
+        Put(later, args.later_re, args.later_im, i);
+        Put(earlier, args.earlier_re, args.earlier_im, i);
+    }
+}
+
+void Turn(const TurnArgs& args) {
+    const hn::ScalableTag<double> wide;
+    const hn::Rebind<float, decltype(wide)> narrow;
+    const auto duration = hn::Set(wide, args.duration_s);
+    for (std::size_t i = 0; i < args.count; i += hn::Lanes(wide)) {
+        const auto cycles = hn::DemoteTo(narrow, hn::Mul(duration, hn::LoadU(wide, args.cycles_per_s + i)));
+        hn::Vec<decltype(narrow)> sine, cosine;
+        SinCosCycles(narrow, cycles, sine, cosine);
+        hn::StoreU(cosine, narrow, args.cosine + i);
+        hn::StoreU(sine, narrow, args.sine + i);
     }
 }
 
 VesselKernels Table() {
-    return {.stretch = Stretch, .lift = Lift, .block = Block};
+    return {.stretch = Stretch, .lift = Lift, .blocks = Blocks, .turn = Turn};
 }
 
 }  // namespace

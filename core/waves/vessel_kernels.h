@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 namespace pelagic {
 
@@ -42,23 +43,37 @@ struct LiftArgs {
     float *re, *im;
 };
 
-// The water of a block: turns the sums by the block's duration, and adds its own, as far as it lies within the tile by now.
-struct BlockArgs {
-    std::size_t count;
+// The water of a block.
+struct Block {
     float from_x, from_y, age_s,
         share;  // from the tile's middle to where it was made [m]; how old it is; what age leaves of it
-    float half_m, per_edge_m;        // of the tile; one over its edge's width
     PlanePhase place;                // e^{−ik·X}
-    const float *group_x, *group_y;  // [m/s]
     const float *turn_re, *turn_im;  // e^{iω duration}
-    const float *of_later_re, *of_later_im, *of_earlier_re, *of_earlier_im;
+    const float *later_re, *later_im, *earlier_re, *earlier_im;
+};
+
+// All blocks, the oldest first: each turns both sums by its duration, and adds its own, as far as it lies within the tile by now.
+struct BlocksArgs {
+    std::size_t count;
+    std::span<const Block> blocks;
+    float half_m, per_edge_m;        // of the tile; one over its edge's width
+    const float *group_x, *group_y;  // [m/s]
     float *later_re, *later_im, *earlier_re, *earlier_im;
+};
+
+// Cosine and sine of ω times a duration of some turns at most.
+struct TurnArgs {
+    std::size_t count;
+    double duration_s;
+    const double* cycles_per_s;
+    float *cosine, *sine;
 };
 
 struct VesselKernels {
     void (*stretch)(const StretchArgs&);
     void (*lift)(const LiftArgs&);
-    void (*block)(const BlockArgs&);
+    void (*blocks)(const BlocksArgs&);
+    void (*turn)(const TurnArgs&);
 };
 
 VesselKernels vessel_kernels();

@@ -19,13 +19,6 @@ namespace {
 
 constexpr int kTaskColumns = 16;
 
-// ∫ (1 − z²/T²) e^{kz} dz from −T to 0, Wigley's hull below the water [m].
-double below_water_m(double k, double draught_m) {
-    const double q = k * draught_m;
-    if (q < 0.05) return draught_m * (2.0 / 3.0 - q / 4.0 + q * q / 15.0);
-    return draught_m * (1.0 / q - 2.0 / (q * q * q) + std::exp(-q) * (2.0 / (q * q) + 2.0 / (q * q * q)));
-}
-
 double rise(double x) {
     const double t = std::clamp(x, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -43,10 +36,11 @@ template <class T>
 VesselWaves::VesselWaves(const Cascade<T>& cascade, const VesselPlan& plan, const Dispersion& dispersion)
     : plan_(plan), kernels_(vessel_kernels()), radius_(cascade.radius), columns_(cascade.columns) {
     const std::size_t count = cascade.modes();
-    cycles_per_s_.assign(cascade.cycles_per_s.data(), cascade.cycles_per_s.data() + count);
+    cycles_per_s_ = Buffer<double>(count);
+    std::copy_n(cascade.cycles_per_s.data(), count, cycles_per_s_.data());
     for (Buffer<float>* buffer : {&omega_, &depth_, &group_x_, &group_y_, &turn_re_, &turn_im_})
         *buffer = Buffer<float>(count);
-    for (int n = 0; n < 4; ++n)
+    for (int n = 0; n < VesselPlan::kStepLengths; ++n)
         for (Buffer<float>* buffer : {&cosine_[n], &sine_[n]}) *buffer = Buffer<float>(count);
     fastest_mps_.assign(static_cast<std::size_t>(radius_), 0.0);
     ky_ = Buffer<float>(2 * static_cast<std::size_t>(radius_) - 1);
@@ -70,7 +64,7 @@ VesselWaves::VesselWaves(const Cascade<T>& cascade, const VesselPlan& plan, cons
             group_x_[i] = static_cast<float>(group * mx);
             group_y_[i] = static_cast<float>(group * my);
             std::complex<double> turn = std::polar(1.0, 0.5 * omega * plan_.block_s / VesselPlan::kMostSteps);
-            for (int n = 3; n >= 0; --n, turn *= turn) {
+            for (int n = VesselPlan::kStepLengths - 1; n >= 0; --n, turn *= turn) {
                 cosine_[n][i] = static_cast<float>(turn.real());
                 sine_[n][i] = static_cast<float>(turn.imag());
             }
@@ -113,11 +107,10 @@ const float* VesselWaves::ky_of(int mx) const {
     return ky_.data() + (radius_ - 1 - half_height(radius_, mx));
 }
 
-// So many that no straight one is off by more than a small part of the shortest wave.
-int VesselWaves::steps_of(std::int64_t block) const {
-    const double most_m = 0.02 * plan_.size_m / VesselPlan::kRadius,
-                 from_s = static_cast<double>(block) * plan_.block_s;
-    const auto at = [&](int of, int in) { return plan_.path.at(from_s + plan_.block_s * of / in); };
+// So many that no straight one is off by more than a part of the shortest wave.
+int VesselWaves::steps_of(double from_s, double lasts_s, double part, int most) const {
+    const double most_m = part * plan_.size_m / VesselPlan::kRadius;
+    const auto at = [&](int of, int in) { return plan_.path.at(from_s + lasts_s * of / in); };
     const auto are_straight = [&](int steps) {
         for (int i = 0; i < steps; ++i)
             for (const int quarter : {1, 2, 3})
@@ -127,8 +120,19 @@ int VesselWaves::steps_of(std::int64_t block) const {
         return true;
     };
     int steps = 1;
-    while (steps < VesselPlan::kMostSteps && !are_straight(steps)) steps *= 2;
+    while (steps < most && !are_straight(steps)) steps *= 2;
     return steps;
+}
+
+int VesselWaves::steps_of(std::int64_t block) const {
+    return steps_of(static_cast<double>(block) * plan_.block_s, plan_.block_s, 0.02, VesselPlan::kMostSteps);
+}
+
+void VesselWaves::head(Step& step, double at_s) const {
+    const glm::dvec2 velocity = plan_.path.velocity_mps(at_s);
+    if (glm::length(velocity) > 0.0) step.along = glm::normalize(velocity);
+    step.bow = phases(-0.5 * plan_.length_m * step.along);
+    step.board = phases(0.5 * plan_.beam_m * glm::dvec2(step.along.y, -step.along.x));
 }
 
 VesselWaves::Leg VesselWaves::leg(double from_s, double step_s, int steps) const {
@@ -146,12 +150,9 @@ VesselWaves::Leg VesselWaves::leg(double from_s, double step_s, int steps) const
         const glm::dvec2 a = path.at(begin_s), b = i + 1 < steps ? path.at(begin_s + step_s) : end_m;
         Step& step = made.steps.emplace_back();
         step.velocity_mps = (b - a) / step_s;
-        const glm::dvec2 velocity = path.velocity_mps(begin_s + 0.5 * step_s);
-        if (glm::length(velocity) > 0.0) step.along = glm::normalize(velocity);
+        head(step, begin_s + 0.5 * step_s);
         step.place = phases(0.5 * (a + b) - end_m);
         step.half_way = phases(0.5 * (a - b));
-        step.bow = phases(-0.5 * plan_.length_m * step.along);
-        step.board = phases(0.5 * plan_.beam_m * glm::dvec2(step.along.y, -step.along.x));
     }
     return made;
 }
@@ -236,7 +237,15 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
     const int over =
         static_cast<int>(std::clamp((t_s - begin_s) / step_s, 0.0, VesselPlan::kMostSteps - 1.0));
     begun_ = leg(begin_s, step_s, over);
-    last_ = leg(begun_.end_s, std::max(t_s - begun_.end_s, 1e-9 * step_s), 1);
+    // The last step's line turns as it grows, and what it has made with it: velocities don't have that, so it is cut finely.
+    constexpr double kPart = 0.02 / 32.0;
+    constexpr int kMostParts = 8;
+    const double since_s = std::max(t_s - begun_.end_s, 1e-9 * step_s);
+    const int parts = steps_of(begun_.end_s, since_s, kPart, kMostParts);
+    last_ = leg(begun_.end_s, since_s / parts, parts);
+    now_ = {};
+    now_.velocity_mps = plan_.path.velocity_mps(t_s);
+    head(now_, t_s);
     middle_m_ = plan_.middle_m(t_s);
 }
 
@@ -249,92 +258,92 @@ bool VesselWaves::reaches_tile(const Leg& leg, int mx) const {
 template <class T>
 void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T* rate_im) const {
     struct Own {
-        Buffer<float> later_re, later_im, earlier_re, earlier_im, turn_re, turn_im, cosine, sine, now[4];
+        Buffer<float> later_re, later_im, earlier_re, earlier_im, cosine, sine;
+        Buffer<float> of_begun[4], begun_re, begun_im, of_last[4], last_re, last_im;
+        std::vector<Block> blocks;
     };
     thread_local Own own;
     const std::size_t most = 2 * static_cast<std::size_t>(radius_);
-    if (own.sine.size() < most)
+    if (own.last_im.size() < most) {
+        for (Buffer<float>* sums : {own.of_begun, own.of_last})
+            for (int part = 0; part < 4; ++part) sums[part] = Buffer<float>(most);
         for (Buffer<float>* buffer :
-             {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im, &own.turn_re, &own.turn_im,
-              &own.cosine, &own.sine, &own.now[0], &own.now[1], &own.now[2], &own.now[3]})
+             {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im, &own.cosine, &own.sine,
+              &own.begun_re, &own.begun_im, &own.last_re, &own.last_im})
             *buffer = Buffer<float>(most);
+    }
     const double oldest_s = VesselPlan::kBlocks * plan_.block_s, fading_s = 0.25 * oldest_s;
     for (int mx = first_mx; mx < first_mx + columns; ++mx) {
         const std::size_t first = first_of(mx), count = count_of(mx);
-        for (Buffer<float>* sum : {&own.later_re, &own.later_im, &own.earlier_re, &own.earlier_im})
-            std::fill_n(sum->data(), count, 0.0f);
+        own.blocks.clear();
         const auto add = [&](const Leg& leg, const float* turn_re, const float* turn_im,
-                             const float* const(&of)[4]) {
+                             const Buffer<float>(&of)[4], std::size_t at) {
             const glm::dvec2 from_m = leg.middle_m - middle_m_;
             const double age_s = t_s_ - 0.5 * (leg.from_s + leg.end_s);
-            kernels_.block({.count = count,
-                            .from_x = static_cast<float>(from_m.x),
-                            .from_y = static_cast<float>(from_m.y),
-                            .age_s = static_cast<float>(age_s),
-                            .share = static_cast<float>(rise((oldest_s - age_s) / fading_s)),
-                            .half_m = static_cast<float>((0.5 - 0.25 * VesselPlan::kEdge) * plan_.size_m),
-                            .per_edge_m = static_cast<float>(1.0 / (1.5 * VesselPlan::kEdge * plan_.size_m)),
-                            .place = phase(leg.place, mx),
-                            .group_x = group_x_.data() + first,
-                            .group_y = group_y_.data() + first,
-                            .turn_re = turn_re,
-                            .turn_im = turn_im,
-                            .of_later_re = of[0],
-                            .of_later_im = of[1],
-                            .of_earlier_re = of[2],
-                            .of_earlier_im = of[3],
-                            .later_re = own.later_re.data(),
-                            .later_im = own.later_im.data(),
-                            .earlier_re = own.earlier_re.data(),
-                            .earlier_im = own.earlier_im.data()});
+            own.blocks.push_back({.from_x = static_cast<float>(from_m.x),
+                                  .from_y = static_cast<float>(from_m.y),
+                                  .age_s = static_cast<float>(age_s),
+                                  .share = static_cast<float>(rise((oldest_s - age_s) / fading_s)),
+                                  .place = phase(leg.place, mx),
+                                  .turn_re = turn_re,
+                                  .turn_im = turn_im,
+                                  .later_re = of[0].data() + at,
+                                  .later_im = of[1].data() + at,
+                                  .earlier_re = of[2].data() + at,
+                                  .earlier_im = of[3].data() + at});
         };
-        bool is_empty = true;  // the oldest have left, but for fast waves
-        for (const Leg* block : order_) {
-            is_empty = is_empty && !reaches_tile(*block, mx);
-            if (is_empty) continue;
-            add(*block, turn_re_.data() + first, turn_im_.data() + first,
-                {block->sums[0].data() + first, block->sums[1].data() + first, block->sums[2].data() + first,
-                 block->sums[3].data() + first});
-        }
-        const Sums now{own.now[0].data(), own.now[1].data(), own.now[2].data(), own.now[3].data()};
-        const auto add_begun = [&](const Leg& leg, const float* cosine, const float* sine) {
+        for (const Leg* block : order_)
+            // The oldest have left, but for fast waves.
+            if (!own.blocks.empty() || reaches_tile(*block, mx))
+                add(*block, turn_re_.data() + first, turn_im_.data() + first, block->sums, first);
+        const auto add_begun = [&](const Leg& leg, const float* cosine, const float* sine,
+                                   Buffer<float>(&of)[4], Buffer<float>& turn_re, Buffer<float>& turn_im) {
             for (std::size_t i = 0; i < count; ++i) {
                 const float c = cosine[i], s = sine[i], step_re = c * c - s * s, step_im = 2.0f * c * s;
-                own.turn_re[i] = step_re;
-                own.turn_im[i] = step_im;
+                turn_re[i] = step_re;
+                turn_im[i] = step_im;
                 for (std::size_t n = 1; n < leg.steps.size(); ++n) {
-                    const float before = own.turn_re[i];
-                    own.turn_re[i] = before * step_re - own.turn_im[i] * step_im;
-                    own.turn_im[i] = before * step_im + own.turn_im[i] * step_re;
+                    const float before = turn_re[i];
+                    turn_re[i] = before * step_re - turn_im[i] * step_im;
+                    turn_im[i] = before * step_im + turn_im[i] * step_re;
                 }
             }
-            sum_up(leg, mx, cosine, sine, now);
-            add(leg, own.turn_re.data(), own.turn_im.data(),
-                {now.later_re, now.later_im, now.earlier_re, now.earlier_im});
+            sum_up(leg, mx, cosine, sine, {of[0].data(), of[1].data(), of[2].data(), of[3].data()});
+            add(leg, turn_re.data(), turn_im.data(), of, 0);
         };
         if (!begun_.steps.empty())
-            add_begun(begun_, cosine_[begun_.table].data() + first, sine_[begun_.table].data() + first);
-        const double half_s = 0.5 * (last_.end_s - last_.from_s);
-        for (std::size_t i = 0; i < count; ++i) {
-            const float phase =
-                static_cast<float>(kTwoPi * cycles_per_s_[first + i] * half_s);  // some turns at most
-            own.cosine[i] = std::cos(phase);
-            own.sine[i] = std::sin(phase);
-        }
-        add_begun(last_, own.cosine.data(), own.sine.data());
+            add_begun(begun_, cosine_[begun_.table].data() + first, sine_[begun_.table].data() + first,
+                      own.of_begun, own.begun_re, own.begun_im);
+        kernels_.turn(
+            {.count = count,
+             .duration_s = 0.5 * (last_.end_s - last_.from_s) / static_cast<double>(last_.steps.size()),
+             .cycles_per_s = cycles_per_s_.data() + first,
+             .cosine = own.cosine.data(),
+             .sine = own.sine.data()});
+        add_begun(last_, own.cosine.data(), own.sine.data(), own.of_last, own.last_re, own.last_im);
+        kernels_.blocks({.count = count,
+                         .blocks = own.blocks,
+                         .half_m = static_cast<float>((0.5 - 0.25 * VesselPlan::kEdge) * plan_.size_m),
+                         .per_edge_m = static_cast<float>(1.0 / (1.5 * VesselPlan::kEdge * plan_.size_m)),
+                         .group_x = group_x_.data() + first,
+                         .group_y = group_y_.data() + first,
+                         .later_re = own.later_re.data(),
+                         .later_im = own.later_im.data(),
+                         .earlier_re = own.earlier_re.data(),
+                         .earlier_im = own.earlier_im.data()});
+        float *lift_re = own.of_last[0].data(), *lift_im = own.of_last[1].data();  // has been added
         if (rate_re) {
-            std::fill_n(now.later_re, count, 0.0f);
-            std::fill_n(now.later_im, count, 0.0f);
-            const Step& step = last_.steps.front();
+            std::fill_n(lift_re, count, 0.0f);
+            std::fill_n(lift_im, count, 0.0f);
             kernels_.lift({.count = count,
                            .kx = static_cast<float>(mx * kTwoPi / plan_.size_m),
-                           .ux = static_cast<float>(step.velocity_mps.x),
-                           .uy = static_cast<float>(step.velocity_mps.y),
+                           .ux = static_cast<float>(now_.velocity_mps.x),
+                           .uy = static_cast<float>(now_.velocity_mps.y),
                            .ky = ky_of(mx),
                            .place = phase(last_.place, mx),
-                           .hull = hull(step, mx),
-                           .re = now.later_re,
-                           .im = now.later_im});
+                           .hull = hull(now_, mx),
+                           .re = lift_re,
+                           .im = lift_im});
         }
         const std::size_t to = first - first_of(first_mx);
         for (std::size_t i = 0; i < count; ++i) {
@@ -342,8 +351,8 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
             im[to + i] = static_cast<T>(own.later_im[i] + own.earlier_im[i]);
             if (!rate_re) continue;
             const float omega = omega_[first + i];
-            rate_re[to + i] = static_cast<T>(omega * (own.earlier_im[i] - own.later_im[i]) + own.now[0][i]);
-            rate_im[to + i] = static_cast<T>(omega * (own.later_re[i] - own.earlier_re[i]) + own.now[1][i]);
+            rate_re[to + i] = static_cast<T>(omega * (own.earlier_im[i] - own.later_im[i]) + lift_re[i]);
+            rate_im[to + i] = static_cast<T>(omega * (own.later_re[i] - own.earlier_re[i]) + lift_im[i]);
         }
     }
 }

@@ -73,7 +73,10 @@ class VesselWaves {
     };
 
     Phases phases(glm::dvec2 place_m) const;
+    int steps_of(double from_s, double lasts_s, double part, int most) const;
     int steps_of(std::int64_t block) const;
+    // Turns its hull as it lies at a time.
+    void head(Step& step, double at_s) const;
     Leg leg(double from_s, double step_s, int steps) const;
     std::size_t first_of(int mx) const { return columns_[static_cast<std::size_t>(mx)]; }
     std::size_t count_of(int mx) const { return first_of(mx + 1) - first_of(mx); }
@@ -90,12 +93,14 @@ class VesselWaves {
     int radius_ = 0;
     std::vector<std::size_t> columns_;
     std::vector<double> fastest_mps_;  // by column: the greatest group velocity
-    std::vector<double> cycles_per_s_;
+    Buffer<double> cycles_per_s_;
     Buffer<float> ky_, omega_, depth_, group_x_, group_y_, turn_re_, turn_im_;
-    Buffer<float> cosine_[4], sine_[4];  // of half a step of 1, 2, 4, 8 in a block
+    Buffer<float> cosine_[VesselPlan::kStepLengths],
+        sine_[VesselPlan::kStepLengths];  // of half a step of 1, 2, 4, … in a block
     std::map<std::int64_t, Leg> blocks_;
     std::vector<const Leg*> order_;  // of the time that is set, the oldest first
     Leg begun_, last_;               // of the block that isn't over: its steps that are, and the rest
+    Step now_;                       // its velocity and its hull
     double t_s_ = 0.0;
     glm::dvec2 middle_m_{0.0};
 };

@@ -26,7 +26,7 @@ double& at(WorkDone& work, Work what) {
 void add_grids(const CascadePlan& cascade, WorkDone& work) {
     for (const Grid& grid : cascade.grids) {
         const double n = grid.resolution, fields = static_cast<double>(grid.fields.count());
-        at(work, Work::Transforms) += 1e-6 * fields * grid.lines_per_field() * n * std::log2(n);
+        at(work, Work::Transforms) += 1e-6 * static_cast<double>(grid.lines()) * n * std::log2(n);
         at(work, Work::Modes) += 1e-6 * fields * static_cast<double>(lattice_modes(grid.radius));
     }
 }

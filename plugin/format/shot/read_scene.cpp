@@ -10,6 +10,7 @@
 #include "core/scene/editions.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/presets.h"
 #include "core/scene/text.h"
 
@@ -136,7 +137,8 @@ std::optional<KeyValue> read_number_keys(Reader& reader, const Asked& asked) {
     static const KnownKeys known{{"keys", "interpolation"}, "the keys keys and interpolation"};
     static const Key& interpolation = pelagic::key_of("camera.interpolation");
     if (!asked.key.may_have_keys)
-        return refuse(reader, asked, "has keys, and this number can't change over the shot yet");
+        return refuse(reader, asked,
+                      "has keys, and this number can't change over the shot" + why_no_keys(asked.key.path));
     const std::size_t problems_before = reader.problem_count();
     NumberKeys number;
     for (const auto& at : in_order(table))

@@ -15,6 +15,7 @@
 #include "core/scene/keys.h"
 #include "core/scene/number_keys.h"
 #include "core/spectrum/possible.h"
+#include "core/waves/folding.h"
 #include "core/waves/sea_over_time.h"
 #include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
@@ -276,6 +277,38 @@ TEST(Weather, HiddenVarianceAndFoamAreThoseOfTheTime) {
             const double shown = sea.resolved_moments(0).mss();
             EXPECT_LT(shown, all.mss());
             EXPECT_GT(shown, 0.1 * all.mss());
+        }
+    }
+}
+
+// Gusts keep their patches: of a strength that changes each moment has what a sea of that strength has, and the waves stay.
+TEST(Weather, GustsHaveTheStrengthOfTheTime) {
+    Scene scene = rising();
+    scene.keyed.clear();
+    scene.sea.wind_speed_mps = 14.0;
+    scene.sea.gust_size_m = 60.0;
+    give_keys(scene, "sea.gust_strength", {{1, 0.0}, {97, 0.8}}, kLinear);
+    for (const std::string& warning : sea_warnings(*prepare(scene)))  // as fast as one likes: no waves grow
+        EXPECT_EQ(warning.find("faster than waves"), std::string::npos) << warning;
+    const auto points = random_points<double>(300.0, 400);
+    auto changing = frame_over_time<double>(scene, {everything()});
+    const auto slopes = [](const ProductArrays<double>& of) {
+        std::vector<double> sums;
+        for (const auto& variance : of.vectors(SlopeVariance)) sums.push_back(variance.x + variance.y);
+        return sums;
+    };
+    for (const double f : {1.0, 49.0, 97.0, 120.0}) {
+        const double t = scene.shot.time_s(f);
+        changing.set(t);
+        Frame<double> still(
+            std::make_shared<const Sea<double>>(make_plan(scene_at(scene, f), {everything()})));
+        still.set(t);
+        const auto found = sample(changing, 0, points), said = sample(still, 0, points);
+        const std::vector<double> hidden = slopes(found), as_said = slopes(said);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_NEAR(hidden[i], as_said[i], 1e-9 * as_said[i]) << f;
+            EXPECT_NEAR(found.numbers(Product::Breaking)[i], said.numbers(Product::Breaking)[i], 1e-6) << f;
+            EXPECT_LT(glm::length(found.vectors(Velocity)[i] - said.vectors(Velocity)[i]), 1e-9) << f;
         }
     }
 }

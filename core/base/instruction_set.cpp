@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 namespace pelagic {
 namespace {
@@ -26,7 +27,7 @@ std::string name_of(std::int64_t target) {
     std::string name = hwy::TargetName(target);
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name == "avx3" ? "avx512" : name;
+    return name.starts_with("avx3") ? "avx512" : name;  // with whatever else: our sums are the same
 }
 
 }  // namespace
@@ -37,23 +38,23 @@ std::string instruction_set() {
 
 std::vector<std::string> instruction_sets() {
     std::vector<std::string> names;
-    for (std::int64_t left = kAll; left != 0; left &= left - 1) names.push_back(name_of(widest(left)));
+    for (std::int64_t left = kAll; left != 0; left &= left - 1)
+        if (std::string name = name_of(widest(left)); names.empty() || names.back() != name)
+            names.push_back(std::move(name));
     std::reverse(names.begin(), names.end());
     return names;
 }
 
 void use_instruction_set(const std::string& name) {
-    std::string known;
-    for (std::int64_t left = kAll; left != 0; left &= left - 1) {
-        const std::string widest_left = name_of(widest(left));
-        if (widest_left == name) {
+    for (std::int64_t left = kAll; left != 0; left &= left - 1)
+        if (name_of(widest(left)) == name) {
             // (hwy::DisableTargets() doesn't do: asking which there are brings all back.)
             hwy::SetSupportedTargetsForTest(left);
             hwy::GetChosenTarget().DeInit();
             return;
         }
-        known = widest_left + (known.empty() ? "" : ", ") + known;
-    }
+    std::string known;
+    for (const std::string& set : instruction_sets()) known += (known.empty() ? "" : ", ") + set;
     throw std::invalid_argument("instruction set \"" + name + "\": this CPU has " + known);
 }
 

@@ -53,7 +53,7 @@ constexpr std::array<Force, 13> kForces{{
     {"Strong breeze", 12.3, 180.0, 1.2, {30.0, 150.0, 2.0}, {1.5, 1.8, 28.0, -90.0, 90.0, 286.0}, "large waves, white crests everywhere; 3 m"},
     {"Near gale", 15.5, 190.0, 1.4, {30.0, 350.0, 2.2}, {1.8, 2.2, 30.0, 30.0, 36.0, 116.0}, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
     {"Gale", 18.9, 240.0, 1.7, {28.0, 30.0, 2.4}, {2.3, 3.0, 34.0, 60.0, 66.0, 164.0}, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
-    {"Strong gale", 22.6, 270.0, 2.0, {50.0, 200.0, 8.0}, {0.5, 3.0, 32.0, -2.0, -63.0, 340.0, -0.5}, "high waves, dense streaks, crests begin to topple; 7 m"},
+    {"Strong gale", 22.6, 270.0, 2.0, {50.0, 200.0, 8.0}, {0.5, 3.0, 32.0, -2.0, -63.0, 340.0, -0.1}, "high waves, dense streaks, crests begin to topple; 7 m"},
     {"Storm", 26.4, 320.0, 3.2, {24.0, 300.0, 3.0}, {3.3, 4.4, 34.0, 50.0, 58.0, 220.0, -0.3}, "very high waves with overhanging crests, the sea looks white; 9 m"},
     {"Violent storm", 30.5, 385.0, 4.5, {26.0, 300.0, 3.0}, {3.9, 5.0, 34.0, 77.0, 69.0, 200.0, -0.2}, "exceptionally high waves, long white patches everywhere; 11.5 m"},
     {"Hurricane", 35.0, 425.0, 7.5, {45.0, 100.0, 3.5}, {3.9, 5.0, 34.0, -2.0, -5.0, 40.0, -0.5}, "the air is full of foam, the sea white; 14 m"},

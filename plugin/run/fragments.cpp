@@ -77,6 +77,16 @@ void read_fragment(const fs::path& record, Fragment fragment, const std::string&
     if (!reading.is_blocked) found.read.push_back(std::move(fragment));
 }
 
+// As they were written: of a frame that several have the last counts.
+std::vector<Fragment> in_order(std::vector<Fragment> fragments) {
+    for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
+    std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
+        return std::tie(a.identity.changed_s, a.identity.changed_ns, a.file) <
+               std::tie(b.identity.changed_s, b.identity.changed_ns, b.file);
+    });
+    return fragments;
+}
+
 }  // namespace
 
 std::vector<Fragment> fragments_of(const fs::path& record) {
@@ -117,12 +127,7 @@ RecordsReading read_records(const fs::path& record, const std::function<void(int
         const std::string version = read_frames(
                                         record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
                                         .version;
-        for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
-        std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
-            return std::tie(a.identity.changed_s, a.identity.changed_ns, a.file) <
-                   std::tie(b.identity.changed_s, b.identity.changed_ns, b.file);
-        });
-        for (const Fragment& fragment : fragments)
+        for (const Fragment& fragment : in_order(std::move(fragments)))
             read_fragment(record, fragment, version, theirs, found, cancel);
     }
     auto next = theirs.begin();
@@ -158,18 +163,20 @@ RecordsReading read_some(const fs::path& record, std::span<const int> frames,
     };
     // Before the record: one that is taken into it meanwhile is seen there.
     std::set<int> ignored;
-    std::string version;
-    for (const Fragment& fragment : fragments_of(record)) {
+    std::vector<Fragment> wanted;
+    for (Fragment& fragment : fragments_of(record)) {
         if (fragment.frames == 0) continue;
         if (fragment.is_without_gaps())
             for (int number = fragment.first; number <= fragment.last; ++number)
                 numbers.insert(numbers.end(), number);
-        if (!is_among(fragment.first, fragment.last)) continue;
-        if (version.empty())
-            version = read_frames(
-                          record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
-                          .version;
-        read_fragment(record, fragment, version, theirs, found, cancel);
+        if (is_among(fragment.first, fragment.last)) wanted.push_back(std::move(fragment));
+    }
+    if (!wanted.empty()) {
+        const std::string version = read_frames(
+                                        record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
+                                        .version;
+        for (const Fragment& fragment : in_order(std::move(wanted)))
+            read_fragment(record, fragment, version, theirs, found, cancel);
     }
     Frames read;
     static_cast<RecordReading&>(found) = read_frames(

@@ -225,11 +225,10 @@ class Run {
     void find() {
         const Shot& shot = work_.shot;
         std::set<int> numbers;
-        std::map<int, FrameRecord> recorded =
+        const std::map<int, FrameRecord> recorded =
             work_.has_record ? recorded_frames(report_, shot, frames_, numbers, options_.cancel)
                              : sealed_frames(options_.out, shot, parts_, options_.cancel);
         named_ = named_frames(shot, frames_, numbers);
-        find_other_sets(recorded);
         std::vector<FileCheck> checks = files_to_check(frames_, recorded, parts_);
         if (options_.trust_times)
             check_times(options_.out, checks, report_.record);
@@ -243,8 +242,17 @@ class Run {
         }
         for (const int frame : frames_) {
             const auto found = recorded.find(frame);
-            if (auto job = job_of(frame, parts_, found == recorded.end() ? nullptr : &found->second, whole))
-                (job->is_whole ? mended_ : jobs_).push_back(std::move(*job));
+            const FrameRecord* entry = found == recorded.end() ? nullptr : &found->second;
+            auto job = job_of(frame, parts_, entry, whole);
+            const bool has_some = entry && (!job || job->is_whole || !job->kept.files.empty());
+            if (has_some && entry->instruction_set != instruction_set()) {
+                const bool is_whole = !job || job->is_whole;
+                // A frame is one set's: what lacks a file is made as a whole.
+                if (options_.same_instruction_set || !is_whole) job = job_of(frame, parts_, nullptr, whole);
+                if (options_.same_instruction_set || is_whole)
+                    report_.of_other_sets[entry->instruction_set].push_back(frame);
+            }
+            if (job) (job->is_whole ? mended_ : jobs_).push_back(std::move(*job));
         }
         for (const auto& [frame, entry] : recorded)
             if (is_in(shot, frame) && !std::binary_search(frames_.begin(), frames_.end(), frame) &&
@@ -252,17 +260,6 @@ class Run {
                 report_.stale.push_back(frame);
         std::sort(report_.stale.begin(), report_.stale.end());
         progress_.kept = report_.kept = static_cast<int>(frames_.size() - jobs_.size());
-    }
-
-    void find_other_sets(std::map<int, FrameRecord>& recorded) {
-        for (const int frame : frames_) {
-            const auto entry = recorded.find(frame);
-            if (entry == recorded.end() || entry->second.files.empty() ||
-                entry->second.instruction_set == instruction_set())
-                continue;
-            report_.of_other_sets[entry->second.instruction_set].push_back(frame);
-            if (options_.same_instruction_set) recorded.erase(entry);
-        }
     }
 
     void make() {

@@ -96,9 +96,10 @@ void read_shot(const fs::path& folder, const std::string& record, const std::str
     if (!stale.empty()) tell(Flaw::Stale, "has frames of another version of the shot: " + frames_text(stale));
     for (const auto& [set, frames] : by_set) {
         if (instruction_set.empty() && by_set.size() > 1)
-            found.notes.push_back(record + ": " + set + " has made the frames " + frames_text(frames));
+            found.notes.push_back(record + ": " + line_text(set) + " has made the frames " +
+                                  frames_text(frames));
         if (!instruction_set.empty() && set != instruction_set)
-            tell(Flaw::Stale, "has frames that " + set + " has made: " + frames_text(frames) +
+            tell(Flaw::Stale, "has frames that " + line_text(set) + " has made: " + frames_text(frames) +
                                   "; bake them again with --instruction-set " + instruction_set);
     }
     if (!reading.shot && baked.empty() && !reading.is_blocked) known.unread.insert(record);

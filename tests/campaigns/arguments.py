@@ -53,9 +53,9 @@ OPTIONS = {
                "--trust-times", "--threads", "--max-memory", "--instruction-set"],
     "preview": ["--frame", "--size", "--quality", "--scale", "--threads", "--max-memory", "--offscreen", "--after"],
     "explain": ["--threads", "--json"],
-    "farm": ["--out", "--frames", "--verb", "--status", "--tasks", "--minutes", "--sbatch", "--json", "--chosen", "--samples", "--threads"],
+    "farm": ["--out", "--frames", "--verb", "--status", "--tasks", "--minutes", "--sbatch", "--json", "--chosen", "--samples", "--threads", "--instruction-set"],
     "accuracy": ["--rows", "--repeats", "--threads"],
-    "verify": ["--threads", "--json"],
+    "verify": ["--threads", "--json", "--instruction-set"],
     "validate": [], "keys": [], "presets": [],
 }
 FILES = {"verify": ["out", "small", ".", "nothing", "small.toml"], "presets": ["beaufort-7", "beaufort-99", "calm"], "keys": ["sea"]}

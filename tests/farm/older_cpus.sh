@@ -32,8 +32,8 @@ for cpu in Nehalem:sse4 SandyBridge:sse4 Haswell:avx2; do
     for verb in bake render; do
         options=(small.toml)
         [ $verb = bake ] || options+=(--size 64x36 --samples 1)
-        "$program" $verb "${options[@]}" --out "$set.$verb" --instruction-set "$set" >/dev/null 2>&1
-        qemu-x86_64 -cpu $cpu "$program" $verb "${options[@]}" --out "$cpu.$verb" --threads 1 2>/dev/null
+        "$program" $verb "${options[@]}" --out "$set.$verb" --instruction-set "$set" >/dev/null
+        qemu-x86_64 -cpu $cpu "$program" $verb "${options[@]}" --out "$cpu.$verb" --threads 1
         if diff -r "$set.$verb" "$cpu.$verb"; then
             echo "$verb: an emulated $cpu makes the bytes of --instruction-set $set"
         else

@@ -54,12 +54,6 @@ struct TaskNeed {
     std::size_t memory_bytes = 0;
 };
 
-std::string shell_word(const std::string& text) {
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return word + "'";
-}
-
 // A path in a line of #SBATCH, where Slurm takes % for itself, and strips a \, which no path here has.
 std::string sbatch_path(const fs::path& path, std::string_view pattern = {}) {
     std::string word = "\"";
@@ -194,18 +188,16 @@ std::string verify_script(const FarmArguments& arguments, const FarmJob& job, co
                           const fs::path& out, bool is_part) {
     constexpr std::size_t kMemory = std::size_t{1} << 30;
     const std::string name = job.of.name + '.' + job.verb;
-    const std::string verify =
-        shell_word(program.string()) + " verify " + shell_word(out.string()) +
-        (job.instruction_set.empty() ? "" : " --instruction-set " + shell_word(job.instruction_set)) +
-        " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
+    const std::string verify = shell_word(program.string()) + " verify " + shell_word(out.string()) +
+                               " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
     const std::string text =
         header(arguments, job.of.name + " verify", 1, kMemory,
                "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") + '\n') +
         "# By pelagic farm: the last job, after all tasks of " + name + ".sh.\n";
-    if (job.verb == "bake" && !is_part) return text + "exec " + verify + '\n';
+    if (job.verb == "bake" && !is_part && job.instruction_set.empty()) return text + "exec " + verify + '\n';
     return text + "said=$(" + verify +
            ")\nstatus=$?\nprintf '%s\\n' \"$said\"\n"
-           "# Pictures that aren't there, verify doesn't know; frames that weren't asked for, it misses.\n"
+           "# Pictures that aren't there, verify doesn't know, nor by which set frames were to be made; frames that weren't asked for, it misses.\n"
            "grep -E '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\" | grep -qv \" lacks frames that aren't baked: \"\n"
            "[ $status$? = 31 ] && status=0\n" +
            shell_word(program.string()) + " farm --status " + shell_word(out.string()) +
@@ -360,6 +352,12 @@ int run(FarmArguments arguments) {
 }
 
 }  // namespace
+
+std::string shell_word(const std::string& text) {
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
 
 Verb add_farm(CLI::App& program) {
     CLI::App* command = program.add_subcommand("farm", help::kFarm)->footer(help::kFarmFooter);

@@ -27,6 +27,9 @@ inline constexpr const char* kFarmBegun = "pelagic farm: begun ";
 inline constexpr const char* kFarmEnded = "pelagic farm: ended ";
 inline constexpr const char* kFarmAgain = ", and is begun again";  // at the end of the latter
 
+// As a shell takes it for one word.
+std::string shell_word(const std::string& text);
+
 // --status: prints it; the exit status.
 int print_farm_status(const std::filesystem::path& out);
 

@@ -190,7 +190,8 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
         {"event", "result"}, {"verb", "farm"}, {"name", job.of.name}, {"of", job.verb}};
     told["running"] = told["failed"] = nlohmann::ordered_json::array();
     Counted counted;
-    const std::string script = line_text((out / "farm" / (job.of.name + '.' + job.verb + ".sh")).string());
+    const std::string script =
+        line_text(shell_word((out / "farm" / (job.of.name + '.' + job.verb + ".sh")).string()));
     for (std::size_t number = 0; number < job.tasks.size(); ++number) {
         const FarmTask& task = job.tasks[number];
         std::vector<int> lacking;

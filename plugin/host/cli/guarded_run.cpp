@@ -21,8 +21,9 @@ namespace {
 void print_other_sets(const RunReport& report, const RunOptions& options, const std::string& out) {
     for (const auto& [set, frames] : report.of_other_sets)
         if (!set.empty() || options.same_instruction_set)
-            std::cerr << "pelagic: note: in " << out << ' ' << (set.empty() ? "another instruction set" : set)
-                      << " had made the frames " << frames_text(frames)
+            std::cerr << "pelagic: note: in " << out << ' '
+                      << (set.empty() ? "another instruction set" : line_text(set)) << " had made the frames "
+                      << frames_text(frames)
                       << (options.same_instruction_set
                               ? "; made again by "
                               : ": kept; for equal bits by one set, give --instruction-set, as ")
@@ -129,7 +130,8 @@ int run_frames(const RunArguments& arguments, RunOptions options, const FrameVer
                                       {"record", report.record.string()},
                                       {"damaged", report.damaged},
                                       {"foreign", report.foreign},
-                                      {"stale", report.stale}});
+                                      {"stale", report.stale},
+                                      {"of_other_sets", report.of_other_sets}});
                            return int{kDone};
                        });
 }

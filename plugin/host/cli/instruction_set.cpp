@@ -62,7 +62,11 @@ void apply_instruction_set(const std::string& set) {
 
 void restart_for_instruction_set([[maybe_unused]] int argc, [[maybe_unused]] const char* const* argv) {
 #if defined(__x86_64__) && defined(__GLIBC__)
-    if (asked_set(argc, argv) != "sse4" || !__builtin_cpu_supports("fma")) return;
+    const bool makes_files =
+        argc > 1 && (argv[1] == std::string_view("bake") || argv[1] == std::string_view("render"));
+    if (!makes_files || asked_set(argc, argv) != "sse4" ||
+        !(__builtin_cpu_supports("fma") || __builtin_cpu_supports("fma4")))
+        return;
     // What glibc's mathematics ask the CPU for, each taken away.
     constexpr std::string_view kWithout = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4";
     const char* const before = std::getenv("GLIBC_TUNABLES");
@@ -72,8 +76,8 @@ void restart_for_instruction_set([[maybe_unused]] int argc, [[maybe_unused]] con
     tunables += kWithout;
     if (setenv("GLIBC_TUNABLES", tunables.c_str(), 1) == 0)
         execv("/proc/self/exe", const_cast<char* const*>(argv));
-    throw std::system_error(errno, std::generic_category(),
-                            "--instruction-set sse4 can't start the program anew");
+    throw WrongUsage("--instruction-set sse4: the program can't be started anew (/proc/self/exe: " +
+                     std::generic_category().message(errno) + ")");
 #endif
 }
 

@@ -13,7 +13,7 @@ void add_instruction_set(CLI::App& command, std::string& set, const char* help);
 void apply_instruction_set(const std::string& set);
 
 // Starts the program anew where the arguments ask for a set below AVX2 and the C library has fused products in its mathematics, which it
-// chooses when a process starts. Throws std::system_error where that can't be done.
+// chooses when a process starts; of verbs that make files. Throws WrongUsage where that can't be done.
 void restart_for_instruction_set(int argc, const char* const* argv);
 
 }  // namespace pelagic::cli

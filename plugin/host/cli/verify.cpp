@@ -46,6 +46,7 @@ nlohmann::ordered_json json_of(const Verification& found, const std::string& fol
                                 {"shots", found.shots}, {"files", found.files},
                                 {"bytes", found.bytes}, {"findings", nlohmann::ordered_json::array()}};
     told["merged"] = found.merged;
+    told["notes"] = found.notes;
     for (const Finding& finding : found.findings)
         told["findings"].push_back(
             {{"path", finding.path}, {"flaw", word_of(finding.flaw)}, {"what", finding.what}});

@@ -381,6 +381,7 @@ pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_cam
                                    pelagic_error* error) {
     return guarded(error, [&] {
         const ShotFrame& of = frame_of(frame);
+        stop_if(&of.shot().is_cancelled);
         give(of.shot().arena->execute([&] { return size_of(expansion_of(of, camera, options)); }), mesh_size,
              "mesh_size");
         return PELAGIC_OK;
@@ -394,6 +395,7 @@ pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* 
         auto into = taken(buffers, "buffers");
         const Wanted wanted = into.values ? wanted_in(taken(into.values, "buffers.values")) : Wanted{};
         const ShotFrame& of = frame_of(frame);
+        stop_if(&of.shot().is_cancelled);
         const Expansion expansion =
             of.shot().arena->execute([&] { return expansion_of(of, camera, options); });
         const pelagic_mesh_size needed = size_of(expansion);

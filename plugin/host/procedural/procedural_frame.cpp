@@ -49,6 +49,8 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
         cell_m = needs.finest_cell_m;
         pixel_m = needs.finest_pixel_m;
     }
+    const std::size_t most_bytes =
+        options.max_memory_bytes > 0 ? std::min(kUnasked_bytes, options.max_memory_bytes) : kUnasked_bytes;
     for (;; cell_m *= 2.0, pixel_m *= 2.0) {
         finest_cell_m = cell_m;
         const Query query = view_query(*prepared, {.products = kProducts,
@@ -57,7 +59,7 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
                                                    .points = Chunk<float>::kPoints});
         Plan plan = make_plan(prepared, {query}, {.double_precision = false});
         constexpr double kCoarsest_m = 1.0;  // a sea of trains takes the same at any
-        if (is_asked || plan.frame_bytes() <= kUnasked_bytes || cell_m > kCoarsest_m) return plan;
+        if (is_asked || plan.frame_bytes() <= most_bytes || cell_m > kCoarsest_m) return plan;
     }
 }
 

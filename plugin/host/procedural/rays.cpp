@@ -183,6 +183,7 @@ bool RayTracer::hit_piece(Piece piece, bool any, SeaHit& best) {
     if (!enters(piece.from_m, piece.per_direction, -most_m, most_m, piece.near_m, piece.far_m)) return false;
     bool is_hit = false;
     waiting_.clear();
+    root_places_.clear();
     push_roots(piece);
     while (!waiting_.empty()) {
         const Entry entry = waiting_.back();
@@ -226,8 +227,10 @@ void RayTracer::push_roots(const Piece& piece) {
             const TilePlace place{level, static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)};
             double near_m = piece.near_m, far_m = piece.far_m;
             if (enters(piece.from_m - SurfaceTiles::middle_m(place), piece.per_direction, -half_m, half_m,
-                       near_m, far_m))
-                push({near_m, &root_of(place), -1});
+                       near_m, far_m)) {
+                push({near_m, nullptr, static_cast<int>(root_places_.size())});
+                root_places_.push_back(place);
+            }
         }
 }
 
@@ -239,13 +242,13 @@ void RayTracer::push(const Entry& entry) {
 }
 
 const Tile& RayTracer::tile_of(const Entry& entry) {
-    if (entry.quarter < 0) return *entry.tile;
-    const Tile& parent = *entry.tile;
-    std::atomic<const Tile*>& kept = parent.finer[static_cast<std::size_t>(entry.quarter)];
+    if (!entry.parent) return root_of(root_places_[static_cast<std::size_t>(entry.number)]);
+    const Tile& parent = *entry.parent;
+    std::atomic<const Tile*>& kept = parent.finer[static_cast<std::size_t>(entry.number)];
     if (const Tile* tile = kept.load(std::memory_order_acquire)) return *tile;
     const TilePlace& of = parent.place;
     const Tile& tile =
-        sea_.tiles->tile(*store_, {of.level - 1, 2 * of.x + entry.quarter % 2, 2 * of.y + entry.quarter / 2});
+        sea_.tiles->tile(*store_, {of.level - 1, 2 * of.x + entry.number % 2, 2 * of.y + entry.number / 2});
     kept.store(&tile, std::memory_order_release);
     return tile;
 }

@@ -59,8 +59,8 @@ class RayTracer {
     // A tile that the ray enters there.
     struct Entry {
         double near_m;
-        const Tile* tile;  // itself, a root; or its parent
-        int quarter;       // of the parent; a root: −1
+        const Tile* parent;  // null: a root
+        int number;          // the parent's quarter; of a root its place in root_places_
     };
 
     struct Span {
@@ -86,8 +86,9 @@ class RayTracer {
         TilePlace place;
         const Tile* tile = nullptr;
     };
-    std::array<Root, 256> roots_{};  // that were asked for lately
-    std::vector<Entry> waiting_;     // the nearest is the last
+    std::array<Root, 256> roots_{};       // that were asked for lately
+    std::vector<TilePlace> root_places_;  // of the piece at hand
+    std::vector<Entry> waiting_;          // the nearest is the last
 };
 
 }  // namespace pelagic::procedural

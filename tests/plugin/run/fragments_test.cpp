@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,6 +16,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -145,6 +148,33 @@ TEST_F(Fragments, OfAKilledRunAreReadAndTakenIn) {
 }
 
 // One that was killed before its first frame has said that it is at work, and no more.
+// Of a frame that two runs have made the last one's entry counts, whatever their files are called, for few frames and for all.
+TEST_F(Fragments, TheLastOneCounts) {
+    for (int round = 0; round < 8; ++round) {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        std::vector<std::unique_ptr<Record>> runs;  // killed, all of them
+        for (const char* of : {"a", "b", "c"}) {
+            runs.push_back(begun(3));
+            runs.back()->begin(record(), {}, {}, true);
+            runs.back()->set(1, frame_record(1, of));
+            runs.back()->save(record());
+            std::this_thread::sleep_for(
+                std::chrono::milliseconds(10));  // file systems tell times apart by 4 ms
+        }
+        std::set<int> numbers;
+        std::string few;
+        read_some(
+            record(), std::array{1},
+            [&](int number, const FrameRecord& frame) {
+                if (number == 1) few = frame.fingerprint;
+            },
+            numbers);
+        EXPECT_EQ(few, "c1");
+        EXPECT_EQ(recorded().at(1), "c1");
+    }
+}
+
 TEST_F(Fragments, OfARunThatMadeNothingAreGoneOnceTheShotIsWhole) {
     const std::string expected = text_of_one(3);
     begun(3)->begin(record(), {}, {}, true);

@@ -139,7 +139,7 @@ PELAGIC_API pelagic_status pelagic_open(const pelagic_source* source, const pela
                                         pelagic_sea** sea, pelagic_error* error);
 /* Not 0: calls that run on the sea's frames, or begin, end with PELAGIC_CANCELLED as soon as they can, until it is set back to 0; what they were to write is
  * worthless, and a frame that was being set has no time until it is set again: whatever is asked of it is PELAGIC_INVALID_ARGUMENT until then. Any thread may call it, while others use the sea. Bounds and
- * pelagic_water_at() are short and go on. */
+ * pelagic_water_at() are short and go on. Frames of a sea that is closed stay as it was when it was. */
 PELAGIC_API pelagic_status pelagic_cancel(const pelagic_sea* sea, int cancelled, pelagic_error* error);
 /* Frames keep what they need of it: they may be released later. Null is nothing to close. */
 PELAGIC_API void pelagic_close(pelagic_sea* sea);

@@ -111,7 +111,7 @@ def meter(bpy_scene, scene):
     world = bpy_scene.world
     if world is not None and EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
         stops = exposure_stops(sky_of(scene), scene) + VIEW_STOPS.get(bpy_scene.view_settings.view_transform, 0.0)
-        if scene.camera.position_m[2] < 0.0:
+        if pelagic.is_metered_in_water(scene):
             stops -= BEHIND_GLASS
         bpy_scene.view_settings.exposure = world[EXPOSURE] = stops
 

@@ -343,7 +343,10 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
             continue;
         }
         const float mirrored = shading.fresnel_exact(cosine, 1.0f / n);
-        radiance[i].sea = mirrored * below(d - 2.0f * cosine * normal, kMixed);
+        // A sight that goes steeply up is mirrored by so inclined water upwards, along the glass: level is as good.
+        glm::vec3 inwards = d - 2.0f * cosine * normal;
+        inwards = glm::normalize(glm::vec3(inwards.x, inwards.y, std::min(inwards.z, -1e-3f)));
+        radiance[i].sea = mirrored * below(inwards, kMixed);
         if (mirrored >= 1.0f) continue;
         const float beyond = std::sqrt(std::max(1.0f - n * n * (1.0f - cosine * cosine), 0.0f));
         const glm::vec3 out = glm::normalize(n * d - (n * cosine - beyond) * normal);

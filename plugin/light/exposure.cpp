@@ -40,19 +40,26 @@ constexpr double kBrightestFoam = 1.25;
 // Heights that differ by less than this, as a logarithm, share one table of air, which takes tens of milliseconds.
 constexpr double kSameHeight = 0.1;
 
+constexpr double kLeastHeight_m = 0.1;
+
+// Eyes below this z are metered as in the water.
+double under_from_m(const Scene& scene, const WaterBody& water) {
+    const bool is_open =
+        scene.surface.kind != SurfaceKind::Cage &&
+        (scene.surface.kind != SurfaceKind::Patch || scene.surface.beyond != Beyond::Nothing);
+    if (!is_open || !water.has_body) return -std::numeric_limits<double>::infinity();
+    // Hardly a wave is as deep as two deviations of their height.
+    return -std::max(2.0 * std::sqrt(DirectionalSpectrum(scene.sea, scene.waves.band_gains).m0()),
+                     kLeastHeight_m);
+}
+
 class Meter {
   public:
     Meter(const Scene& scene, const Sky& sky, const Floor* floor)
         : sky_(sky),
           water_(make_water(scene)),
           curvature_per_m_(scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0) {
-        const bool is_open =
-            scene.surface.kind != SurfaceKind::Cage &&
-            (scene.surface.kind != SurfaceKind::Patch || scene.surface.beyond != Beyond::Nothing);
-        // Hardly a wave is as deep as two deviations of their height.
-        if (is_open && water_.has_body)
-            under_m_ = -std::max(2.0 * std::sqrt(DirectionalSpectrum(scene.sea, scene.waves.band_gains).m0()),
-                                 kLeastHeight_m);
+        under_m_ = under_from_m(scene, water_);
         variance_ = static_cast<float>(0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total);
         if (!water_.has_body || scene.sea.depth_file == SeaState{}.depth_file) return;
         if (!floor) made_ = make_floor(scene);
@@ -92,8 +99,6 @@ class Meter {
     bool is_foam_seen() const { return is_foam_seen_; }
 
   private:
-    static constexpr double kLeastHeight_m = 0.1;
-
     // Luminance with and without the sun's reflection.
     struct Seen {
         double whole, calm;
@@ -155,7 +160,7 @@ class Meter {
     glm::dvec2 position_m_{0.0};
     double curvature_per_m_;
     float variance_;
-    double under_m_ = -std::numeric_limits<double>::infinity();  // eyes below it are under water
+    double under_m_;  // eyes below it are under water
     bool is_under_ = false, is_foam_seen_ = false;
     float eye_m_ = 0.0f;
     double height_m_ = 0.0, air_height_m_ = 0.0;
@@ -185,6 +190,10 @@ std::vector<View> metered_views(const Scene& scene) {
         views.push_back(view_at(scene.camera, keys[key].frame));
     }
     return views;
+}
+
+bool is_metered_in_water(const Scene& scene) {
+    return metered_views(scene).front().position_m.z < under_from_m(scene, make_water(scene));
 }
 
 float shot_exposure(const Scene& scene, const Sky& sky, double stops, const Floor* floor) {

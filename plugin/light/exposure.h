@@ -27,4 +27,8 @@ std::vector<View> metered_views(const Scene& scene);
 // shot with a map of depths reads that anew, and throws as make_floor().
 float shot_exposure(const Scene& scene, const Sky& sky, double stops = 0.0, const Floor* floor = nullptr);
 
+// Whether the shot's first metered view is in the water as shot_exposure() has it: not if it is in the waves alone, nor where nothing can be
+// seen from below.
+bool is_metered_in_water(const Scene& scene);
+
 }  // namespace pelagic

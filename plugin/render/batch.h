@@ -37,9 +37,10 @@ struct Batch {
     std::vector<std::uint32_t> triangles;  // by sample
     std::vector<PixelPlace> places;        // by sample; empty where all lie in their pixels' centres
     std::vector<SeaRadiance> radiance;     // by sample
-    std::vector<float> spray;              // by sample: what it hides of the sky; empty where nobody asks
-    std::vector<float> sea_m;              // by sample: how far the sea is; empty where nobody asks
-    std::vector<std::uint8_t> under;       // by sample: it looks through water; empty where none may
+    std::vector<float>
+        veil;  // by sample: what spray and water that climbs the glass hide of the sky; empty where nobody asks
+    std::vector<float> sea_m;         // by sample: how far the sea is; empty where nobody asks
+    std::vector<std::uint8_t> under;  // by sample: it looks through water; empty where none may
     std::vector<double> glass_m;  // by sample: its height above the water at the camera's glass [m]; likewise
     std::vector<std::size_t> climbed;  // which samples look through what climbs the glass, rising
     std::vector<std::size_t> water;    // which samples show water without a surface, rising

@@ -108,10 +108,10 @@ constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(floa
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) +
-                                     sizeof(std::size_t) + 2 * sizeof(std::uint8_t) + 5 * sizeof(T) +
-                                     2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(glm::vec3) +
-                                     sizeof(SeaPoint) + 13 * sizeof(float) +
-                                     (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
+                                     2 * sizeof(std::size_t) + sizeof(double) + sizeof(MeniscusSight) +
+                                     2 * sizeof(std::uint8_t) + 5 * sizeof(T) + 2 * sizeof(glm::vec3) +
+                                     2 * sizeof(float) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     13 * sizeof(float) + (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
 }  // namespace
 

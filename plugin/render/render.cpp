@@ -194,8 +194,7 @@ class RendererOf final : public Impl {
         else
             drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
         view_ = view_of(scene_.camera, pass);
-        may_be_below_ =
-            drawn_.has_below() && glass_heights(view_).lowest_m <= drawn_.grid_options().bounds.height_m;
+        may_be_below_ = drawn_.has_below() && may_be_in_water(view_, drawn_.grid_options().bounds.height_m);
         // Before all of the lens the air is that before its middle.
         const double height_m = view_at(scene_.camera, pass.frame).position_m.z;
         if (air_.empty() || height_m != air_height_m_) air_ = sea_.air_before(height_m);
@@ -408,7 +407,8 @@ class RendererOf final : public Impl {
     void light_sky(int first_row) {
         const LightingChoice& lighting = options_.lighting;
         const bool has_sky = (lighting.sky || lighting.sun) && !options_.alpha, has_spray = !spray_.empty();
-        batch_.spray.assign(has_spray && options_.alpha ? batch_.triangles.size() : 0, 0.0f);
+        const bool has_veil = options_.alpha && (has_spray || !batch_.climbed.empty());
+        batch_.veil.assign(has_veil ? batch_.triangles.size() : 0, 0.0f);
         if (!has_sky && !has_spray) return;
         in_parallel(batch_.triangles.size(), [&](std::size_t i) {
             if (is_sea(i)) return;
@@ -421,7 +421,7 @@ class RendererOf final : public Impl {
                                 pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
             if (!has_spray) return;
             const float left = see_through_spray(spray_, glm::vec3(direction), {}, batch_.radiance[i]);
-            if (options_.alpha) batch_.spray[i] = 1.0f - left;
+            if (options_.alpha) batch_.veil[i] = 1.0f - left;
         });
     }
 
@@ -457,9 +457,13 @@ class RendererOf final : public Impl {
                               static_cast<float>(batch_.glass_m[sample])});
         batch_.lit.resize(sights.size());
         sea_.light_meniscus(eye(), glm::vec3(view_.forward), sights, batch_.lit);
-        for (std::size_t i = 0; i < sights.size(); ++i)
-            batch_.radiance[batch_.climbed[i]] = mixed(batch_.radiance[batch_.climbed[i]], batch_.lit[i],
-                                                       meniscus_share(batch_.glass_m[batch_.climbed[i]]));
+        for (std::size_t i = 0; i < sights.size(); ++i) {
+            const std::size_t sample = batch_.climbed[i];
+            const float share = meniscus_share(batch_.glass_m[sample]);
+            batch_.radiance[sample] = mixed(batch_.radiance[sample], batch_.lit[i], share);
+            if (!batch_.veil.empty() && !is_sea(sample))
+                batch_.veil[sample] += share * (1.0f - batch_.veil[sample]);
+        }
     }
 
     // Over what the samples of the rows show, from the farthest on.
@@ -501,8 +505,8 @@ class RendererOf final : public Impl {
         for (glm::vec3* layer : {&seen.sun, &seen.sky, &seen.sea, &seen.foam, &seen.air})
             *layer *= 1.0f - hidden;
         seen.air += hidden * drop.radiance;
-        if (!batch_.spray.empty() && batch_.triangles[sample] == Rasteriser::kNone)
-            batch_.spray[sample] += hidden * (1.0f - batch_.spray[sample]);
+        if (!batch_.veil.empty() && batch_.triangles[sample] == Rasteriser::kNone)
+            batch_.veil[sample] += hidden * (1.0f - batch_.veil[sample]);
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
@@ -591,7 +595,7 @@ class RendererOf final : public Impl {
                 SeaRadiance sum;
                 glm::vec3 of_sky(0.0f);
                 int of_sea = 0;
-                float of_spray = 0.0f;  // before the sky
+                float of_veil = 0.0f;  // before the sky
                 for (int y = 0; y < n; ++y)
                     for (int i = 0; i < n; ++i) {
                         const std::size_t at = sample_width * (row * n + y) + x * n + i;
@@ -605,7 +609,7 @@ class RendererOf final : public Impl {
                             ++of_sea;
                         else
                             of_sky += radiance_of(sample);
-                        if (!batch_.spray.empty()) of_spray += batch_.spray[at];
+                        if (!batch_.veil.empty()) of_veil += batch_.veil[at];
                     }
                 SeaRadiance& pixel = picture.layers[to + x];
                 pixel.sun += sum.sun * share;
@@ -613,7 +617,7 @@ class RendererOf final : public Impl {
                 pixel.sea += sum.sea * share;
                 pixel.foam += sum.foam * share;
                 pixel.air += sum.air * share;
-                if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(of_sea) + of_spray) * share;
+                if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(of_sea) + of_veil) * share;
                 if (has_skyline && of_sea > 0 && of_sea < n * n)
                     skyline[row].push_back({.pixel = to + x,
                                             .sky = 1.0f - static_cast<float>(of_sea) * share,

@@ -32,6 +32,10 @@ GlassHeights glass_heights(const View& view) {
     return {lowest.z, highest.z};
 }
 
+bool may_be_in_water(const View& view, double highest_m) {
+    return glass_heights(view).lowest_m <= highest_m + kMeniscus_m + kMeniscusBlur_m;
+}
+
 template <class T>
 Waterline::Waterline(const View& view, double highest_m, glm::dvec2 origin_m,
                      std::span<const glm::vec<3, T>> position_m, std::span<const std::uint32_t> triangles)

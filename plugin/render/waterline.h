@@ -1,4 +1,5 @@
-// Which samples of a picture look through water: those whose place on the camera's front glass is under the surface. So a camera that
+// Which samples of a picture look through water: those whose place on the camera's front glass is under the surface, or where water climbs
+// it (core/lighting/meniscus.h). So a camera that
 // is half under shows both, and the line between follows the waves.
 #pragma once
 
@@ -20,6 +21,8 @@ struct GlassHeights {
     double lowest_m, highest_m;
 };
 GlassHeights glass_heights(const View& view);
+// Whether a place of the glass may be in the water, or where water climbs it, by how high waves are at most [m].
+bool may_be_in_water(const View& view, double highest_m);
 
 class Waterline {
   public:

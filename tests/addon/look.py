@@ -212,6 +212,14 @@ with checking("stops that an artist or a preset adds brighten the view, a meter'
     camera.location.z, before = -6.0, camera.location.z
     bpy.context.view_layer.update()
     assert math.isclose(view.exposure, above - 2.0 * math.log2(1.34), abs_tol=1e-3), (view.exposure, above)
+    # Not where nothing is seen from below, nor in the waves alone.
+    change(obj, water__body=False)
+    bpy.context.view_layer.update()
+    assert math.isclose(view.exposure, above, abs_tol=1e-3), (view.exposure, above)
+    change(obj, water__body=True)
+    camera.location.z = -0.05
+    bpy.context.view_layer.update()
+    assert math.isclose(view.exposure, above, abs_tol=1e-3), (view.exposure, above)
     camera.location.z = before
     bpy.context.view_layer.update()
     for frame, stops in ((1, 0.0), (11, -2.0)):

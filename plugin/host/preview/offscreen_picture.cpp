@@ -98,13 +98,15 @@ constexpr std::size_t kPointBytes = 3 * sizeof(glm::vec2) + 2 * sizeof(float) + 
 // [bytes/pixel] of the driver's pictures of five terms, the points and their depth; of what is read back from it.
 constexpr std::size_t kDrawnBytes = 8 * sizeof(glm::vec4) + sizeof(float),
                       kReadBytes = sizeof(SeaRadiance) + 1 + sizeof(glm::vec4);
+// [bytes/pixel] of those that look through water on the glass, which may be all of a long lens; their vectors double as they grow.
+constexpr std::size_t kClimbedBytes = 2 * (sizeof(std::size_t) + sizeof(MeniscusSight)) + sizeof(SeaRadiance);
 // Mesa's driver in software, with its compiler and the programs of this sea.
 constexpr std::size_t kDriverBytes = std::size_t{64} << 20;
 
 // Whether some of the picture may look through water, and some through air: both are drawn.
 bool is_half_below(const DrawnSea& drawn, const View& view) {
     return drawn.has_below() && !drawn.is_below(view) &&
-           glass_heights(view).lowest_m <= drawn.grid_options().bounds.height_m;
+           may_be_in_water(view, drawn.grid_options().bounds.height_m);
 }
 
 std::string smaller() {
@@ -135,9 +137,9 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     const glm::ivec2 size = planned.scene.camera.resolution;
     need.add("the picture",
              static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
-                 (kDrawnBytes +
-                  (is_half_below(*planned.drawn, view_at(planned.scene.camera, planned.frame)) ? 2 : 1) *
-                      kReadBytes),
+                 (kDrawnBytes + (is_half_below(*planned.drawn, view_at(planned.scene.camera, planned.frame))
+                                     ? 2 * kReadBytes + kClimbedBytes
+                                     : kReadBytes)),
              "ask for a smaller picture (--size)");
     const std::size_t points = planned.mesh.points.rest_m.size();
     need.add("the camera's grid of points", points * kPointBytes, smaller());

@@ -154,7 +154,8 @@ void add_sky(py::module_& module) {
             py::arg("scene"), py::arg("stops") = 0.0,
             "For pictures of a scene in this light, which should be its own: radiance · exposure = 0.18 is middle "
             "grey. Metered from the light and a mean sea in the scene's camera, at its keys where it has any; stops "
-            "brighter.")
+            "brighter. A camera in the water counts as behind its glass, in air, where light from the water is 1/1.34² "
+            "(is_metered_in_water()).")
         .def(
             "image", &image_of, py::arg("width"),
             "float32 (width/2, width, 3): the sky without the sun's disc as a lat-long picture, rows from the "
@@ -335,6 +336,15 @@ void add_light(py::module_& module) {
             py::arg("distance_m"),
             "The part of the light of what is this far away [m] in a body of water that an eye in it sees, (r, g, b), linear "
             "Rec. 709. ValueError for water without a body.");
+    module.def(
+        "is_metered_in_water",
+        [](const Scene& scene) {
+            require_valid(scene);
+            return is_metered_in_water(scene);
+        },
+        py::arg("scene"),
+        "Whether the scene's camera, at its first key, is in the water as Sky.exposure() has it: not in the waves alone, nor "
+        "where nothing is seen from below.");
     module.def(
         "water_radiance", &radiance_in_water, py::arg("sky"), py::arg("water"), py::arg("directions"),
         py::arg("depth_m"), py::kw_only(), py::arg("out") = py::none(),

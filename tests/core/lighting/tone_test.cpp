@@ -151,16 +151,18 @@ TEST(Tone, HasSomeOfEachComponent) {
 }
 
 // The glitter of suns at 2 … 10° and the sky within 40° of them, from dark to four and a half stops above middle grey: half of the saturation
-// to four of them, and a little less above, where colours go to white.
+// to three and a half of them, and a little less above, where colours go to white.
 TEST(Tone, KeepsTheColoursOfLowSuns) {
     double least_kept = 1.0, least_kept_brightest = 1.0, most_turned_deg = 0.0;
+    int judged = 0;
     const auto judge = [&](glm::dvec3 colour) {
         const glm::dvec3 unit = colour / std::max({colour.x, colour.y, colour.z});
         if (saturation(unit) < 0.5) return;  // the display's encoding alone takes half of a pale colour's
-        for (double strength = 1e-2; strength < 4.0; strength *= 1.5) {
+        ++judged;
+        for (double strength = 1e-2; strength < 22.7 * 0.18; strength *= 1.2) {
             const glm::vec3 shown = display_colour(glm::vec3(unit * strength), 1.0f);
             const glm::dvec3 light(light_of(shown.x), light_of(shown.y), light_of(shown.z));
-            double& least = strength < 16.0 * 0.18 ? least_kept : least_kept_brightest;
+            double& least = strength < 11.3 * 0.18 ? least_kept : least_kept_brightest;
             least = std::min(least, saturation(glm::dvec3(shown)) / saturation(unit));
             most_turned_deg = std::max(most_turned_deg, std::abs(hue_deg(light) - hue_deg(unit)));
         }
@@ -179,6 +181,7 @@ TEST(Tone, KeepsTheColoursOfLowSuns) {
     RecordProperty("least_saturation_kept", std::to_string(least_kept));
     RecordProperty("least_saturation_kept_brightest", std::to_string(least_kept_brightest));
     RecordProperty("most_turned_deg", std::to_string(most_turned_deg));
+    EXPECT_GE(judged, 10);
     EXPECT_GE(least_kept, 0.5);
     EXPECT_GE(least_kept_brightest, 0.4);
     EXPECT_LE(most_turned_deg, 5.0);

@@ -262,6 +262,29 @@ TEST(FromBelow, WaterClimbsTheGlass) {
     }
 }
 
+// Before the sky, too: it hides as much as it shows, so that a picture with alpha lies over any other.
+TEST(FromBelow, WaterThatClimbsTheGlassHasAlpha) {
+    constexpr double kHeight_m = 0.002;
+    Scene scene = level({0.0, 0.0, kHeight_m}, {0.0, 1.0, 0.5});  // the line lies before the sky
+    scene.camera.fov_deg = 6.0;
+    scene.camera.resolution = {20, 400};
+    const Picture picture = picture_under(scene, uniform_sky());
+    ASSERT_FALSE(picture.alpha.empty());
+    float before = 0.0f;
+    int between = 0;
+    for (std::size_t row = 0; row < 400; ++row) {
+        const std::size_t at = row * 20 + 10;
+        const float alpha = picture.alpha[at];
+        EXPECT_GE(alpha, before - 1e-6f) << row;
+        between += alpha > 0.05f && alpha < 0.95f;
+        const SeaRadiance& light = picture.layers[at];
+        EXPECT_LE((light.sky + light.sea + light.sun + light.air).y, 1.01f * alpha * kSkyRadiance) << row;
+        before = alpha;
+    }
+    EXPECT_EQ(before, 1.0f);
+    EXPECT_GT(between, 2) << "it begins with an edge";
+}
+
 // Waves cross the glass, too: some columns have more water than others.
 TEST(FromBelow, TheLineFollowsTheWaves) {
     Scene scene = with_body(sea_of(WaveModel::Fft));

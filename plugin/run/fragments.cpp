@@ -77,14 +77,23 @@ void read_fragment(const fs::path& record, Fragment fragment, const std::string&
     if (!reading.is_blocked) found.read.push_back(std::move(fragment));
 }
 
-// As they were written: of a frame that several have the last counts.
-std::vector<Fragment> in_order(std::vector<Fragment> fragments) {
+// In the order in which they were written: of a frame that several have the last counts.
+Frames read_fragments(const fs::path& record, std::vector<Fragment> fragments, RecordsReading& found,
+                      const std::atomic<bool>* cancel) {
+    Frames frames;
+    if (fragments.empty()) return frames;
+    std::set<int> ignored;
+    const std::string version = read_frames(
+                                    record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
+                                    .version;
     for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
     std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
         return std::tie(a.identity.changed_s, a.identity.changed_ns, a.file) <
                std::tie(b.identity.changed_s, b.identity.changed_ns, b.file);
     });
-    return fragments;
+    for (const Fragment& fragment : fragments)
+        read_fragment(record, fragment, version, frames, found, cancel);
+    return frames;
 }
 
 }  // namespace
@@ -120,16 +129,7 @@ std::string new_fragment_id() {
 RecordsReading read_records(const fs::path& record, const std::function<void(int, FrameRecord)>& take,
                             const std::atomic<bool>* cancel) {
     RecordsReading found;
-    std::set<int> ignored;
-    std::vector<Fragment> fragments = fragments_of(record);
-    Frames theirs;
-    if (!fragments.empty()) {
-        const std::string version = read_frames(
-                                        record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
-                                        .version;
-        for (const Fragment& fragment : in_order(std::move(fragments)))
-            read_fragment(record, fragment, version, theirs, found, cancel);
-    }
+    Frames theirs = read_fragments(record, fragments_of(record), found, cancel);
     auto next = theirs.begin();
     static_cast<RecordReading&>(found) = read_record(
         record,
@@ -156,13 +156,11 @@ RecordsReading read_some(const fs::path& record, std::span<const int> frames,
     };
     if (frames.size() > kFewFrames) return read_records(record, take_numbered, cancel);
     RecordsReading found;
-    Frames theirs;
     const auto is_among = [&](int first, int last) {
         const auto at = std::lower_bound(frames.begin(), frames.end(), first);
         return at != frames.end() && *at <= last;
     };
     // Before the record: one that is taken into it meanwhile is seen there.
-    std::set<int> ignored;
     std::vector<Fragment> wanted;
     for (Fragment& fragment : fragments_of(record)) {
         if (fragment.frames == 0) continue;
@@ -171,13 +169,7 @@ RecordsReading read_some(const fs::path& record, std::span<const int> frames,
                 numbers.insert(numbers.end(), number);
         if (is_among(fragment.first, fragment.last)) wanted.push_back(std::move(fragment));
     }
-    if (!wanted.empty()) {
-        const std::string version = read_frames(
-                                        record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
-                                        .version;
-        for (const Fragment& fragment : in_order(std::move(wanted)))
-            read_fragment(record, fragment, version, theirs, found, cancel);
-    }
+    Frames theirs = read_fragments(record, std::move(wanted), found, cancel);
     Frames read;
     static_cast<RecordReading&>(found) = read_frames(
         record, frames, [&](int number, FrameRecord frame) { read[number] = std::move(frame); }, numbers,

@@ -572,9 +572,11 @@ bool PreparedQuery<T>::hide_vessels(const Call& call, Work& work) const {
             glm::dvec3 sum = hidden(blend.lower);
             if (const double t = static_cast<double>(blend.t); t > 0.0)
                 sum += t * (2.0 - t) * (hidden(blend.lower + 1) - sum);
-            for (int m = 0; m < 3; ++m)
-                moments[static_cast<std::size_t>(m)][i] +=
-                    static_cast<T>(m == 1 ? sum[m] : std::max(sum[m], 0.0));
+            // A covariance, whatever rounding and blending leave.
+            const double xx = std::max(sum.x, 0.0), yy = std::max(sum.z, 0.0), most = std::sqrt(xx * yy);
+            moments[0][i] += static_cast<T>(xx);
+            moments[1][i] += static_cast<T>(std::clamp(sum.y, -most, most));
+            moments[2][i] += static_cast<T>(yy);
         }
     }
     return any;

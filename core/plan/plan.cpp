@@ -231,6 +231,7 @@ void add_grids(Plan& plan, int cascade_index) {
         cascade.grid_of_level[level] = static_cast<int>(cascade.grids.size());
         cascade.grids.push_back(std::move(grid));
     }
+    // Of the sea's own cascades that would save as much, but change their bits.
     if (cascade.vessel)
         for (Grid& grid : cascade.grids) {
             for (const AlongX& along : kAlongX)
@@ -602,8 +603,8 @@ long Plan::lines_per_frame() const {
 
 // The seas of its keys, and that of a frame, which changes: it has its modes' rates as well.
 static std::size_t weather_bytes(const Plan& plan) {
-    std::set<const PreparedScene*> seas;
-    for (const Weather::Key& key : plan.from->weather->keys) seas.insert(key.sea.get());
+    std::set<std::size_t> seas;
+    for (const Weather::Key& key : plan.from->weather->keys) seas.insert(key.waves);
     Plan one = plan;
     one.from = plan.from->weather->keys.front().sea;
     std::size_t rates = 0;
@@ -611,6 +612,7 @@ static std::size_t weather_bytes(const Plan& plan) {
         if (cascade.moves())
             rates += lattice_modes(cascade.amplitude_radius()) * 4 *
                      (plan.knobs.double_precision ? sizeof(double) : sizeof(float));
+    if (seas.size() == 1) return one.sea_bytes();  // that of all frames
     return (seas.size() + 2) * one.sea_bytes() +
            2 * rates;  // a frame's sea is made while the one before is there
 }

@@ -22,35 +22,40 @@ double parabola(double u) {
 }
 
 constexpr int kBands = 8;  // of modes, by their size
-// The square slopes of Kelvin's waves behind a steady course, summed across it, by the bands of their size: wave resistance's integral,
-// ∫ |A|² cos³θ dθ (Havelock 1934), times k².
+// The square slopes of Kelvin's waves behind a steady course, summed across it, by the bands of their size. η = ∫ A e^{i(kx x + ky y)} dθ with
+// Havelock's (1934) A and k = k₀/cos²θ; across the course ∫ η² dy = π ∫ |A|² dθ/(∂ky/∂θ), ∂ky/∂θ = k₀ (1 + sin²θ)/cos³θ, and slopes have
+// k² more. To a factor that all speeds share.
 std::array<double, kBands> square_slopes(const VesselPlan& plan, double speed_mps) {
-    constexpr int kAngles = 400;
+    constexpr int kSteps = 400;
     std::array<double, kBands> bands{};
     const double k0 = kGravity / (speed_mps * speed_mps), end = kTwoPi * VesselPlan::kRadius / plan.size_m;
     if (!(k0 < end)) return bands;
-    const double last = std::acos(std::sqrt(k0 / end));
-    for (int i = 0; i < kAngles; ++i) {
-        const double angle = last * (i + 0.5) / kAngles, cosine = std::cos(angle), k = k0 / (cosine * cosine);
+    // By q of 1/cosθ = 1 + q²: even steps of it are fine where k is large.
+    const double last = std::sqrt(std::sqrt(end / k0) - 1.0);
+    for (int i = 0; i < kSteps; ++i) {
+        const double q = last * (i + 0.5) / kSteps, secant = 1.0 + q * q, cosine = 1.0 / secant,
+                     sine = std::sqrt(1.0 - cosine * cosine), k = k0 * secant * secant;
+        const double angle = 2.0 * last / kSteps / (secant * std::sqrt(q * q + 2.0));
         const double hull = below_water_m(k, plan.draught_m) * parabola(0.5 * plan.length_m * k * cosine) *
-                            parabola(0.5 * plan.beam_m * k * std::sin(angle));
-        const double amplitude = speed_mps * k * k * hull * k;
-        bands[static_cast<std::size_t>(kBands * k / end)] +=
-            last * amplitude * amplitude * std::pow(cosine, 3);
+                            parabola(0.5 * plan.beam_m * k * sine);
+        const double slope = speed_mps * k * k * hull * k;
+        // Rounding may put the last one at the end.
+        const auto band = std::min(static_cast<int>(kBands * k / end), kBands - 1);
+        bands[static_cast<std::size_t>(band)] +=
+            angle * slope * slope * cosine * cosine * cosine / (1.0 + sine * sine);
     }
     return bands;
 }
 
-// The fewest modes that leave out no more than a thousandth of the square slopes, at any speed between its least and its greatest.
-int radius_of(const VesselPlan& plan) {
+// The fewest modes that leave out no more than a thousandth of the square slopes at its greatest speed, at whatever speed it has on its way.
+int radius_of(const VesselPlan& plan, double least_mps) {
     constexpr double kLost = 1e-3;
-    constexpr int kSpeeds = 4, kFewest = kBands / 2;
-    const double slowest_mps = plan.path.slowest_mps();
+    constexpr int kSpeeds = 64, kFewest = kBands / 2;
+    const double from_mps = std::max(plan.path.slowest_mps(), least_mps);
     double all = 0.0;
     std::array<double, kBands> most{};
     for (int i = 0; i < kSpeeds; ++i) {
-        const double speed_mps = std::lerp(plan.speed_mps, slowest_mps, i / (kSpeeds - 1.0));
-        if (!(speed_mps > 0.0)) continue;
+        const double speed_mps = std::lerp(plan.speed_mps, from_mps, i / (kSpeeds - 1.0));
         const std::array<double, kBands> bands = square_slopes(plan, speed_mps);
         if (i == 0) all = std::reduce(bands.begin(), bands.end());
         double lost = 0.0;
@@ -58,6 +63,7 @@ int radius_of(const VesselPlan& plan) {
             lost += bands[static_cast<std::size_t>(band)];
             most[static_cast<std::size_t>(band)] = std::max(most[static_cast<std::size_t>(band)], lost);
         }
+        if (from_mps == plan.speed_mps) break;
     }
     int bands = kBands;
     while (bands > kFewest && most[static_cast<std::size_t>(bands) - 1] <= kLost * all) --bands;
@@ -91,7 +97,7 @@ std::size_t VesselPlan::bytes(int radius) {
 }
 
 // Its waves are as long as the tile's shortest.
-double slowest_mps(const Vessel& vessel) {
+double least_wake_mps(const Vessel& vessel) {
     return std::sqrt(kGravity * kLeastLengths * vessel.length_m / VesselPlan::kRadius / kTwoPi);
 }
 
@@ -108,13 +114,13 @@ std::vector<VesselPlan> plan_vessels(const Scene& scene) {
         plan.speed_mps = plan.path.fastest_mps();
         // Forty of its waves: of those that it drags along, or, where these are long, of those that a hull of its length makes.
         constexpr double kWaves = 40.0, kLengths = 1.5;
-        if (!(plan.speed_mps > slowest_mps(vessel)) || !(plan.waves > 0.0)) continue;
+        if (!(plan.speed_mps > least_wake_mps(vessel)) || !(plan.waves > 0.0)) continue;
         const double transverse_m = kTwoPi * plan.speed_mps * plan.speed_mps / kGravity;
         plan.size_m = std::max(kWaves * std::min(transverse_m, kLengths * plan.length_m),
                                kLeastLengths * plan.length_m);
         // Energy is left behind at half the vessel's speed or more.
         constexpr double kSides = 1.5;
-        plan.radius = radius_of(plan);
+        plan.radius = radius_of(plan, least_wake_mps(vessel));
         plan.block_s = kSides * plan.size_m / plan.speed_mps / VesselPlan::kBlocks;
         plans.push_back(std::move(plan));
     }

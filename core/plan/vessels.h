@@ -23,7 +23,8 @@ struct VesselPlan {
 
     static constexpr int kRadius = 256;    // of modes at most: the shortest waves are a 256th of the tile
     static constexpr int kBlocks = 32;     // that are remembered
-    static constexpr int kMostSteps = 16;  // of a block where the vessel turns: a power of 2
+    static constexpr int kMostSteps = 16;  // of a block where the vessel turns
+    static_assert(std::has_single_bit(static_cast<unsigned>(kMostSteps)));
     static constexpr int kStepLengths = std::bit_width(static_cast<unsigned>(kMostSteps));
     static constexpr double kEdge = 0.06;  // of the side, at each border: where waves fade to none
 
@@ -40,7 +41,7 @@ struct VesselPlan {
 double below_water_m(double k, double draught_m);
 
 // Slower ones make waves that are too short for a tile that holds the hull.
-double slowest_mps(const Vessel& vessel);
+double least_wake_mps(const Vessel& vessel);
 // Those that make waves.
 std::vector<VesselPlan> plan_vessels(const Scene& scene);
 

@@ -1,7 +1,8 @@
 // The turbulent wake of a vessel: a strip behind its stern where foam lies and short waves are damped, and the foam of its bow. All of it
 // by eye but for its form: as wide as (1 + x/x₀)^(1/5) at the way x from the stern (what is recalled of Milgram and others 1993;
 // self-propelled bodies are said to have that and 1/4), foam that fades with its age, in a few seconds where it breaks and in a minute and a half what
-// the propeller beat in. A function of the path and the time alone.
+// the propeller beat in. A function of the path and the time alone. Only the nearest piece of the path counts: where a vessel crosses its
+// own wake, the older one ends at the line between the two.
 #pragma once
 
 #include <glm/vec2.hpp>

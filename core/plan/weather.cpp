@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "core/plan/effects.h"
+#include "core/scene/canonical.h"
+#include "core/scene/keys.h"
 #include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 
@@ -111,11 +114,13 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     for (const KeyedNumber& number : scene.keyed)
         weather.is_smooth |= is_of_sea(number) && number.keys.interpolation == CameraInterpolation::Smooth;
     std::string before;
+    std::map<std::string, std::size_t> first_with;  // these waves
     for (const int frame : frames_of_sea(scene)) {
         std::string numbers = numbers_text(scene, frame);
-        weather.keys.push_back(
-            {frame, scene.shot.time_s(frame),
-             numbers == before ? weather.keys.back().sea : prepare(scene_at(scene, frame))});
+        const auto sea = numbers == before ? weather.keys.back().sea : prepare(scene_at(scene, frame));
+        const auto found =
+            first_with.try_emplace(canonical(sea->scene, key_parts(KeyPart::Waves)), weather.keys.size());
+        weather.keys.push_back({frame, scene.shot.time_s(frame), sea, found.first->second});
         before = std::move(numbers);
     }
     std::vector<DirectionalSpectrum::Part> parts;

@@ -25,7 +25,8 @@ struct Weather {
         int frame;
         double time_s;
         std::shared_ptr<const PreparedScene>
-            sea;  // of plain numbers; keys that follow each other and are alike have one
+            sea;            // of plain numbers; keys that follow each other and are alike have one
+        std::size_t waves;  // the first key with the same waves, whatever foam and gusts are
     };
     std::vector<Key> keys;  // by rising time
     bool is_smooth = false;

@@ -222,7 +222,8 @@ std::vector<std::string> vessel_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     for (std::size_t i = 0; i < scene.waves.vessels.size(); ++i) {
         const Vessel& vessel = scene.waves.vessels[i];
-        const double fastest_mps = path_of(scene.shot, vessel).fastest_mps(), least_mps = slowest_mps(vessel);
+        const double fastest_mps = path_of(scene.shot, vessel).fastest_mps(),
+                     least_mps = least_wake_mps(vessel);
         if (fastest_mps > least_mps) continue;
         warnings.push_back("waves.vessels[" + std::to_string(i) + "].path goes at up to " +
                            rough_text(fastest_mps) + " m/s, too slow for a wake: a hull of " +
@@ -287,7 +288,6 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 
 namespace {
 
-// Of a sea that changes: those of its keys, and keys between which it changes faster than seas do.
 // Of one sea, whatever sails on it.
 std::vector<std::string> still_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
@@ -299,6 +299,7 @@ std::vector<std::string> still_warnings(const PreparedScene& prepared) {
     return warnings;
 }
 
+// Of a sea that changes: those of its keys, and keys between which it changes faster than seas do.
 std::vector<std::string> weather_warnings(const Weather& weather) {
     constexpr double kPeriods =
         10.0;  // of the longest peak: 6 % of the water's speed is then the amplitudes' own change
@@ -308,10 +309,7 @@ std::vector<std::string> weather_warnings(const Weather& weather) {
             warnings.push_back("at frame " + std::to_string(key.frame) + ' ' + warning);
     for (std::size_t i = 0; i + 1 < weather.keys.size(); ++i) {
         const Weather::Key &key = weather.keys[i], &next = weather.keys[i + 1];
-        const auto waves = [](const Weather::Key& of) {
-            return canonical(of.sea->scene, key_parts(KeyPart::Waves));
-        };
-        if (waves(key) == waves(next)) continue;
+        if (key.waves == next.waves) continue;
         double period_s = 0.0;
         for (const DirectionalSpectrum* of : {&key.sea->spectrum, &next.sea->spectrum})
             if (!of->empty())

@@ -64,7 +64,7 @@ Turned<T> turned_by(double angle_rad) {
 }
 
 // The derivatives that a field's columns do for.
-FieldSet along_x(const Grid& grid, Field field) {
+FieldSet made_from(const Grid& grid, Field field) {
     FieldSet derivatives;
     for (const AlongX& along : kAlongX)
         if (along.of == field) derivatives[index(along.derivative)] = grid.along_x[index(along.derivative)];
@@ -206,7 +206,7 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     const Plan& plan = sea_->plan();
     for (const Rows& rows : rows_)
         if (const Grid& grid = plan.cascades[rows.cascade].grids[rows.grid]; rows.first == grid.first_row)
-            executed_transforms_ += 1 + static_cast<long>(along_x(grid, rows.field).count());
+            executed_transforms_ += 1 + static_cast<long>(made_from(grid, rows.field).count());
     for (int c = static_cast<int>(plan.sea_cascades()); c < static_cast<int>(plan.cascades.size()); ++c)
         for (int g = 0; g < static_cast<int>(plan.cascades[c].grids.size()); ++g) fade(c, g);
     squares_.assign(vessels_.size(), {});
@@ -498,7 +498,7 @@ long Frame<T>::transform_rows(const Rows& rows) {
     const std::size_t stride = line_stride<T>(n);
     Scratch& at = scratch();
     const T step = static_cast<T>(kTwoPi / sea_->plan().cascades[rows.cascade].size_m);
-    const FieldSet derivatives = along_x(grid, rows.field);
+    const FieldSet derivatives = made_from(grid, rows.field);
     long lines = 0;
     const auto transform = [&](const T* from, T* row, int y) {
         ++lines;

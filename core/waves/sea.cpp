@@ -296,8 +296,10 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
 
     Progress progress(watch, plan_);
     std::vector<QueryStatistics> breaking = statistics_;  // through the breaking levels
+    std::vector<Cascade<T>> cascades;
     for (int c = 0; c < static_cast<int>(plan_.cascades.size()); ++c)
-        cascades_.push_back(build(c, breaking, progress));
+        cascades.push_back(build(c, breaking, progress));
+    cascades_ = std::make_shared<const std::vector<Cascade<T>>>(std::move(cascades));
     for (std::size_t q = 0; q < statistics_.size(); ++q) {
         if (plan_.queries[q].breaking_levels.empty()) continue;
         QueryStatistics& to = statistics_[q];
@@ -321,7 +323,7 @@ void Sea<T>::raise_heroes() {
         const double time_s = hero_time_s(scene, hero);
         LocalWaves there = local_waves(trains_, place_m, time_s, ends);
         for (int c = 0; c < static_cast<int>(plan_.sea_cascades()); ++c)
-            there += local_waves(cascades_[c], plan_.cascades[c], tiling_key(seed, c), plan_.lean_rad,
+            there += local_waves((*cascades_)[c], plan_.cascades[c], tiling_key(seed, c), plan_.lean_rad,
                                  dispersion, place_m, time_s, ends);
         around.push_back(there);
     }
@@ -351,11 +353,23 @@ Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s
             made.resolved_next.push_back(between(a.resolved_next[i], b.resolved_next[i], share));
         ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share);
     }
-    for (std::size_t c = 0; c < plan_.cascades.size(); ++c) {
-        cascades_.push_back(
-            blended(first.cascades_[c], second.cascades_[c], share, rate_per_s, plan_.cascades[c].moves()));
+    for (std::size_t c = 0; c < plan_.cascades.size(); ++c)
         expected_m0_.push_back((1.0 - share) * first.expected_m0_[c] + share * second.expected_m0_[c]);
+    if (first.cascades_ == second.cascades_) {
+        cascades_ = first.cascades_;
+        return;
     }
+    std::vector<Cascade<T>> cascades;
+    for (std::size_t c = 0; c < plan_.cascades.size(); ++c)
+        cascades.push_back(blended((*first.cascades_)[c], (*second.cascades_)[c], share, rate_per_s,
+                                   plan_.cascades[c].moves()));
+    cascades_ = std::make_shared<const std::vector<Cascade<T>>>(std::move(cascades));
+}
+
+template <class T>
+Sea<T>::Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from) : Sea(waves) {
+    plan_.from = std::move(from);
+    whitecaps_ = whitecaps(foam_life(plan_));
 }
 
 template <class T>

@@ -77,13 +77,15 @@ class Sea {
     // the sea. Throws BuildCancelled. `table`: of the plan's spectrum, from another sea of the same scene; null: made.
     // One sea: std::invalid_argument for the plan of a shot with weather, whose sea is a SeaOverTime's (core/waves/sea_over_time.h).
     explicit Sea(Plan, const BuildWatch& watch = {}, std::shared_ptr<const SpectrumTable> table = nullptr);
+    // Of a scene that has the same waves: they are shared.
+    Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from);
     // Between two of one plan, which `from` takes the place of the scene of: energies in shares, that of `second` with its rate [1/s].
     Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
         std::shared_ptr<const PreparedScene> from);
 
     const Plan& plan() const { return plan_; }
     const std::shared_ptr<const SpectrumTable>& spectrum_table() const { return table_; }
-    std::span<const Cascade<T>> cascades() const { return cascades_; }
+    std::span<const Cascade<T>> cascades() const { return *cascades_; }
     const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
     double loop_s() const { return loop_s_; }
     // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
@@ -124,7 +126,7 @@ class Sea {
     double loop_s_;
     SpectralMoments total_;
     Whitecaps whitecaps_;
-    std::vector<Cascade<T>> cascades_;
+    std::shared_ptr<const std::vector<Cascade<T>>> cascades_;
     Trains<T> trains_;
     std::vector<QueryStatistics> statistics_;
     std::vector<EllipseMoments> ellipses_;

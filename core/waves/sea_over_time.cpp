@@ -21,6 +21,10 @@ SeaOverTime<T>::SeaOverTime(Plan plan, const BuildWatch& watch, const SeaOverTim
             seas_.push_back(seas_.back());
             continue;
         }
+        if (keys[i].waves < i) {
+            seas_.push_back(std::make_shared<const Sea<T>>(*seas_[keys[i].waves], keys[i].sea));
+            continue;
+        }
         BuildWatch part{.progress = {}, .cancel = watch.cancel};
         if (watch.progress)
             part.progress = [&, i](double done) {

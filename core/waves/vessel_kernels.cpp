@@ -64,7 +64,7 @@ HWY_INLINE N Parabola(N u, Complex turn) {
 }
 
 HWY_INLINE N Displaced(const HullArgs& hull, N kx, N ky, std::size_t i) {
-    const N x(hull.along_x), y(hull.along_y);
+    const N x(hull.ahead_x), y(hull.ahead_y);
     return At(hull.depth, i) * Parabola((kx * x + ky * y) * N(hull.half_length_m), At(hull.bow, i)) *
            Parabola((ky * x - kx * y) * N(hull.half_beam_m), At(hull.board, i));
 }

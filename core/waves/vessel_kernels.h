@@ -15,7 +15,7 @@ struct PlanePhase {
 
 // What a hull displaces at a mode: Ŝ, of its dimensions and heading.
 struct HullArgs {
-    float along_x, along_y, half_length_m, half_beam_m;
+    float ahead_x, ahead_y, half_length_m, half_beam_m;
     const float* depth;     // what the draught leaves, with all that is the same of all modes
     PlanePhase bow, board;  // e^{ik·a} to the bow and to the side
 };

@@ -18,6 +18,7 @@ namespace pelagic {
 namespace {
 
 constexpr int kTaskColumns = 16;
+constexpr double kOff = 0.02;  // of the shortest wave: how far a straight step may be off its path
 
 double rise(double x) {
     const double t = std::clamp(x, 0.0, 1.0);
@@ -107,7 +108,7 @@ const float* VesselWaves::ky_of(int mx) const {
     return ky_.data() + (radius_ - 1 - half_height(radius_, mx));
 }
 
-// So many that no straight one is off by more than a part of the shortest wave.
+// So many that no straight one is off by more than a part of the shortest wave that any vessel's tile of this side has.
 int VesselWaves::steps_of(double from_s, double lasts_s, double part, int most) const {
     const double most_m = part * plan_.size_m / VesselPlan::kRadius;
     const auto at = [&](int of, int in) { return plan_.path.at(from_s + lasts_s * of / in); };
@@ -125,7 +126,7 @@ int VesselWaves::steps_of(double from_s, double lasts_s, double part, int most) 
 }
 
 int VesselWaves::steps_of(std::int64_t block) const {
-    return steps_of(static_cast<double>(block) * plan_.block_s, plan_.block_s, 0.02, VesselPlan::kMostSteps);
+    return steps_of(static_cast<double>(block) * plan_.block_s, plan_.block_s, kOff, VesselPlan::kMostSteps);
 }
 
 void VesselWaves::head(Step& step, double at_s) const {
@@ -158,8 +159,8 @@ VesselWaves::Leg VesselWaves::leg(double from_s, double step_s, int steps) const
 }
 
 HullArgs VesselWaves::hull(const Step& step, int mx) const {
-    return {.along_x = static_cast<float>(step.along.x),
-            .along_y = static_cast<float>(step.along.y),
+    return {.ahead_x = static_cast<float>(step.along.x),
+            .ahead_y = static_cast<float>(step.along.y),
             .half_length_m = static_cast<float>(0.5 * plan_.length_m),
             .half_beam_m = static_cast<float>(0.5 * plan_.beam_m),
             .depth = depth_.data() + first_of(mx),
@@ -199,19 +200,19 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
     std::erase_if(blocks_, [&](const auto& block) { return block.first < first || block.first >= last; });
     std::vector<Leg*> missing;
     order_.clear();
-    for (std::int64_t b = first; b < last; ++b) {
-        auto found = blocks_.find(b);
-        if (found == blocks_.end()) {
-            const double from_s = static_cast<double>(b) * plan_.block_s;
-            const int steps = steps_of(b);
-            found = blocks_.emplace(b, leg(from_s, plan_.block_s / steps, steps)).first;
-            for (Buffer<float>& sum : found->second.sums) sum = Buffer<float>(omega_.size());
-            missing.push_back(&found->second);
-        }
-        order_.push_back(&found->second);
-    }
-    const int tasks = (radius_ + kTaskColumns - 1) / kTaskColumns;
     try {
+        for (std::int64_t b = first; b < last; ++b) {
+            auto found = blocks_.find(b);
+            if (found == blocks_.end()) {
+                const double from_s = static_cast<double>(b) * plan_.block_s;
+                const int steps = steps_of(b);
+                found = blocks_.emplace(b, leg(from_s, plan_.block_s / steps, steps)).first;
+                for (Buffer<float>& sum : found->second.sums) sum = Buffer<float>(omega_.size());
+                missing.push_back(&found->second);
+            }
+            order_.push_back(&found->second);
+        }
+        const int tasks = (radius_ + kTaskColumns - 1) / kTaskColumns;
         tbb::parallel_for(0, tasks * static_cast<int>(missing.size()), [&](int task) {
             stop_if(cancel);
             Leg& leg = *missing[static_cast<std::size_t>(task / tasks)];
@@ -230,15 +231,18 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
         });
     } catch (...) {
         blocks_.clear();  // some aren't whole
+        order_.clear();
         throw;
     }
+    for (Leg* leg : missing) leg->steps = {};  // nobody asks for them again
     // Steps on the same lattice: as time goes on, only the last one changes.
     const double begin_s = static_cast<double>(last) * plan_.block_s, step_s = plan_.block_s / steps_of(last);
     const int over =
         static_cast<int>(std::clamp((t_s - begin_s) / step_s, 0.0, VesselPlan::kMostSteps - 1.0));
     begun_ = leg(begin_s, step_s, over);
-    // The last step's line turns as it grows, and what it has made with it: velocities don't have that, so it is cut finely.
-    constexpr double kPart = 0.02 / 32.0;
+    // The last step's line turns as it grows, and what it has made with it: velocities don't have that. Cut at so much finer they are
+    // within a thousandth of positions' differences; as finely as that in a tight turn, where eight parts are enough, too.
+    constexpr double kPart = kOff / 32.0;
     constexpr int kMostParts = 8;
     const double since_s = std::max(t_s - begun_.end_s, 1e-9 * step_s);
     const int parts = steps_of(begun_.end_s, since_s, kPart, kMostParts);

@@ -12,7 +12,7 @@ namespace pelagic {
 inline constexpr int kMostKeyParts = 16;                // of a dotted key or a table's header; ours have 2
 inline constexpr int kMostNesting = 16;                 // of lists and inline tables; ours nest 3 deep
 inline constexpr std::size_t kMostWordBytes = 256;      // of a key's part or a number without quotes
-inline constexpr std::size_t kMostStringBytes = 16384;  // between quotes: four times the longest path
+inline constexpr std::size_t kMostStringBytes = 65536;  // between quotes: a vessel's path of 1000 keys
 
 // Where a text goes beyond a bound. Lines count from 1, columns from 1 in characters.
 struct BeyondBound {

@@ -39,9 +39,10 @@ PixelMoments with_hidden_wakes(PixelMoments hidden, vec2 rest_m, Footprint footp
         if (!is_in_tile(vessel, rest_m)) continue;
         vec3 sum = hidden_in_blocks(vessel, footprint.blend.lower, rest_m);
         if (t > 0.0) sum += t * (2.0 - t) * (hidden_in_blocks(vessel, footprint.blend.lower + 1, rest_m) - sum);
-        hidden.xx += max(sum.x, 0.0);
-        hidden.xy += sum.y;
-        hidden.yy += max(sum.z, 0.0);
+        float xx = max(sum.x, 0.0), yy = max(sum.z, 0.0), most = sqrt(xx * yy);
+        hidden.xx += xx;
+        hidden.xy += clamp(sum.y, -most, most);
+        hidden.yy += yy;
     }
     return possible_moments(hidden);
 }

@@ -15,6 +15,7 @@
 #include "core/effects/sea_at_time.h"
 #include "core/evaluate/bounds.h"
 #include "core/scene/limits.h"
+#include "core/scene/text.h"
 #include "core/waves/folding.h"
 #include "tests/core/waves/samples.h"
 
@@ -204,7 +205,6 @@ TEST(Vessels, LeaveANarrowWakeWhenFast) {
     }
 }
 
-// A turn under way, with starts and stops, in a sea with masks.
 // A small hull that is fast makes waves that are short against its tile, a large one next to none.
 TEST(Vessels, HaveAsManyModesAsTheirSlopesNeed) {
     for (const auto& [speed_mps, length_m, fewest, most] :
@@ -225,14 +225,46 @@ TEST(Vessels, HaveAsManyModesAsTheirSlopesNeed) {
         EXPECT_LE(lost / all, 1.5e-3) << speed_mps;  // of one line across, from which the mean differs
         RecordProperty("lost_at_" + std::to_string(static_cast<int>(speed_mps)), std::to_string(lost / all));
     }
-    // A path that is slow for a while has shorter ones as well.
-    Vessel slows = straight(5.0);
-    slows.path = "1 0 0, 241 50 0, 481 70 0";
-    slows.interpolation = CameraInterpolation::Linear;
-    EXPECT_GT(plan_vessels(still_water(slows)).front().radius,
-              plan_vessels(still_water(straight(5.0))).front().radius);
 }
 
+// A path that is slow for a while has shorter waves as well, whatever comes after; and the fewest speeds that a hull may have aren't those
+// at which it makes the shortest.
+TEST(Vessels, HaveTheModesOfEachSpeedOfTheirPaths) {
+    Vessel vessel = straight(4.7);
+    vessel.path = "1 0 0, 241 47 0, 481 67 0, 1681 67 0";
+    vessel.interpolation = CameraInterpolation::Linear;
+    const VesselPlan plan = plan_vessels(still_water(vessel)).front();
+    const auto square_slopes = [&](double speed_mps, double shortest_m, double less_m) {
+        const FarField waves(vessel, speed_mps, shortest_m), less(vessel, speed_mps, less_m);
+        double sum = 0.0;
+        for (double y = -0.3; y < 0.3; y += 0.01) {
+            const double x_m = -0.4 * plan.size_m, y_m = y * plan.size_m;
+            const glm::dvec2 slope = waves.slope(x_m, y_m) - less.slope(x_m, y_m);
+            sum += glm::dot(slope, slope);
+        }
+        return sum;
+    };
+    const double finest_m = plan.size_m / VesselPlan::kRadius, shown_m = plan.size_m / plan.radius,
+                 none_m = 0.999 * kTwoPi * 4.7 * 4.7 / kGravity, all = square_slopes(4.7, finest_m, none_m);
+    for (const double speed_mps : {4.7, 4.2, 3.6, 3.0, 2.5, 2.0})
+        EXPECT_LE(square_slopes(speed_mps, finest_m, shown_m) / all, 2e-3) << speed_mps;
+}
+
+// Rounding puts the only wave at the end of the tile's, or beyond.
+TEST(Vessels, ArePlannedAtTheLeastSpeedThatMakesWaves) {
+    double end_m = least_wake_mps(Vessel{}) * 10.0;
+    for (int i = 0; i < 600; ++i, end_m = std::nextafter(end_m, 1e9)) {
+        Vessel vessel;
+        vessel.path = "1 0 0, 241 " + number_text(end_m) + " 0";
+        vessel.interpolation = CameraInterpolation::Linear;
+        for (const VesselPlan& plan : plan_vessels(still_water(vessel))) {
+            EXPECT_GE(plan.radius, VesselPlan::kRadius / 2) << i;
+            EXPECT_LE(plan.radius, VesselPlan::kRadius) << i;
+        }
+    }
+}
+
+// A turn under way, with starts and stops.
 Vessel turning() {
     return {.path = "-400 -90 -30, 1 -20 0, 180 15 10, 360 20 45, 540 -10 60",
             .length_m = 10.0,

@@ -88,6 +88,21 @@ NumberKeys two(double first, double last) {
     return {{{1, first}, {9, last}}, kLinear};
 }
 
+// What can't ever have keys says why; "yet" is of what only nobody has built.
+TEST(NumberKeys, SayWhyThereAreNone) {
+    for (const Key& key : keys()) {
+        if (key.may_have_keys || key.type != KeyType::Number || !key.set) continue;
+        const bool is_of_all = key.path.starts_with("shot.") || key.path.starts_with("quality.") ||
+                               key.path.starts_with("output.");
+        EXPECT_EQ(why_no_keys(key.path) == ": it is one for the whole shot", is_of_all) << key.path;
+    }
+    EXPECT_NE(why_no_keys("waves.vessels[].length_m").find("entry of a list"), std::string::npos);
+    EXPECT_NE(why_no_keys("sea.depth_m").find("frequencies"), std::string::npos);
+    EXPECT_NE(why_no_keys("sea.gust_size_m").find("race"), std::string::npos);
+    EXPECT_NE(why_no_keys("waves.choppiness").find("one displacement"), std::string::npos);
+    EXPECT_EQ(why_no_keys("camera.shift_x"), " yet");
+}
+
 // Every key of the table: those that may have keys take and give them, and a frame's scene is that of its plain number; the others say
 // that they can't.
 TEST(NumberKeys, OfTheWholeTable) {

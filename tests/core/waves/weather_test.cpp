@@ -314,6 +314,24 @@ TEST(Weather, GustsHaveTheStrengthOfTheTime) {
 }
 
 // A smooth key's slope comes from the keys round it: foam of an interval remembers what went on between two keys, not only at them.
+// Their keys leave the waves alone: one sea's are held, whose memory is counted once.
+TEST(Weather, OfGustsAloneSharesItsWaves) {
+    Scene plain;
+    plain.waves.cascades = {{400.0, 96}, {90.0, 64}};
+    plain.sea.gust_strength = 0.2;
+    Scene keyed = plain;
+    give_keys(keyed, "sea.gust_strength", {{1, 0.0}, {20, 0.6}, {40, 0.1}, {60, 0.2}});
+    const Plan of_keyed = make_plan(prepare_weather(keyed), {everything()}),
+               of_plain = make_plan(prepare(plain), {everything()});
+    EXPECT_EQ(of_keyed.sea_bytes(), of_plain.sea_bytes());
+    const SeaOverTime<float> sea(of_keyed, {});
+    const auto* waves = sea.at(0.0)->cascades().data();
+    for (const double t_s : {-3.0, 0.4, 0.8, 1.3, 2.2, 9.0}) {
+        EXPECT_EQ(sea.at(t_s)->cascades().data(), waves) << t_s;
+        EXPECT_NE(sea.at(t_s)->whitecaps().gusts.has_value(), false) << t_s;
+    }
+}
+
 TEST(Weather, TextOfFoamKnowsTheCubicBetweenItsKeys) {
     const auto text_of = [](double first, double frame, double past_s) {
         Scene scene = rising();

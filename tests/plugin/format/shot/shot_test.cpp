@@ -518,7 +518,7 @@ TEST(Shot, DepthAndLengthAreBoundedBeforeParsing) {
     expect_refused("[sea]\n" + times(257, "k") + " = 1", "2:1: a key or value", "at most 256 bytes");
     for (const std::string quote : {"\"", "'", "\"\"\"", "'''"})
         expect_refused("[shot]\nname = " + quote + times(8000000, "x") + quote, "2:8: a string is too long",
-                       "at most 16384 bytes");
+                       "at most 65536 bytes");
     // What isn't a key, a list or a string has no bound but the file's.
     EXPECT_EQ(parse("# " + times(100000, "[a.") + "\n[shot]\nname = \"a\" # " + times(100000, "'")).shot.name,
               "a");

@@ -120,9 +120,7 @@ def _scene_of(settings):
     """Of a record's."""
     scene = pelagic.Scene()
     for path, value in settings.items():
-        table, _, name = path.partition(".")
-        if not name:  # bodies, which are of pictures
-            continue
+        table, name = path.split(".")
         if isinstance(value, list) and value and isinstance(value[0], dict):
             value = tuple(ENTRIES[path](**entry) for entry in value)
         # A bake's frames hold the surface; who looks at its scene sees sea and light, and needs no cage.

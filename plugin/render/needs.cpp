@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -143,6 +144,11 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");
+    std::size_t meshes = 0;
+    std::set<const ObjectMesh*> counted;  // bodies of one file share its mesh
+    for (const SceneObject& object : scene.objects)
+        if (counted.insert(object.mesh.get()).second) meshes += object.mesh->bytes();
+    if (meshes > 0) need.add("the objects' meshes", meshes, "give coarser ones");
     if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");

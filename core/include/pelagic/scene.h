@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "pelagic/cage.h"
+#include "pelagic/object_mesh.h"
 #include "pelagic/version.h"
 
 namespace pelagic {
@@ -280,6 +281,32 @@ struct Effects {
     bool spray_drops = false;  // its large drops as particles, no longer in the veil
 };
 
+// A body in the light of the sea: it is seen, shadows the sea, mirrors itself in it and stands in its light. It makes no waves: those are
+// of waves.vessels.
+struct SceneObject {
+    std::string name{};  // as mattes and messages call it; empty: its file's, without folder and extension
+    std::string file{};  // where the mesh was read; what a shot depends on is the content
+    std::shared_ptr<const ObjectMesh> mesh{};
+    // Where its origin is: "1 0 0, 48 20 5", frame, east and north [m] of each key, as a vessel's path; empty: it stands.
+    std::string path{};
+    CameraInterpolation interpolation = CameraInterpolation::Smooth;  // of the path
+    int vessel = 0;  // 1 …: it is that one of waves.vessels; 0: none
+    double east_m = 0.0, north_m = 0.0,
+           up_m = 0.0;  // of its origin; with a path or a vessel from there, along its course and to port
+    double heading_deg =
+        0.0;  // of its +x, counter-clockwise from east; with a path or a vessel from its course
+    double pitch_deg = 0.0, roll_deg = 0.0;  // bow up; to starboard down
+    double scale = 1.0;                      // > 0
+    bool floats = false;      // heaves, pitches and rolls with the waves that are as long as it is
+    glm::dvec3 colour{1.0};   // times its materials', 0 … 1
+    double glow_cd_m2 = 0.0;  // luminance of materials that glow, ≥ 0
+    bool holdout =
+        false;  // it is rendered elsewhere: nothing, with alpha 0, where it stands, but mirrored and shadowing
+
+    // Its name, or its file's without folder and extension.
+    std::string called() const;
+};
+
 // [quality]
 struct Quality {
     QualityLevel level = QualityLevel::Final;
@@ -329,6 +356,7 @@ struct Scene {
     Light light;
     Water water;
     Effects effects;
+    std::vector<SceneObject> objects;
     Quality quality;
     Output output;
     // Numbers that have keys (set_value() puts them here). A frame's own scene, without any, is scene_at()'s

@@ -1,0 +1,21 @@
+// Where the bodies of a scene are.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "pelagic/scene.h"
+
+namespace pelagic {
+
+// A point p of a body's mesh [m] lies at place_m + turn · (scale · p).
+struct ObjectPose {
+    glm::dvec3 place_m{0.0};
+    glm::dmat3 turn{1.0};  // a rotation: its columns are the body's axes in the world
+    double scale = 1.0;
+};
+
+// At a frame, also between two of them, in a calm sea: what `floats` adds is the waves' (plugin/render). The object is one of the scene's.
+ObjectPose object_pose(const Scene& scene, const SceneObject& object, double frame);
+
+}  // namespace pelagic

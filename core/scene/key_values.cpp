@@ -200,6 +200,20 @@ Problem unknown_word(const Key& key, const std::string& path, std::string_view w
             "one of " + words_text(key.choices)};
 }
 
+KeyValue content_of(const Scene& scene, const Key& key) {
+    if (scene.waves.mask_pictures.empty() || key.path != "waves.masks") return value_of(scene, key);
+    Scene named = scene;
+    for (WaveMask& mask : named.waves.masks)
+        if (const MaskPicture* picture = picture_of(scene.waves, mask)) mask.picture = picture->content();
+    return value_of(named, key);
+}
+
+const MaskPicture* picture_of(const Waves& waves, const WaveMask& mask) {
+    if (!mask.picture) return nullptr;
+    const auto found = waves.mask_pictures.find(*mask.picture);
+    return found == waves.mask_pictures.end() ? nullptr : found->second.get();
+}
+
 std::vector<const Key*> picture_keys(const Scene& scene) {
     std::vector<const Key*> named;
     for (const Key& key : keys())
@@ -311,7 +325,7 @@ std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts) {
                 out.push_back({"sea.spectrum_station", measured->station, quoted_text(measured->station)});
             continue;
         }
-        KeyValue value = value_of(scene, key);
+        KeyValue value = content_of(scene, key);
         if (std::holds_alternative<std::monostate>(value)) continue;
         const auto* entries = std::get_if<std::vector<KeyEntry>>(&value);
         const bool is_word = entries && entries->empty() && !key.other_word.empty();

@@ -57,8 +57,7 @@ std::string about_masks(const Plan& plan) {
     const std::size_t pictures =
         std::ranges::count_if(masks.masks, [](const auto& mask) { return mask.cells != nullptr; });
     if (pictures > 0)
-        about += ", " + std::to_string(pictures) + " of them by pictures, in " +
-                 bytes_text(mask_picture_bytes(plan));
+        about += ", " + std::to_string(pictures) + " from pictures, " + bytes_text(mask_picture_bytes(plan));
     if (masks.changes_waves)
         about += "; waves " + rough_text(gains.least) + " … " + rough_text(gains.largest) + " times as high";
     if (masks.calms_ripples) about += "; slicks, of waves below 50 cm";

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 
 from . import baked, floating, module, ocean, play, volumes
-from .properties import FIELDS
+from .properties import FIELDS, entry_fields
 
 TEXT = "Check for the Farm"
 ADD_ON = "{} {}.{}.{}".format(module.TITLE, *module.VERSION)
@@ -48,9 +48,12 @@ def _path_faults(path, library):
 def _faults_of_ocean(obj, bpy_scene):
     groups = obj.pelagic
     for field in FIELDS:
-        value = getattr(getattr(groups, field.table), field.name) if field.is_path else ""
-        if value and value != field.key["default"]:
-            yield from _path_faults(value, obj.library)
+        value = getattr(getattr(groups, field.table), field.name)
+        named = [value] if field.is_path else [getattr(row, inner.name) for row in value for inner in entry_fields(field)
+                                               if inner.is_path] if field.key["type"] == "entries" else []
+        for path in named:
+            if path and path != field.key["default"]:
+                yield from _path_faults(path, obj.library)
     try:
         problem = play.brought_up(obj, bpy_scene, bpy.context.evaluated_depsgraph_get(), True).problem
     except (ValueError, OSError) as error:

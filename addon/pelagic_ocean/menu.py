@@ -7,6 +7,7 @@ from .farm import PELAGIC_OT_check_farm
 from .floating import PELAGIC_OT_float
 from .native import PELAGIC_OT_replace_ocean_modifier
 from .operators import PELAGIC_OT_make_wake, PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
+from .painted import PELAGIC_OT_paint_mask
 from .sampling import PELAGIC_OT_sample_heights
 
 
@@ -18,6 +19,7 @@ class PELAGIC_MT_object(bpy.types.Menu):
         layout.operator(PELAGIC_OT_float.bl_idname)
         layout.operator(PELAGIC_OT_float.bl_idname, text="Float No More").enabled = False
         layout.operator(PELAGIC_OT_make_wake.bl_idname)
+        layout.operator(PELAGIC_OT_paint_mask.bl_idname)
         layout.operator_menu_enum(PELAGIC_OT_sample_heights.bl_idname, "into")
         layout.separator()
         layout.operator(PELAGIC_OT_use_mesh.bl_idname)

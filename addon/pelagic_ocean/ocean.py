@@ -12,7 +12,7 @@ from mathutils import Vector
 from . import compat
 from .cages import cage_of
 from .module import pelagic
-from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, of_wide_numbers, shortest_for
+from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, entry_fields, of_wide_numbers, shortest_for
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -74,7 +74,9 @@ def _with_settings(settings, obj, depsgraph):
     for path, value in values.items():
         key = BY_PATH[path].key
         if key["type"] == "entries":
-            value = [getattr(pelagic, key["entry"])(*entry) for entry in value]
+            fields = entry_fields(BY_PATH[path])
+            value = [getattr(pelagic, key["entry"])(*(_on_disk(each) if field.is_path and each else each
+                                                      for field, each in zip(fields, entry))) for entry in value]
         elif BY_PATH[path].is_path:
             value = _on_disk(value)
         setattr(getattr(scene, BY_PATH[path].table), key["name"], value)

@@ -8,6 +8,7 @@ the property use_NAME beside it says whether it has a number. What Blender itsel
 import math
 import zlib
 from dataclasses import dataclass
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -98,7 +99,8 @@ class Field:
             for entry in value:
                 row = rows.add()
                 for inner in entry_fields(self):
-                    inner.write(row, getattr(entry, inner.name))
+                    given = getattr(entry, inner.name)
+                    inner.write(row, str(Path(given).absolute()) if inner.is_path and given else given)
             return
         if self.key["type"] == "words":
             value = set(value)

@@ -27,7 +27,7 @@ GERMAN = {
     "Gust size": "Böengröße", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
     "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",
     "Lean": "Vorneigung", "Second order": "Zweite Ordnung",
-    "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen", "Heroes": "Einzelwellen", "Masks": "Masken", "Vessels": "Schiffe", "Path": "Pfad", "Interpolation": "Interpolation", "Beam": "Breite", "Draught": "Tiefgang", "Linear": "Linear", "Smooth": "Weich", "Edge": "Rand", "Ripples": "Kräuselwellen", "Foam": "Schaum", "East": "Osten", "North": "Norden",
+    "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen", "Heroes": "Einzelwellen", "Masks": "Masken", "Picture": "Bild", "Vessels": "Schiffe", "Path": "Pfad", "Interpolation": "Interpolation", "Beam": "Breite", "Draught": "Tiefgang", "Linear": "Linear", "Smooth": "Weich", "Edge": "Rand", "Ripples": "Kräuselwellen", "Foam": "Schaum", "East": "Osten", "North": "Norden",
     "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
@@ -66,7 +66,7 @@ GERMAN = {
     "Pelagic Bake (.json, .usda)": "Pelagic-Bake (.json, .usda)", "Play Pelagic Bake": "Pelagic-Bake abspielen",
     "Float": "Schwimmen lassen", "Float No More": "Nicht mehr schwimmen lassen", "Apply Preset": "Voreinstellung anwenden",
     "Delete Preset": "Voreinstellung löschen", "Save Preset": "Voreinstellung speichern", "Save…": "Speichern …",
-    "Make Wake": "Kielwasser machen", "Release Mesh": "Netz freigeben", "Replace Ocean Modifier": "Ozean-Modifikator ersetzen",
+    "Make Wake": "Kielwasser machen", "Mask from Painted Mesh": "Maske aus bemaltem Netz", "Release Mesh": "Netz freigeben", "Replace Ocean Modifier": "Ozean-Modifikator ersetzen",
     "Sample Sea Heights": "Wasserstand abtasten", "Use Mesh as Cage of an Ocean": "Netz als Käfig eines Ozeans",
     "Use Mesh as Ocean": "Netz als Ozean",
     # Tooltips
@@ -78,6 +78,8 @@ GERMAN = {
         "Eine See auf der glatten Fläche des aktiven Netzes, mit seinen Falten: es ist ihr Käfig und darf sich weiter ändern",
     "Let the active object leave a wake: its movement in the scene's frames becomes the path of a vessel of the ocean":
         "Das aktive Objekt ein Kielwasser ziehen lassen: seine Bewegung in den Bildern der Szene wird zum Pfad eines Schiffs des Ozeans",
+    "Calm the ocean where the active mesh is painted, or make it rough: its colours become the picture of a mask. Done again, the mask has the new picture":
+        "Den Ozean beruhigen, wo das aktive Netz bemalt ist, oder aufrauen: seine Farben werden zum Bild einer Maske. Noch einmal, und die Maske hat das neue Bild",
     "Make the ocean an ordinary mesh again: its own vertices go back to rest, another's stay as they are":
         "Den Ozean wieder zum gewöhnlichen Netz machen: eigene Punkte kehren in die Ruhelage zurück, andere bleiben",
     "Weathers and seas with a name, and your own: one makes itself the ocean's sea":

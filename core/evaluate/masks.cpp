@@ -34,16 +34,23 @@ bool MaskChunk<T>::take(const MasksPlan& plan, std::span<const WakeStrip> strips
     bool any = false;
     for (const MasksPlan::Mask& mask : plan.masks) {
         const glm::vec<2, T> from(origin_m - mask.middle_m), along(mask.along), inner(mask.inner_per_m),
-            outer(mask.outer_per_m);
-        const T reach = static_cast<T>(mask.reach_m), all = static_cast<T>(mask.waves),
-                short_ones = static_cast<T>(mask.ripples), foamy = static_cast<T>(mask.foam);
+            outer(mask.outer_per_m), cells(mask.cells_per_m);
+        const T reach = static_cast<T>(mask.reach_m), whole = static_cast<T>(mask.whole),
+                all = static_cast<T>(mask.waves), short_ones = static_cast<T>(mask.ripples),
+                foamy = static_cast<T>(mask.foam);
         for (std::size_t i = 0; i < chunk.count; ++i) {
             const T east = from.x + chunk.rest_x[i], north = from.y + chunk.rest_y[i];
             if (!(east * east + north * north < reach * reach)) continue;  // also where it is no number
             any = true;
+            const MaskGains<T> before{waves[i], x[i], y[i], ripples[i], foam[i]};
             const MaskGains<T> at =
-                with_mask(MaskGains<T>{waves[i], x[i], y[i], ripples[i], foam[i]}, east, north, along.x,
-                          along.y, inner.x, inner.y, outer.x, outer.y, all, short_ones, foamy);
+                mask.cells
+                    ? with_share(before,
+                                 picture_share(*mask.cells, east * along.x + north * along.y,
+                                               north * along.x - east * along.y, cells.x, cells.y, whole),
+                                 along.x, along.y, all, short_ones, foamy)
+                    : with_mask(before, east, north, along.x, along.y, inner.x, inner.y, outer.x, outer.y,
+                                all, short_ones, foamy);
             waves[i] = at.waves;
             x[i] = at.x;
             y[i] = at.y;

@@ -42,11 +42,22 @@ std::string about_whitecaps(const Plan& plan) {
                       " would press them");
 }
 
+std::size_t mask_picture_bytes(const Plan& plan) {
+    std::size_t texels = plan.masks ? plan.masks->picture_texels() : 0;
+    for (const auto& [name, picture] : plan.from->scene.waves.mask_pictures)
+        texels += picture->shares().size();
+    return sizeof(float) * texels;
+}
+
 std::string about_masks(const Plan& plan) {
     const MasksPlan& masks = *plan.masks;
     const MasksPlan::Gains gains = masks.gains_in(glm::dvec2(-limits::kCameraCoordinate_m.high),
                                                   glm::dvec2(limits::kCameraCoordinate_m.high));
     std::string about = std::to_string(masks.masks.size()) + (masks.masks.size() == 1 ? " mask" : " masks");
+    const std::size_t pictures =
+        std::ranges::count_if(masks.masks, [](const auto& mask) { return mask.cells != nullptr; });
+    if (pictures > 0)
+        about += ", " + std::to_string(pictures) + " from pictures, " + bytes_text(mask_picture_bytes(plan));
     if (masks.changes_waves)
         about += "; waves " + rough_text(gains.least) + " … " + rough_text(gains.largest) + " times as high";
     if (masks.calms_ripples) about += "; slicks, of waves below 50 cm";
@@ -182,7 +193,13 @@ const std::array kEffectTable = std::to_array<EffectRow>({
              return plan && !plan->masks.empty();
          },
      .why_not = "waves.masks are none, or change nothing",
-     .turn_off = [](Scene& scene) { scene.waves.masks.clear(); },
+     .turn_off =
+         [](Scene& scene) {
+             scene.waves.masks.clear();
+             scene.waves.mask_pictures.clear();
+         },
+     .state = {"pictures of calm and rough places", mask_picture_bytes,
+               "take smaller pictures in waves.masks, or wider edges"},
      .about = about_masks},
     {.effect = Effect::Wakes,
      .name = "wakes",

@@ -24,23 +24,45 @@ inline MaskShare<T> mask_share(T u, T v, T inner_u, T inner_v, T outer_u, T oute
                         rate * (v1_rate * q2 + (q1 - T(1)) * v2_rate - t * (v1_rate - v2_rate)));
 }
 
+// Quadratic B-splines of the three cells round a place, which add up to 1, and how they change from one cell to the next. From the middle
+// of the cell that it is in, −½ … ½ cells.
+template <class T>
+struct MaskWeights {
+    T before, here, after, before_rate, here_rate, after_rate;
+};
+
+template <class T>
+inline MaskWeights<T> mask_weights(T from) {
+    return MaskWeights<T>(T(0.5) * (T(0.5) - from) * (T(0.5) - from), T(0.75) - from * from,
+                          T(0.5) * (T(0.5) + from) * (T(0.5) + from), from - T(0.5), T(-2) * from,
+                          from + T(0.5));
+}
+
 // The gains of all masks at a place, and how that of the waves changes with it [1/m].
 template <class T>
 struct MaskGains {
     T waves, x, y, ripples, foam;
 };
 
-// With one more, whose ellipse lies along (along_x, along_y). The place: from its middle [m].
+// With one more, which lies along (along_x, along_y), and its share there, which changes along it and across.
 template <class T>
-inline MaskGains<T> with_mask(MaskGains<T> all, T x, T y, T along_x, T along_y, T inner_u, T inner_v,
-                              T outer_u, T outer_v, T waves, T ripples, T foam) {
-    MaskShare<T> at =
-        mask_share(x * along_x + y * along_y, y * along_x - x * along_y, inner_u, inner_v, outer_u, outer_v);
+inline MaskGains<T> with_share(MaskGains<T> all, MaskShare<T> at, T along_x, T along_y, T waves, T ripples,
+                               T foam) {
     const T more = waves - T(1), own = T(1) + more * at.share;
     return MaskGains<T>(all.waves * own, all.x * own + all.waves * more * (at.x * along_x - at.y * along_y),
                         all.y * own + all.waves * more * (at.x * along_y + at.y * along_x),
                         all.ripples * (T(1) + (ripples - T(1)) * at.share),
                         all.foam * (T(1) + (foam - T(1)) * at.share));
+}
+
+// The same of an ellipse. The place: from its middle [m].
+template <class T>
+inline MaskGains<T> with_mask(MaskGains<T> all, T x, T y, T along_x, T along_y, T inner_u, T inner_v,
+                              T outer_u, T outer_v, T waves, T ripples, T foam) {
+    return with_share(
+        all,
+        mask_share(x * along_x + y * along_y, y * along_x - x * along_y, inner_u, inner_v, outer_u, outer_v),
+        along_x, along_y, waves, ripples, foam);
 }
 
 // Of the sea's breaking, what breaks where waves are m times as high: Φ(y/m) over Φ(y) by Mills' ratio, y < 0 being the deviate of the

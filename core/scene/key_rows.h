@@ -88,6 +88,20 @@ struct MemberValue<std::string> {
     }
 };
 
+template <>
+struct MemberValue<std::optional<std::string>> {
+    static constexpr KeyType kType = KeyType::Text;
+    static KeyValue value(const std::optional<std::string>& member) {
+        return member ? KeyValue(*member) : KeyValue();
+    }
+    static bool take(const KeyValue& value, std::optional<std::string>& member) {
+        if (std::holds_alternative<std::monostate>(value)) return member.reset(), true;
+        std::string text;
+        if (!MemberValue<std::string>::take(value, text)) return false;
+        return member = std::move(text), true;
+    }
+};
+
 template <class Choice>
 requires std::is_enum_v<Choice>
 struct MemberValue<Choice> {
@@ -245,7 +259,8 @@ Key key_of_member(const About& about) {
         key.least = MemberValue<Value>::kLeast;
         key.largest = MemberValue<Value>::kLargest;
     }
-    key.is_optional = std::same_as<Value, std::optional<double>>;
+    key.is_optional =
+        std::same_as<Value, std::optional<double>> || std::same_as<Value, std::optional<std::string>>;
     if constexpr (requires { MemberValue<Value>::kOtherWord; })
         key.other_word = MemberValue<Value>::kOtherWord;
     const auto add_choices = [&]<class Choice>(Choice) {
@@ -325,6 +340,12 @@ auto entries(const About& about, Rows... rows) {
         return true;
     };
     return Row<Owner, 1>{std::move(key), get, set};
+}
+
+// A key whose struct has one more member: what hosts read from the files that it names.
+template <class Owner>
+Row<Owner, 2> with_data(Row<Owner, 1> made) {
+    return {std::move(made.key), std::move(made.get), std::move(made.set)};
 }
 
 // Lets the key of a number have NumberKeys as well.

@@ -194,6 +194,12 @@ KeyValue value_of(const Scene& scene, const Key& key) {
 }
 
 KeyValue content_value(const Scene& scene, const Key& key) {
+    if (!scene.waves.mask_pictures.empty() && key.path == kMasksKey) {
+        Scene named = scene;
+        for (WaveMask& mask : named.waves.masks)
+            if (const MaskPicture* picture = picture_of(scene.waves, mask)) mask.picture = picture->content();
+        return value_of(named, key);
+    }
     KeyValue value = value_of(scene, key);
     if (key.path != kObjectsKey) return value;
     auto& entries = std::get<std::vector<KeyEntry>>(value);
@@ -211,6 +217,12 @@ Problem unknown_word(const Key& key, const std::string& path, std::string_view w
     return {path, quoted_text(word),
             "is not one of the words" + (near.empty() ? "" : ", the nearest is " + quoted_text(near)),
             "one of " + words_text(key.choices)};
+}
+
+const MaskPicture* picture_of(const Waves& waves, const WaveMask& mask) {
+    if (!mask.picture) return nullptr;
+    const auto found = waves.mask_pictures.find(*mask.picture);
+    return found == waves.mask_pictures.end() ? nullptr : found->second.get();
 }
 
 std::vector<const Key*> picture_keys(const Scene& scene) {

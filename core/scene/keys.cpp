@@ -347,10 +347,10 @@ void add_waves(Built& out) {
                                            .unit = "m",
                                            .range = limits::kHeroHeight_m,
                                            .soft = SoftRange{0.0, 20.0}})),
-        entries<&Waves::masks>(
+        with_data(entries<&Waves::masks>(
             {.name = "masks",
              .help =
-                 "calm and rough places: ellipses of the world with a soft edge, and gains of the sea within them. Where they "
+                 "calm and rough places: ellipses of the world with a soft edge, or pictures, and gains of the sea within them. Where they "
                  "overlap, their gains multiply",
              .key_parts = kWaves,
              .most_entries = limits::kMasks,
@@ -366,11 +366,12 @@ void add_waves(Built& out) {
                                           .unit = "m",
                                           .range = kEach_m,
                                           .soft = SoftRange{-100.0, 100.0}}),
-            row<&WaveMask::length_m>({.name = "length_m",
-                                      .help = "of the ellipse within which the gains hold whole",
-                                      .unit = "m",
-                                      .range = limits::kMaskSize_m,
-                                      .soft = SoftRange{10.0, 2000.0, true}}),
+            row<&WaveMask::length_m>(
+                {.name = "length_m",
+                 .help = "of the ellipse within which the gains hold whole, or of the picture",
+                 .unit = "m",
+                 .range = limits::kMaskSize_m,
+                 .soft = SoftRange{10.0, 2000.0, true}}),
             row<&WaveMask::width_m>({.name = "width_m",
                                      .help = "across",
                                      .unit = "m",
@@ -384,7 +385,8 @@ void add_waves(Built& out) {
             row<&WaveMask::edge_m>(
                 {.name = "edge_m",
                  .help =
-                     "round the ellipse: over it the gains fade to 1. Waves want one of half their length",
+                     "round the ellipse: over it the gains fade to 1, and those of a picture across its borders and within. Waves want one of half "
+                     "their length",
                  .unit = "m",
                  .range = limits::kMaskEdge_m,
                  .soft = SoftRange{1.0, 500.0, true}}),
@@ -403,7 +405,15 @@ void add_waves(Built& out) {
                 {.name = "foam",
                  .help = "of what breaks, and so of what it leaves: 0 has no foam of its own",
                  .range = limits::kMaskShare,
-                 .soft = SoftRange{0.0, 1.0}})),
+                 .soft = SoftRange{0.0, 1.0}}),
+            row<&WaveMask::picture>(
+                {.name = "picture",
+                 .help =
+                     "where it holds, in place of the ellipse: a picture from above, 0 … 1, grey or the mean of its colours, whose "
+                     "width lies along the length. It is smoothed over the edge; beyond it nothing holds",
+                 .accepted =
+                     "a string, the path of an .exr of 2 … 4096 pixels a side, from the shot file's folder",
+                 .is_picture = true}))),
         entries<&Waves::vessels>(
             {.name = "vessels",
              .help =

@@ -118,7 +118,7 @@ struct Key {
     bool may_be_infinite = false;      // besides what is in the range
     bool may_have_keys = false;        // a number: NumberKeys do as well
     bool is_angle = false;             // a number of degrees: between keys it turns the short way
-    bool is_optional = false;          // a number that may be left out, and has no default
+    bool is_optional = false;          // may be left out, and has no default
     bool is_required = false;          // in an entry: it has no default
     bool is_picture = false;           // a text: its fallback, or the path of an .exr in its place
     bool may_be_mesh = false;          // or of an .obj
@@ -161,7 +161,7 @@ const Key* find_key(std::string_view path);
 inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file",
                                   kCameraFile = "camera.file";
 // The list of bodies, whose meshes are as well.
-inline constexpr std::string_view kObjectsKey = "objects";
+inline constexpr std::string_view kObjectsKey = "objects", kMasksKey = "waves.masks";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);
@@ -170,11 +170,14 @@ const Key& key_of(std::string_view path);
 
 // Throws std::logic_error for a key that has none.
 KeyValue value_of(const Scene& scene, const Key& key);
-// The same as what the scene depends on: bodies with their meshes' content as "file", and as they are called.
+// The same for fingerprints and headers: what is read from files and is data of the scene by its content, not by its path. Bodies' meshes,
+// with the names that they are called by, and masks' pictures.
 KeyValue content_value(const Scene& scene, const Key& key);
 
 // The keys whose pictures a scene names by their paths.
 std::vector<const Key*> picture_keys(const Scene& scene);
+// The picture of a mask; null: it has none, or none was read.
+const MaskPicture* picture_of(const Waves& waves, const WaveMask& mask);
 // Changes each of those paths.
 void replace_pictures(Scene& scene,
                       const std::function<std::string(const Key&, const std::string& path)>& by);

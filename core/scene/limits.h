@@ -69,7 +69,9 @@ inline constexpr Range kMaskSize_m{1.0, 1e5};
 inline constexpr Range kMaskEdge_m{1.0, 1e5};
 inline constexpr Range kMaskWaves{0.0, 4.0};
 inline constexpr Range kMaskShare{0.0, 1.0};
-inline constexpr int kVessels = 16;  // each has a tile of its own
+inline constexpr Range kMaskPicture{2.0, 4096.0};  // pixels a side
+inline constexpr int kMaskRows = 16384;  // of all pictures together: they are one texture of the preview's
+inline constexpr int kVessels = 16;      // each has a tile of its own
 inline constexpr Range kVesselSize_m{0.1, 1000.0};
 inline constexpr Range kVesselWaves{0.01, 4.0};
 inline constexpr double kVesselSpeed_mps = 100.0;  // of the sea's seconds

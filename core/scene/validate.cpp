@@ -755,8 +755,21 @@ void check_objects(SceneChecker& check, const Scene& scene) {
 void check_masks(SceneChecker& check, const Scene& scene) {
     const Waves& waves = scene.waves;
     constexpr double kShortestBreaker_m = 0.25;  // a slick's waves are shorter
+    int rows = 0;
     for (std::size_t i = 0; i < waves.masks.size(); ++i) {
         const WaveMask& mask = waves.masks[i];
+        const std::string key = indexed("waves.masks", i) + ".picture";
+        const auto refuse_picture = [&](const std::string& problem, const std::string& accepted) {
+            check.refuse({key, quoted_text(*mask.picture), problem, accepted});
+        };
+        if (const MaskPicture* picture = picture_of(waves, mask)) {
+            rows += picture->size().y;
+            if (rows > limits::kMaskRows)
+                refuse_picture("and those of the masks before it have " + std::to_string(rows) + " rows",
+                               "at most " + std::to_string(limits::kMaskRows) + " together");
+        } else if (mask.picture) {
+            refuse_picture("was not read", key_of("waves.masks[].picture").accepted);
+        }
         if (mask.ripples == 1.0) continue;
         const auto refuse = [&](const std::string& problem, const std::string& accepted) {
             check.refuse({indexed("waves.masks", i) + ".ripples", number_text(mask.ripples), problem,

@@ -15,6 +15,7 @@
 #include "core/plan/weather.h"
 #include "core/scene/canonical.h"
 #include "core/scene/cascade_bands.h"
+#include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/waves/hero_waves.h"
@@ -233,6 +234,14 @@ std::vector<std::string> vessel_warning(const PreparedScene& prepared) {
     return warnings;
 }
 
+// Of a picture, whose pixels may be coarser than its edge.
+double shown_edge_m(const Waves& waves, const WaveMask& mask) {
+    const MaskPicture* picture = picture_of(waves, mask);
+    if (!picture) return mask.edge_m;
+    return std::max(mask.edge_m,
+                    2.0 * std::min(mask.length_m / picture->size().x, mask.width_m / picture->size().y));
+}
+
 // A sea that is cut off within half a wave shows it.
 std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
@@ -243,7 +252,7 @@ std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     for (std::size_t i = 0; i < scene.waves.masks.size(); ++i) {
         const WaveMask& mask = scene.waves.masks[i];
         const double enough_m = std::ceil(0.5 * longest_m);
-        if (mask.waves == 1.0 || mask.edge_m >= 0.5 * longest_m) continue;
+        if (mask.waves == 1.0 || shown_edge_m(scene.waves, mask) >= 0.5 * longest_m) continue;
         warnings.push_back(
             "waves.masks[" + std::to_string(i) + "].edge_m = " + number_text(mask.edge_m) +
             ": narrower than half the longest waves, of " + number_text(std::round(longest_m)) +
@@ -252,21 +261,25 @@ std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     // Where waves are rougher than a sea that doesn't fold.
     constexpr double kMuch = 0.05;
     const SpectralMoments all = all_of(prepared.spectrum, Choppiness::asked(scene));
-    for (std::size_t i = 0; i < scene.waves.masks.size() && !(share_of(all, 1.0) > kMuch); ++i) {
-        const WaveMask& mask = scene.waves.masks[i];
+    for (const MasksPlan::Mask& mask : plan->masks) {
+        if (!(mask.strongest > 1.0) || share_of(all, 1.0) > kMuch) continue;
         // Others may overlap it.
-        const double others = plan->at({mask.east_m, mask.north_m}).waves / mask.waves;
-        const double gain = mask.waves * others, share = mask.waves > 1.0 ? share_of(all, gain) : 0.0;
+        const double others = plan->at(mask.strongest_m).waves / mask.strongest;
+        const double gain = mask.strongest * others, share = share_of(all, gain);
         if (!(share > kMuch)) continue;
         double less = 1.0, more = gain;
         for (int step = 0; step < 40; ++step) {
             const double middle = 0.5 * (less + more);
             (share_of(all, middle) > kMuch ? more : less) = middle;
         }
-        warnings.push_back("waves.masks[" + std::to_string(i) + "].waves = " + number_text(mask.waves) +
-                           ": the surface folds over itself on " + percent_text(share) +
-                           " % of that place; " + number_text(std::floor(100.0 * less / others) / 100.0) +
-                           " leaves 5 %");
+        // Of a picture that holds nowhere whole.
+        const double as_asked =
+                         mask.strongest == mask.waves ? 1.0 : (mask.waves - 1.0) / (mask.strongest - 1.0),
+                     enough = as_asked == 1.0 ? less / others : 1.0 + as_asked * (less / others - 1.0);
+        warnings.push_back("waves.masks[" + std::to_string(mask.number) +
+                           "].waves = " + number_text(mask.waves) + ": the surface folds over itself on " +
+                           percent_text(share) + " % of that place; " +
+                           number_text(std::floor(100.0 * enough) / 100.0) + " leaves 5 %");
     }
     for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {
         const HeroWave& hero = scene.waves.heroes[h];

@@ -76,6 +76,8 @@ Json settings(const Scene& scene) {
     // A cascade that says nothing of its choppiness has the record that it had before it could.
     for (Json& cascade : json["waves.cascades"])
         if (cascade["choppiness"].is_null()) cascade.erase("choppiness");
+    for (Json& mask : json["waves.masks"])  // likewise
+        if (mask["picture"].is_null()) mask.erase("picture");
     return json;
 }
 
@@ -388,6 +390,9 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     shot["files"] = Json::object();
 
     if (scene.surface.cage) shot["cage"] = scene.surface.cage->content();
+    for (const WaveMask& mask : scene.waves.masks)
+        if (const MaskPicture* picture = picture_of(scene.waves, mask))
+            shot["mask_pictures"].push_back(picture->content());
     Json& spectrum = shot["spectrum"];
     spectrum["kind"] = word_of(scene.sea.spectrum);
     spectrum["hs_m"] = total.significant_height_m();

@@ -1,6 +1,8 @@
 """Every operator, and what is refused in words."""
 
+import math
 import sys
+import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -176,6 +178,51 @@ with checking("a calm place stands at the cursor"):
     away = np.hypot(spots[:, 0] - 16.0, spots[:, 1] + 9.0)
     assert np.allclose(after[away < 8.0], 0.5 * heights[away < 8.0], atol=1e-5)
     assert np.array_equal(after[away > 34.0], heights[away > 34.0]) and (away > 34.0).any()
+
+with checking("a painted mesh is a mask where it lies, in the sea's own axes; painted anew the mask has the new picture"):
+    fresh_file()
+    sea, scene = add_ocean(), bpy.context.scene
+    sea.location, sea.rotation_euler[2] = (5.0, 2.0, 0.0), 0.5
+    bpy.context.view_layer.update()
+    before = numbers(sea.data)
+    sheet = grid(side=20, size_m=60.0)
+    sheet.location, sheet.rotation_euler[2], sheet.scale = (12.0, -7.0, 1.0), 0.9, (1.0, 0.5, 1.0)
+    bpy.context.view_layer.update()
+    assert refused(bpy.ops.pelagic.paint_mask, "isn't saved yet")
+    with tempfile.TemporaryDirectory() as folder:
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "sea.blend"))
+        assert refused(bpy.ops.pelagic.paint_mask, "isn't painted")
+        colours = sheet.data.color_attributes.new("calm", "FLOAT_COLOR", "CORNER")
+        sheet.data.color_attributes.active_color = colours
+        local = numbers(sheet.data)[[loop.vertex_index for loop in sheet.data.loops]]
+        white = np.clip(local[:, 0] / 10.0 + 0.5, 0.0, 1.0)  # black on its left, white on its right
+        colours.data.foreach_set("color", np.repeat(white[:, None], 4, 1).astype(np.float32).ravel())
+        bpy.ops.pelagic.paint_mask()
+        mask, = sea.pelagic.waves.masks
+        assert mask.waves == 0.5 and math.isclose(mask.length_m, 60.0, rel_tol=1e-5) and math.isclose(mask.width_m, 30.0, rel_tol=1e-5)
+        assert math.isclose(mask.direction_deg, math.degrees(0.4), rel_tol=1e-4)
+        at = sea.matrix_world @ Vector((mask.east_m, mask.north_m, 0.0))
+        assert math.hypot(at.x - 12.0, at.y + 7.0) < 1e-4
+        bpy.context.view_layer.update()
+        spots = before @ np.array(sea.matrix_world.to_3x3()).T + np.array(sea.location)
+        into = np.array(sheet.matrix_world.inverted())
+        on_sheet = spots @ into[:3, :3].T + into[:3, 3]  # its scale undone: 60 m a side
+        deep = (np.abs(on_sheet[:, 0] - 15.0) < 8.0) & (np.abs(on_sheet[:, 1]) < 20.0)
+        off = (on_sheet[:, 0] < -12.0) | (np.abs(on_sheet[:, 1]) > 38.0) | (on_sheet[:, 0] > 38.0)
+        heights, after = before[:, 2], numbers(sea.data)[:, 2]
+        assert deep.sum() > 5 and np.allclose(after[deep], 0.5 * heights[deep], atol=2e-3 * np.abs(heights).max())
+        assert off.any() and np.array_equal(after[off], heights[off])
+        shot = ocean.scene_of(sea, scene)
+        assert not shot.validate() and Path(shot.waves.masks[0].picture).parent == Path(folder) / "masks"
+        first, mask.waves = mask.picture, 0.2
+        sheet.data.attributes.new("rough", "FLOAT", "POINT").data.foreach_set("value", np.ones(len(sheet.data.vertices), np.float32))
+        bpy.ops.pelagic.paint_mask(attribute="rough")
+        mask, = sea.pelagic.waves.masks
+        assert mask.picture != first and math.isclose(mask.waves, 0.2, rel_tol=1e-6)
+        bpy.context.view_layer.update()
+        deep = (np.abs(on_sheet[:, 0]) < 22.0) & (np.abs(on_sheet[:, 1]) < 20.0)
+        assert np.allclose(numbers(sea.data)[deep, 2], 0.2 * heights[deep], atol=2e-3 * np.abs(heights).max())
+        assert refused(lambda: bpy.ops.pelagic.paint_mask(attribute="none"), "has no attribute none")
 
 with checking("a moving object leaves a wake along its path, in the sea's own axes; one that stands still leaves none"):
     fresh_file()

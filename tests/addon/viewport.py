@@ -151,6 +151,10 @@ def steps():
         obj = add_ocean()
     options = bpy.context.window_manager.pelagic_preview
     look(-4.0, 12.0)
+    # Calm where a picture says so, which is a texture of its own.
+    mask = obj.pelagic.waves.masks.add()
+    mask.picture = str(Path(__file__).parents[2] / "examples" / "data" / "tiles.exr")
+    mask.length_m, mask.width_m, mask.edge_m, mask.waves = 120.0, 90.0, 10.0, 0.0
 
     with checking("the mesh is hidden, and the picture is the program's own"):
         shown = picture()
@@ -175,6 +179,7 @@ def steps():
         assert np.median(difference) <= 2 / 255 and difference.mean() < 0.02
         assert np.abs(ratio - 1).max() < 0.02
 
+    obj.pelagic.waves.masks.clear()
     obj.pelagic.quality.level = "draft"  # quicker
 
     with checking("foam that lives is the program's, too, and how it looks needs no other sea and no other sky"):

@@ -65,6 +65,7 @@ constexpr const char* kCageName = "cage.obj";
 constexpr const char* kBodyName = "body.obj";
 constexpr const char* kSkyName = "sky.exr";
 constexpr const char* kFoamName = "foam.exr";
+constexpr const char* kMaskName = "mask.exr";
 constexpr const char* kBuoyName = "99001w2024.txt";
 constexpr const char* kBody =
     "v -3 -1 -1\nv 3 0 0\nv -3 1 -1\nv -2 0 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n";
@@ -177,6 +178,7 @@ class Draw {
     std::string text(const Key& key) {
         if (key.path == "light.sky")
             return chance(kPictureOfSky) ? kSkyName : std::get<std::string>(key.fallback);
+        if (key.path == "waves.masks[].picture") return kMaskName;
         if (key.is_picture) return chance(0.5) ? kFoamName : std::get<std::string>(key.fallback);
         if (key.path == "shot.name") {
             constexpr std::string_view kLetters =
@@ -315,6 +317,16 @@ std::string random_foam(Draw& draw) {
         {}, {.width = side, .height = side, .channels = {{.name = "Y", .data = texels.data()}}});
 }
 
+// A picture of where a mask holds.
+std::string random_mask(Draw& draw) {
+    const int width = draw.integer(2, 32), height = draw.integer(2, 32);
+    std::vector<float> texels;
+    for (int i = 0; i < width * height; ++i)
+        texels.push_back(static_cast<float>(draw.chance(0.3) ? draw.integer(0, 1) : draw.uniform(0.0, 1.0)));
+    return exr::encode_scanline(
+        {}, {.width = width, .height = height, .channels = {{.name = "Y", .data = texels.data()}}});
+}
+
 // An hour of a buoy that measures a few frequencies, some of them without directions or missing.
 std::map<std::string, std::string> random_buoy(Draw& draw) {
     const int count = draw.integer(2, 12);
@@ -378,6 +390,7 @@ class Drawing {
         if (is("light.sky", std::string(kSkyName))) made_.files[kSkyName] = random_sky(light_);
         for (const char* key : {"effects.foam_pattern", "sea.depth_file", "water.floor_pattern"})
             if (is(key, std::string(kFoamName))) made_.files[kFoamName] = random_foam(light_);
+        if (made_.text().find(kMaskName) != std::string::npos) made_.files[kMaskName] = random_mask(light_);
         return std::move(made_);
     }
 
@@ -734,6 +747,9 @@ std::optional<Scene> RandomScene::scene() const {
         } else if (key->type != KeyType::DataTime) {
             if (const std::optional<Problem> problem = set_value(scene, *key, value))
                 throw std::logic_error("a random scene's " + text_of(*problem));
+            if (key->path == "waves.masks")
+                scene.waves.mask_pictures[kMaskName] =
+                    std::make_shared<const MaskPicture>(2, 2, std::vector<float>{0.0f, 1.0f, 1.0f, 0.5f});
         }
     }
     for (SceneObject& object : scene.objects) {

@@ -6,9 +6,9 @@ bad=0
 # allow FOLDER "OTHERS": files in FOLDER may include only from FOLDER and OTHERS.
 allow() {
     local found
-    # The scene and its cage are core/scene's, wherever their headers lie.
-    found=$(grep -rnoE '#include "((core|plugin|plugin/format|plugin/host|tests)/[a-z]+/|pelagic/(scene|cage)\.h)' "$1" --include='*.h' --include='*.cpp' --include='*.inl' --include='*.glsl' |
-        sed 's|"pelagic/[a-z.]*|"core/scene/|' |
+    # The scene, its cage and its pictures of masks are core/scene's, wherever their headers lie.
+    found=$(grep -rnoE '#include "((core|plugin|plugin/format|plugin/host|tests)/[a-z]+/|pelagic/(scene|cage|mask_picture)\.h)' "$1" --include='*.h' --include='*.cpp' --include='*.inl' --include='*.glsl' |
+        sed 's|"pelagic/[a-z._]*|"core/scene/|' |
         grep -vE "\"($(echo "$1 $2" | tr ' ' '|'))/" || true)
     [ -z "$found" ] || { echo "$found: not below $1"; bad=1; }
 }
@@ -33,7 +33,7 @@ allow plugin/format/usd ""
 allow plugin/format/vdb ""
 allow plugin/format/ocio ""
 allow plugin/format/obj "core/base core/scene"
-allow plugin/format/shot "core/base core/scene plugin/format/obj"
+allow plugin/format/shot "core/base core/scene plugin/format/exr plugin/format/obj"
 allow plugin/light "core/[a-z]+ plugin/files plugin/format/exr plugin/format/obj"
 allow plugin/run "core/[a-z]+ plugin/files plugin/format/exr plugin/format/png plugin/light plugin/format/usd"
 allow plugin/bake "core/[a-z]+ plugin/machine plugin/files plugin/format/exr plugin/light plugin/format/usd plugin/format/vdb plugin/run"

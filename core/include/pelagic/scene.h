@@ -11,12 +11,14 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pelagic/cage.h"
+#include "pelagic/mask_picture.h"
 #include "pelagic/object_mesh.h"
 #include "pelagic/version.h"
 
@@ -142,15 +144,16 @@ struct HeroWave {
     double height_m = 5.0;               // of the crest over the mean level; below 0 a trough
 };
 
-// A calm or rough place of the world (core/plan/masks.h): an ellipse, and gains of the sea within it.
+// A calm or rough place of the world (core/plan/masks.h): an ellipse or a picture, and gains of the sea where it holds.
 struct WaveMask {
     double east_m = 0.0, north_m = 0.0;        // its middle
-    double length_m = 200.0, width_m = 200.0;  // of the ellipse, > 0, where it holds whole
+    double length_m = 200.0, width_m = 200.0;  // > 0, of the ellipse, where it holds whole, or of the picture
     double direction_deg = 0.0;                // of its length, counter-clockwise from +x
-    double edge_m = 50.0;                      // > 0: round the ellipse, where it fades
-    double waves = 1.0;                        // ≥ 0, times the amplitude of all waves
-    double ripples = 1.0;                      // 0 … 1, times that of short waves: 0 is a slick
-    double foam = 1.0;                         // 0 … 1, times the coverage of what breaks
+    double edge_m = 50.0;                  // > 0: round the ellipse, where it fades; a picture is as smooth
+    double waves = 1.0;                    // ≥ 0, times the amplitude of all waves
+    double ripples = 1.0;                  // 0 … 1, times that of short waves: 0 is a slick
+    double foam = 1.0;                     // 0 … 1, times the coverage of what breaks
+    std::optional<std::string> picture{};  // in place of the ellipse: its name in Waves::mask_pictures
 };
 
 // What makes a wake (core/waves/vessel_waves.h). A list of keys of where its middle is: "1 0 0, 48 20 5", frame, east and north [m] of each.
@@ -183,6 +186,8 @@ struct Waves {
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     std::vector<HeroWave> heroes;
     std::vector<WaveMask> masks;  // where they overlap, their gains multiply
+    // By the names that masks have for them, the paths of their files; what a shot depends on is the content.
+    std::map<std::string, std::shared_ptr<const MaskPicture>> mask_pictures;
     std::vector<Vessel> vessels;
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).

@@ -1,6 +1,34 @@
 // Calm and rough places at a point, as in core/evaluate/masks.cpp and prepared_query.cpp. The rows of `gusts` from kGustRows on, three for
 // each mask: its middle from the origin [m] and the direction of its length; one over its half axes, within and without its edge; its gains
-// of waves, ripples and foam. Then what a slick hides of the slopes: xx, xy, yy.
+// of waves, ripples and foam, and how far it reaches [m]. Of a picture: its cells per metre and their counts, and −1 less its first row in
+// mask_cells. Then what a slick hides of the slopes: xx, xy, yy.
+uniform sampler2D mask_cells;  // shares of the masks of pictures, one's rows after another's
+
+// As picture_share() in core/plan/masks.h.
+MaskShare picture_share(vec2 at, vec4 size, int first_row) {
+    vec2 place = at * size.xy + 0.5 * size.zw;
+    MaskShare share = MaskShare(0.0, 0.0, 0.0);
+    if (!(place.x > -1.0 && place.y > -1.0 && place.x < size.z + 1.0 && place.y < size.w + 1.0)) return share;
+    vec2 cell = floor(place);
+    MaskWeights along = mask_weights(place.x - cell.x - 0.5);
+    MaskWeights across = mask_weights(place.y - cell.y - 0.5);
+    vec3 weights = vec3(along.before, along.here, along.after), rates = vec3(along.before_rate, along.here_rate, along.after_rate);
+    for (int j = 0; j < 3; ++j) {
+        int y = int(cell.y) + j - 1;
+        if (y < 0 || y >= int(size.w)) continue;
+        vec3 shares = vec3(0.0);
+        for (int i = 0; i < 3; ++i) {
+            int x = int(cell.x) + i - 1;
+            if (x >= 0 && x < int(size.z)) shares[i] = texelFetch(mask_cells, ivec2(x, first_row + y), 0).x;
+        }
+        float weight = j == 0 ? across.before : j == 1 ? across.here : across.after;
+        float rate = j == 0 ? across.before_rate : j == 1 ? across.here_rate : across.after_rate;
+        share.share += weight * dot(weights, shares);
+        share.x += weight * dot(rates, shares);
+        share.y += rate * dot(weights, shares);
+    }
+    return MaskShare(share.share, share.x * size.x, share.y * size.y);
+}
 
 MaskGains placed_masks(vec2 rest_m) {
     MaskGains all = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
@@ -9,6 +37,11 @@ MaskGains placed_masks(vec2 rest_m) {
         vec4 size = gusts[kGustRows + 3 * i + 1];
         vec4 gains = gusts[kGustRows + 3 * i + 2];
         vec2 from = place.xy + rest_m;
+        if (kMaskPictures && gains.w < 0.0) {
+            MaskShare at = picture_share(vec2(dot(from, place.zw), from.y * place.z - from.x * place.w), size, int(-1.0 - gains.w));
+            all = with_share(all, at, place.z, place.w, gains.x, gains.y, gains.z);
+            continue;
+        }
         if (!(dot(from, from) < gains.w * gains.w)) continue;
         all = with_mask(all, from.x, from.y, place.z, place.w, size.x, size.y, size.z, size.w, gains.x, gains.y, gains.z);
     }

@@ -39,6 +39,7 @@ class SeaLayout {
     bool is_masked() const { return sea_->plan().masks.has_value(); }
     int masks() const { return is_masked() ? static_cast<int>(sea_->plan().masks->masks.size()) : 0; }
     int mask_rows() const { return is_masked() ? 3 * masks() + 1 : 0; }
+    bool has_mask_pictures() const { return is_masked() && sea_->plan().masks->picture_texels() > 0; }
     // Whether vessels' wakes calm ripples as well.
     bool has_strips() const { return is_masked() && sea_->plan().masks->has_strips; }
     int calm_cell() const { return calm_cell_; }
@@ -97,6 +98,10 @@ class SeaLayout {
     // Rows of ellipse_columns(), as cascades.glsl has it; one texel of zeros where there are no cascades.
     std::vector<glm::vec4> ellipse_texels() const;
     int ellipse_columns() const;
+
+    // The texture mask_cells, one float a texel, by the size of it; where masks have pictures.
+    glm::ivec2 mask_cells_size() const;
+    std::vector<float> mask_cells() const;
 
     // A vessel's rows of the uniform block, and of the texture wake_table: see wakes.glsl.
     static constexpr int kVesselRows = 2, kWakeTableRows = 2 + Frame<float>::kSlopeBlocks;

@@ -75,11 +75,16 @@ std::vector<std::array<float, 4>> rows_of(const MasksPlan& plan, const SpectralM
                           static_cast<float>(d)};
     };
     std::vector<std::array<float, 4>> rows;
+    int first_row = 0;
     for (const MasksPlan::Mask& mask : plan.masks) {
-        const glm::dvec2 from = origin_m - mask.middle_m, in = mask.inner_per_m, out = mask.outer_per_m;
+        const glm::dvec2 from = origin_m - mask.middle_m,
+                         in = mask.cells ? mask.cells_per_m : mask.inner_per_m,
+                         out = mask.cells ? glm::dvec2(mask.cells->count) : mask.outer_per_m;
         rows.push_back(row(from.x, from.y, mask.along.x, mask.along.y));
         rows.push_back(row(in.x, in.y, out.x, out.y));
-        rows.push_back(row(mask.waves, mask.ripples, mask.foam, mask.reach_m));
+        rows.push_back(
+            row(mask.waves, mask.ripples, mask.foam, mask.cells ? -1.0 - first_row : mask.reach_m));
+        if (mask.cells) first_row += mask.cells->count.y;
     }
     rows.push_back(row(slick.xx, slick.xy, slick.yy, 0.0));
     return rows;
@@ -160,6 +165,28 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
 std::vector<float> SeaLayout::train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const {
     const std::vector<double> cycles = phases_at(sea_->trains(), origin_m, time_within_loop_s);
     return {cycles.begin(), cycles.end()};
+}
+
+glm::ivec2 SeaLayout::mask_cells_size() const {
+    glm::ivec2 size(0);
+    for (const MasksPlan::Mask& mask : sea_->plan().masks->masks)
+        if (mask.cells) size = {std::max(size.x, mask.cells->count.x), size.y + mask.cells->count.y};
+    return size;
+}
+
+std::vector<float> SeaLayout::mask_cells() const {
+    const auto columns = static_cast<std::size_t>(mask_cells_size().x);
+    std::vector<float> texels;
+    for (const MasksPlan::Mask& mask : sea_->plan().masks->masks) {
+        if (!mask.cells) continue;
+        const auto width = static_cast<std::size_t>(mask.cells->count.x);
+        for (std::size_t at = 0; at < mask.cells->shares.size(); at += width) {
+            for (std::size_t i = 0; i < width; ++i)
+                texels.push_back(static_cast<float>(mask.whole) * mask.cells->shares[at + i]);
+            texels.resize(texels.size() + columns - width);
+        }
+    }
+    return texels;
 }
 
 std::vector<glm::vec4> SeaLayout::wake_texels(const Frame<float>& frame) const {

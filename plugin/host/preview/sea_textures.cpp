@@ -24,7 +24,8 @@ enum Unit : int {
     kFoamNodes,
     kFoamPages,
     kFoamLevels,
-    kWakeTable
+    kWakeTable,
+    kMaskCells
 };
 
 }  // namespace
@@ -44,7 +45,7 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         throw PreviewError("the sea's tables need " + std::to_string(block_bytes) +
                            " bytes of uniforms, and the driver has " + std::to_string(largest_block) +
                            ": ask for fewer cascades or vessels");
-    std::optional<GlTexture> train_table, train_cycles;
+    std::optional<GlTexture> train_table, train_cycles, mask_cells;
     GlTexture ellipse_table;
     edit_texture(ellipse_table);
     texels_as_they_are();
@@ -67,6 +68,18 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         texels_as_they_are();
         glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, std::max(count, 1), 1, 0, GL_RED, GL_FLOAT, nullptr);
     }
+    if (layout->has_mask_pictures()) {
+        const glm::ivec2 size = layout->mask_cells_size();
+        if (std::max(size.x, size.y) > largest_texture)
+            throw PreviewError("the pictures of waves.masks need a texture of " + std::to_string(size.x) +
+                               " x " + std::to_string(size.y) + ", and the driver's largest is " +
+                               std::to_string(largest_texture) + ": take smaller ones, or wider edges");
+        edit_texture(mask_cells.emplace());
+        texels_as_they_are();
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, size.x, size.y, 0, GL_RED, GL_FLOAT,
+                     layout->mask_cells().data());
+    }
     // A sea that changes has a layout for each time, and the same textures for all of them.
     const bool has_room = layout_ &&
                           std::ranges::equal(layout_->planes(), layout->planes(),
@@ -81,6 +94,7 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     }
     ellipse_table_ = std::move(ellipse_table);
     if (layout->vessels() == 0) wake_table_.reset();
+    mask_cells_ = std::move(mask_cells);
     train_table_ = std::move(train_table);
     train_cycles_ = std::move(train_cycles);
     if (has_room) return true;
@@ -226,7 +240,8 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
           std::pair{"pixel_fields_2", kPixelFields2}, std::pair{"ellipse_table", kEllipseTable},
           std::pair{"train_table", kTrainTable}, std::pair{"train_cycles", kTrainCycles},
           std::pair{"foam_nodes", kFoamNodes}, std::pair{"foam_pages", kFoamPages},
-          std::pair{"foam_levels", kFoamLevels}, std::pair{"wake_table", kWakeTable}})
+          std::pair{"foam_levels", kFoamLevels}, std::pair{"wake_table", kWakeTable},
+          std::pair{"mask_cells", kMaskCells}})
         glUniform1i(program.uniform(name), unit);
     set_uniforms(program, query_uniforms(*layout_));
     for (std::size_t p = 0; p < planes_.size(); ++p)
@@ -237,6 +252,7 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
         bind_texture(kTrainCycles, *train_cycles_);
     }
     if (wake_table_) bind_texture(kWakeTable, *wake_table_);
+    if (mask_cells_) bind_texture(kMaskCells, *mask_cells_);
     if (foam_textures_) {
         bind_texture(kFoamNodes, foam_textures_->nodes);
         bind_texture(kFoamPages, foam_textures_->pages);

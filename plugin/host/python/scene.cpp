@@ -194,6 +194,8 @@ std::string text_of_shot(const Scene& scene) {
         absolute(path);
         return path;
     });
+    for (WaveMask& mask : placed.waves.masks)
+        if (mask.picture) absolute(*mask.picture);
     if (placed.sea.measured) absolute(placed.sea.measured->file);
     if (placed.surface.cage) {
         if (placed.surface.cage_file.empty())
@@ -219,6 +221,8 @@ std::string text_of_shot(const Scene& scene) {
     };
     for (const Key* key : picture_keys(placed))
         require_utf8(key->path, std::get<std::string>(value_of(placed, *key)));
+    for (const WaveMask& mask : placed.waves.masks)
+        if (mask.picture) require_utf8("waves.masks", *mask.picture);
     if (placed.sea.measured) require_utf8(kSpectrumFile, placed.sea.measured->file);
     if (placed.surface.cage) require_utf8(kCageFile, placed.surface.cage_file);
     for (const SceneObject& object : placed.objects) require_utf8("objects[].file", object.file);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/scene/names.h"
+#include "plugin/format/shot/mask_files.h"
 #include "plugin/format/shot/shot.h"
 
 namespace pelagic::python {
@@ -170,8 +171,14 @@ py::object to_python(const Key& key, const KeyValue& value) {
 }
 
 void set_from_python(Scene& scene, const Key& key, py::handle given) {
-    if (const auto problem = set_value(scene, key, from_python(key, key.path, given)))
-        throw ShotError(text_of(*problem));
+    const KeyValue value = from_python(key, key.path, given);
+    Waves before = scene.waves;
+    if (const auto problem = set_value(scene, key, value)) throw ShotError(text_of(*problem));
+    if (key.path != "waves.masks") return;
+    const std::vector<Problem> problems = read_mask_pictures(scene.waves, "");
+    if (problems.empty()) return;
+    scene.waves = std::move(before);
+    throw ShotError(text_of(problems.front()));
 }
 
 const Key& key_at(std::string_view path) {

@@ -261,6 +261,10 @@ class GpuSea {
         made["ellipse_table"] =
             view_of(owner, &tables->ellipse_table[0].x,
                     {static_cast<py::ssize_t>(tables->ellipse_table.size()) / columns, columns, 4});
+        if (!tables->mask_cells.empty()) {
+            const glm::ivec2 size = layout.mask_cells_size();
+            made["mask_cells"] = view_of(owner, tables->mask_cells.data(), {size.y, size.x, 1});
+        }
         if (!tables->train_table.empty())
             made["train_table"] =
                 view_of(owner, &tables->train_table[0].x,
@@ -388,11 +392,13 @@ class GpuSea {
         explicit Tables(const std::shared_ptr<const Sea<float>>& sea)
             : packed(sea, 0), ellipse_table(layout().ellipse_texels()) {
             if (layout().has_trains()) train_table = layout().train_texels();
+            if (layout().has_mask_pictures()) mask_cells = layout().mask_cells();
         }
         const SeaLayout& layout() const { return *packed.layout(); }
 
         PackedFrame packed;
         std::vector<glm::vec4> train_table, ellipse_table;
+        std::vector<float> mask_cells;
     };
     std::shared_ptr<Tables> now() const {
         const auto reading = locked();
@@ -571,7 +577,7 @@ void add_viewport(py::module_& module) {
         .def_property_readonly(
             "textures", &GpuSea::textures,
             "Textures of the sea's shader by name: float32 (height, width, 1, 2 or 4), texels as they are. "
-            "Read-only views of memory that the next set() overwrites; only train_table and ellipse_table stay, unless it `changes`.")
+            "Read-only views of memory that the next set() overwrites; only train_table, ellipse_table and mask_cells stay, unless it `changes`.")
         .def(
             "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
             "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "

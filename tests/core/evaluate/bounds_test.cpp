@@ -54,7 +54,16 @@ Scene hero() {
 Scene masked() {
     Scene scene;
     scene.waves.masks = {{.length_m = 90.0, .width_m = 60.0, .edge_m = 40.0, .waves = 1.8},
-                         {.east_m = 60.0, .width_m = 30.0, .edge_m = 50.0, .waves = 0.3, .ripples = 0.2}};
+                         {.east_m = 60.0, .width_m = 30.0, .edge_m = 50.0, .waves = 0.3, .ripples = 0.2},
+                         {.north_m = 30.0,
+                          .length_m = 70.0,
+                          .width_m = 70.0,
+                          .edge_m = 9.0,
+                          .waves = 1.4,
+                          .picture = "chequers"}};
+    std::vector<float> chequers;
+    for (int i = 0; i < 8 * 8; ++i) chequers.push_back(static_cast<float>((i + i / 8) % 2));
+    scene.waves.mask_pictures["chequers"] = std::make_shared<const MaskPicture>(8, 8, std::move(chequers));
     return scene;
 }
 Scene without_choppiness() {

@@ -3,10 +3,14 @@
 #include "core/plan/masks.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "core/effects/sea_at_time.h"
 #include "core/waves/folding.h"
@@ -18,6 +22,17 @@ namespace {
 using namespace test;
 
 constexpr double kTime_s = 2.5;
+
+// Of any shares: a value of 0 … 1 for each pixel.
+std::shared_ptr<const MaskPicture> picture(int width, int height, const auto& share) {
+    std::vector<float> shares;
+    for (int row = 0; row < height; ++row)
+        for (int x = 0; x < width; ++x) shares.push_back(static_cast<float>(share(x, row)));
+    return std::make_shared<const MaskPicture>(width, height, std::move(shares));
+}
+double blotches(int x, int row) {
+    return 0.5 + 0.5 * std::sin(2.1 * x + 1.3 * row) * std::cos(0.7 * x - 2.9 * row);
+}
 
 // Young wind waves, of which masks of a hundred metres hold many.
 Scene young_sea(std::vector<WaveMask> masks = {}) {
@@ -42,6 +57,20 @@ const std::vector<WaveMask> kTwo{
      .waves = 0.2},
     {.east_m = 30.0, .north_m = 8.0, .length_m = 20.0, .width_m = 20.0, .edge_m = 25.0, .waves = 1.7}};
 
+// The same with a rough picture across them.
+Scene with_blotches(Scene scene) {
+    scene.waves.masks.push_back({.east_m = -20.0,
+                                 .north_m = 10.0,
+                                 .length_m = 90.0,
+                                 .width_m = 60.0,
+                                 .direction_deg = -25.0,
+                                 .edge_m = 12.0,
+                                 .waves = 1.4,
+                                 .picture = "blotches"});
+    scene.waves.mask_pictures["blotches"] = picture(31, 17, blotches);
+    return scene;
+}
+
 TEST(Masks, HaveTheNormalsTheJacobianAndTheVelocityOfTheirPositions) {
     constexpr double kStep = 1e-4;
     const ProductSet wanted = products(Position, Normal, Velocity, Product::JacobianMoments);
@@ -49,7 +78,7 @@ TEST(Masks, HaveTheNormalsTheJacobianAndTheVelocityOfTheirPositions) {
     for (const bool is_trains : {false, true})
         for (const Tiling tiling : {Tiling::Random, Tiling::Periodic})
             for (const double footprint_m : {0.0, 1.0}) {
-                Scene scene = young_sea(kTwo);
+                Scene scene = with_blotches(young_sea(kTwo));
                 scene.waves.tiling = tiling;
                 if (is_trains) {
                     scene.waves.model = WaveModel::Trochoid;
@@ -146,10 +175,15 @@ double slopes(const ProductArrays<float>& values) {
 }
 
 // Along lines across an edge: the squares of the slopes that are shown and what is hidden of them, against m² Σ + (∇m ⊗ ∇m) m0.
-TEST(Masks, ShowAndHideWhatTheySayAcrossAnEdge) {
+void show_and_hide_across_an_edge(bool is_picture) {
     constexpr double kEdge_m = 8.0;
     Scene scene = young_sea(
         {{.length_m = 1e5, .width_m = 100.0, .direction_deg = 90.0, .edge_m = kEdge_m, .waves = 0.25}});
+    if (is_picture) {  // whose edge is half within
+        scene.waves.masks[0].width_m += kEdge_m;
+        scene.waves.masks[0].picture = "ones";
+        scene.waves.mask_pictures["ones"] = picture(16, 64, [](int, int) { return 1.0; });
+    }
     scene.quality.level = QualityLevel::Final;
     std::vector<Query> queries;
     for (const double footprint_m : {0.3, 2.0, 8.0})
@@ -178,6 +212,13 @@ TEST(Masks, ShowAndHideWhatTheySayAcrossAnEdge) {
                                 });
             EXPECT_NEAR(slopes(sample(frame, query, rest)) / said, 1.0, 0.01) << query << ' ' << share;
         }
+}
+
+TEST(Masks, ShowAndHideWhatTheySayAcrossAnEdge) {
+    show_and_hide_across_an_edge(false);
+}
+TEST(Masks, ShowAndHideWhatTheySayAcrossThatOfAPicture) {
+    show_and_hide_across_an_edge(true);
 }
 
 // The same in a slick, for footprints finer and coarser than it, and half a slick.
@@ -386,6 +427,197 @@ TEST(Masks, AreWarnedOfWhereTheirEdgesCutWavesAndRefusedWhereTheyCannotBe) {
     scene.effects.breaking_from_m = 0.2;
     ASSERT_EQ(validate(scene).size(), 1u);
     EXPECT_EQ(validate(scene).front().accepted, "1, or effects.breaking_from_m of 0.25 or more");
+}
+
+// Where a picture of ones holds, it is the ellipse of the same gains, and half of it on its border.
+TEST(MaskPictures, OfOnesAreWhatAnEllipseIsInItsMiddle) {
+    const WaveMask ellipse{.east_m = 40.0,
+                           .north_m = -10.0,
+                           .length_m = 100.0,
+                           .width_m = 60.0,
+                           .direction_deg = 20.0,
+                           .edge_m = 10.0,
+                           .waves = 0.3,
+                           .ripples = 0.5,
+                           .foam = 0.25};
+    Scene of_ellipse = young_sea({ellipse}), of_picture = of_ellipse;
+    of_ellipse.effects.breaking_from_m = of_picture.effects.breaking_from_m = 1.0;
+    of_picture.waves.masks[0].picture = "ones";
+    of_picture.waves.mask_pictures["ones"] = picture(40, 24, [](int, int) { return 1.0; });
+    const std::vector<Query> queries{
+        filtered(products(Position, Normal, Velocity, SlopeVariance, Product::Breaking), 0.1)};
+    const auto a = frame_of<float>(of_ellipse, queries, kTime_s),
+               b = frame_of<float>(of_picture, queries, kTime_s);
+    const Where<float> at{.origin_m = {40.0, -10.0}, .cell_m = {}, .pixel_m = {}};
+    const auto rest = random_points<float>(24.0, 500);
+    const auto was = sample(a, 0, rest, at), is = sample(b, 0, rest, at);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        ASSERT_LT(glm::length(was.vectors(Position)[i] - is.vectors(Position)[i]), 1e-6f) << i;
+        ASSERT_LT(glm::length(was.vectors(Normal)[i] - is.vectors(Normal)[i]), 1e-6f) << i;
+        ASSERT_LT(glm::length(was.vectors(Velocity)[i] - is.vectors(Velocity)[i]), 1e-6f) << i;
+        ASSERT_LT(glm::length(was.vectors(SlopeVariance)[i] - is.vectors(SlopeVariance)[i]), 1e-6f) << i;
+        ASSERT_NEAR(was.numbers(Product::Breaking)[i], is.numbers(Product::Breaking)[i], 1e-6f) << i;
+    }
+    const MasksPlan plan = *plan_masks(of_picture);
+    const auto gains_at = [&](double u, double v) {
+        const double turn = 20.0 * kPi / 180.0, c = std::cos(turn), s = std::sin(turn);
+        return plan.at({40.0 + u * c - v * s, -10.0 + u * s + v * c});
+    };
+    const MaskGains<double> whole = gains_at(-44.0, 24.0), border = gains_at(-50.0, 3.0),
+                            beyond = gains_at(-55.1, 3.0);
+    EXPECT_NEAR(whole.waves, 0.3, 1e-12);
+    EXPECT_NEAR(whole.ripples, 0.5, 1e-12);
+    EXPECT_NEAR(whole.foam, 0.25, 1e-12);
+    EXPECT_NEAR(border.waves, 0.65, 1e-12);
+    EXPECT_NEAR(border.foam, 0.625, 1e-12);
+    EXPECT_EQ(beyond.waves, 1.0);
+    EXPECT_EQ(beyond.foam, 1.0);
+}
+
+// Left is left, and the top is to the left of the length.
+TEST(MaskPictures, LieAsTheirLengthDoes) {
+    Scene scene = young_sea({{.east_m = 5.0,
+                              .length_m = 40.0,
+                              .width_m = 20.0,
+                              .direction_deg = 90.0,
+                              .edge_m = 1.0,
+                              .waves = 0.0,
+                              .picture = "corner"}});
+    scene.waves.mask_pictures["corner"] = picture(4, 2, [](int x, int row) { return x == 3 && row == 0; });
+    const MasksPlan plan = *plan_masks(scene);
+    // Its length runs north, so its last column is the northernmost, and its top lies west.
+    EXPECT_NEAR(plan.at({0.0, 15.0}).waves, 1.0 - 0.75 * 0.75, 1e-12);
+    EXPECT_NEAR(plan.at({10.0, 15.0}).waves, 1.0 - 0.75 * 0.125, 1e-12);
+    EXPECT_EQ(plan.at({0.0, -15.0}).waves, 1.0);
+}
+
+// Their bounds, and derivatives that are those of what is shown, wherever a picture is as rough as can be.
+TEST(MaskPictures, AreAsSmoothAsTheirEdge) {
+    for (const double edge_m : {1.0, 9.0, 40.0, 500.0}) {
+        Scene scene = young_sea({{.east_m = 1e5,
+                                  .length_m = 120.0,
+                                  .width_m = 80.0,
+                                  .direction_deg = 33.0,
+                                  .edge_m = edge_m,
+                                  .waves = 3.0,
+                                  .picture = "chequers"}});
+        scene.waves.mask_pictures["chequers"] =
+            picture(48, 37, [](int x, int row) { return (x / 3 + row / 2) % 2; });
+        SCOPED_TRACE(edge_m);
+        const MasksPlan plan = *plan_masks(scene);
+        const MasksPlan::Mask& mask = plan.masks[0];
+        const glm::dvec2 cell_m = 1.0 / mask.cells_per_m;
+        EXPECT_GE(std::min(cell_m.x, cell_m.y), 0.5 * edge_m);
+        double most = 1.0, farthest_m = 0.0;
+        const double reach_m = mask.reach_m;
+        for (const glm::dvec2& from : random_points<double>(2.2 * reach_m, 20000)) {
+            const glm::dvec2 at = mask.middle_m + from;
+            const MaskGains<double> gains = plan.at(at);
+            ASSERT_GE(gains.waves, 1.0);
+            ASSERT_LE(gains.waves, mask.strongest + 1e-12);
+            most = std::max(most, gains.waves);
+            if (gains.waves > 1.0) farthest_m = std::max(farthest_m, glm::length(from));
+            const glm::dvec2 rate(glm::dot(glm::dvec2(gains.x, gains.y), mask.along),
+                                  gains.y * mask.along.x - gains.x * mask.along.y);
+            ASSERT_LE(std::abs(rate.x), 2.0 / cell_m.x * (1.0 + 1e-12));
+            ASSERT_LE(std::abs(rate.y), 2.0 / cell_m.y * (1.0 + 1e-12));
+            constexpr double kStep_m = 1e-4;
+            for (const glm::dvec2 way : {glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0)}) {
+                const MaskGains<double> after = plan.at(at + kStep_m * way),
+                                        before = plan.at(at - kStep_m * way);
+                const double said = way.x * gains.x + way.y * gains.y, least_m = std::min(cell_m.x, cell_m.y);
+                ASSERT_NEAR((after.waves - before.waves) / (2.0 * kStep_m), said,
+                            8.0 * kStep_m / (least_m * least_m) + 1e-6);
+                ASSERT_LE(
+                    std::abs(way.x * (after.x - before.x) + way.y * (after.y - before.y)) / (2.0 * kStep_m),
+                    8.0 / (least_m * least_m) + 1e-6);
+            }
+        }
+        EXPECT_LE(farthest_m, reach_m);
+        EXPECT_GT(most, 1.0 + 0.55 * (mask.strongest - 1.0));  // one cell alone has 9/16
+        EXPECT_EQ(plan.gains_in(mask.middle_m, mask.middle_m).largest, mask.strongest);
+        EXPECT_EQ(plan.largest(), mask.strongest);
+        // The whole of it is kept, however wide the edge.
+        double held_m2 = 0.0;
+        for (const glm::dvec2& from : random_points<double>(2.2 * reach_m, 200000))
+            held_m2 += 0.5 * (plan.at(mask.middle_m + from).waves - 1.0);
+        held_m2 *= 2.2 * reach_m * 2.2 * reach_m / 200000.0;
+        double share = 0.0;
+        for (const float each : scene.waves.mask_pictures["chequers"]->shares())
+            share += static_cast<double>(each) / (48.0 * 37.0);
+        EXPECT_NEAR(held_m2 / (120.0 * 80.0 * share), 1.0, 0.03);
+    }
+}
+
+// A frame by itself on one thread and after others on two.
+TEST(MaskPictures, AreTheSameToTheBitInEveryFrameHoweverItIsMade) {
+    const Scene scene = with_blotches(young_sea(kTwo));
+    const std::vector<Query> queries{filtered(products(Position, Normal, SlopeVariance), 0.25)};
+    const auto rest = random_points<float>(160.0, 2000);
+    const auto values_on = [&](int threads, const std::vector<double>& times_s) {
+        tbb::task_arena arena(threads);
+        return arena.execute([&] {
+            auto frame = frame_of<float>(scene, queries, times_s.front());
+            for (const double t_s : times_s) frame.set(t_s);
+            return sample(frame, 0, rest);
+        });
+    };
+    const auto alone = values_on(1, {kTime_s}), after = values_on(2, {0.0, 1.25, kTime_s});
+    EXPECT_EQ(alone.vectors(Position), after.vectors(Position));
+    EXPECT_EQ(alone.vectors(Normal), after.vectors(Normal));
+    EXPECT_EQ(alone.vectors(SlopeVariance), after.vectors(SlopeVariance));
+}
+
+TEST(MaskPictures, AreRefusedWhereTheyAreNone) {
+    const auto refusal = [](int width, int height, std::vector<float> shares) -> std::string {
+        try {
+            const MaskPicture made(width, height, std::move(shares));
+        } catch (const MaskPictureError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    constexpr const char* kAccepted = "; accepted: a picture of 2 … 4096 pixels a side, with values of 0 … 1";
+    EXPECT_EQ(refusal(2, 2, {0.0f, 0.5f, 1.0f, -0.0f}), "");
+    EXPECT_EQ(refusal(1, 1, {0.0f}), std::string("has 1 x 1 pixels") + kAccepted);
+    EXPECT_EQ(refusal(65536, 2, {}), std::string("has 65536 x 2 pixels") + kAccepted);
+    EXPECT_EQ(refusal(2, 2, {0.0f}), std::string("has 1 values for 2 x 2 pixels") + kAccepted);
+    EXPECT_EQ(refusal(2, 2, {0.0f, 1.0f, 1.5f, 0.0f}),
+              std::string("has a value of 1.5 in its row 2, column 1") + kAccepted);
+    EXPECT_EQ(refusal(2, 2, {0.0f, std::nanf(""), 0.0f, 0.0f}),
+              std::string("has a value of nan in its row 1, column 2") + kAccepted);
+    Scene scene;
+    scene.waves.masks = {{.waves = 0.5, .picture = "lee.exr"}};
+    ASSERT_EQ(validate(scene).size(), 1u);
+    EXPECT_EQ(validate(scene).front().key, "waves.masks[0].picture");
+    EXPECT_EQ(validate(scene).front().problem, "was not read");
+    EXPECT_THROW(plan_masks(scene), std::invalid_argument);
+    scene.waves.mask_pictures["lee.exr"] = picture(2, 4096, [](int, int) { return 1.0; });
+    EXPECT_TRUE(validate(scene).empty());
+    scene.waves.masks.resize(5, scene.waves.masks[0]);
+    ASSERT_EQ(validate(scene).size(), 1u);
+    EXPECT_EQ(validate(scene).front().key, "waves.masks[4].picture");
+    EXPECT_EQ(validate(scene).front().problem, "and those of the masks before it have 20480 rows");
+}
+
+// Two cells of a picture are an edge as well, and a picture that holds nowhere whole is as rough as it is there.
+TEST(MaskPictures, AreWarnedOfByWhatTheyShow) {
+    Scene scene;
+    scene.waves.masks = {{.edge_m = 5.0, .waves = 0.5, .picture = "coarse"}};
+    scene.waves.mask_pictures["coarse"] = picture(2, 2, [](int, int) { return 1.0; });
+    const auto warned = [&] {
+        std::string all;
+        for (const std::string& warning : sea_warnings(*prepare(scene))) all += warning + '\n';
+        return all;
+    };
+    EXPECT_EQ(warned().find("waves.masks"), std::string::npos) << warned();
+    scene.waves.mask_pictures["coarse"] = picture(64, 64, [](int, int) { return 1.0; });
+    EXPECT_NE(warned().find("waves.masks[0].edge_m = 5"), std::string::npos) << warned();
+    scene.waves.masks[0].edge_m = 200.0;
+    scene.waves.masks[0].waves = 4.0;
+    EXPECT_NE(warned().find("waves.masks[0].waves = 4: the surface folds"), std::string::npos) << warned();
+    scene.waves.mask_pictures["coarse"] = picture(2, 2, [](int, int) { return 0.1; });
+    EXPECT_EQ(warned().find("waves.masks"), std::string::npos) << warned();
 }
 
 }  // namespace

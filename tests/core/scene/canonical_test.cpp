@@ -83,6 +83,7 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.waves.masks = {{.waves = 0.5}}; },
         [](Scene& s) { s.waves.masks = {{.ripples = 0.5}}; },
         [](Scene& s) { s.waves.masks = {{.foam = 0.5}}; },
+        [](Scene& s) { s.waves.masks = {{.picture = "lee.exr"}}; },
         [](Scene& s) { s.waves.vessels = {{}}; },
         [](Scene& s) { s.waves.vessels = {{.path = "1 0 0, 48 10 1"}}; },
         [](Scene& s) { s.waves.vessels = {{.interpolation = CameraInterpolation::Linear}}; },

@@ -62,7 +62,9 @@ inline KeyValue another_value(const Key& key, const KeyValue& now) {
             const double up = value + 0.25;
             return key.range && !key.range->holds(up) ? value - 0.25 : up;
         }
-        KeyValue operator()(std::monostate) const { return key.range->low; }
+        KeyValue operator()(std::monostate) const {
+            return key.type == KeyType::Text ? KeyValue(std::string("x.exr")) : KeyValue(key.range->low);
+        }
         KeyValue operator()(bool truth) const { return !truth; }
         KeyValue operator()(std::int64_t integer) const {
             const std::int64_t up = integer + (integer < 8 ? 1 : -2);

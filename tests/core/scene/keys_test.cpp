@@ -343,6 +343,31 @@ TEST(Keys, BodiesCountByTheirMeshesAndNames) {
     EXPECT_EQ(other.objects.at(0).mesh, nullptr);
 }
 
+TEST(Keys, AMasksPictureCountsAndIsDescribedByItsContent) {
+    const auto of = [](std::vector<float> shares, const std::string& file) {
+        Scene scene;
+        scene.waves.masks = {{.waves = 0.5, .picture = file}};
+        scene.waves.mask_pictures[file] = std::make_shared<const MaskPicture>(2, 2, std::move(shares));
+        return scene;
+    };
+    const Scene here = of({0.0f, 1.0f, 0.5f, 0.0f}, "lee.exr"),
+                there = of({0.0f, 1.0f, 0.5f, -0.0f}, "elsewhere/lee.exr"),
+                other = of({0.0f, 1.0f, 0.5f, 0.1f}, "lee.exr");
+    EXPECT_EQ(canonical(here), canonical(there));
+    EXPECT_NE(canonical(here, key_parts(KeyPart::Waves)), canonical(other, key_parts(KeyPart::Waves)));
+    EXPECT_EQ(canonical(here, ~key_parts(KeyPart::Waves)), canonical(other, ~key_parts(KeyPart::Waves)));
+    EXPECT_NE(canonical(here).find("picture = \"2 x 2 texels, "), std::string::npos) << canonical(here);
+    for (const DescribedKey& key : described(here, key_parts(KeyPart::Waves))) {
+        if (key.path != "waves.masks") continue;
+        EXPECT_NE(key.text.find("picture = \"2 x 2 texels, "), std::string::npos) << key.text;
+    }
+    EXPECT_NE(shot_text(there).find("picture = \"elsewhere/lee.exr\""), std::string::npos)
+        << shot_text(there);
+    Scene ellipse = here;
+    ellipse.waves.masks[0].picture.reset();
+    EXPECT_EQ(canonical(ellipse).find("picture"), std::string::npos);
+}
+
 // A number, or the word that may stand in its place.
 TEST(Keys, AnIntegerMayHaveAnotherWord) {
     const Key& level = key_of("surface.cage_level");

@@ -1,4 +1,5 @@
 // Shot files: what loads, and for what doesn't the words that say where, what and what instead.
+#include "plugin/format/exr/exr.h"
 #include "plugin/format/shot/shot.h"
 
 #include <gtest/gtest.h>
@@ -510,6 +511,90 @@ TEST(Shot, BodiesAreReadFromTheirFiles) {
               std::string::npos);
     EXPECT_EQ(lines(refused_with("[objects]\nfile = \"boat.obj\"\n")), 1u);
     EXPECT_EQ(lines(refused_with("[[objects]]\nfile = 3\n")), 1u);
+}
+
+// A grey picture, or one of colours, from its rows from the bottom.
+std::string exr_of(int width, int height, const std::vector<float>& values, bool has_colours = false) {
+    exr::Image image{.width = width, .height = height, .channels = {}};
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (!has_colours)
+        image.channels = {{.name = "Y", .data = values.data()}};
+    else
+        for (const std::size_t channel : {0, 1, 2})
+            image.channels.push_back(
+                {.name = std::string(1, "RGB"[channel]), .data = values.data() + channel * pixels});
+    return exr::encode_scanline({}, image);
+}
+
+TEST(Shot, AMasksPictureIsReadFromItsFile) {
+    const TemporaryFolder folder;
+    folder.write("lee.exr", exr_of(2, 3, {0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 0.125f}));
+    folder.write("colours.exr", exr_of(2, 2, {0, 1, 0, 1, 0, 1, 1, 1, 0, 1, 0.5f, 1}, true));
+    const std::filesystem::path file = folder.path() / "s.toml";
+    const auto text = [](const std::string& name) {
+        return "[waves]\nmasks = [{ east_m = 1, north_m = 2, waves = 0.5, picture = \"" + name + "\" }]\n";
+    };
+    const Scene scene = parse_shot(text("lee.exr"), file, no_check);
+    const std::string path = (folder.path() / "lee.exr").string();
+    EXPECT_EQ(scene.waves.masks[0].picture, path);
+    ASSERT_EQ(scene.waves.mask_pictures.size(), 1u);
+    EXPECT_EQ(scene.waves.mask_pictures.at(path)->size(), glm::ivec2(2, 3));
+    EXPECT_EQ(scene.waves.mask_pictures.at(path)->shares(),
+              (std::vector<float>{1.0f, 0.125f, 0.5f, 0.75f, 0.0f, 0.25f}));
+    const Scene again = parse_shot(shot_text(scene), "elsewhere.toml", no_check);
+    EXPECT_EQ(canonical(again), canonical(scene));
+    EXPECT_EQ(again.waves.mask_pictures.at(path),
+              scene.waves.mask_pictures.at(path));  // it wasn't read again
+    folder.write("lee.exr", exr_of(3, 2, {0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 0.125f}));
+    const Scene changed = parse_shot(text("lee.exr"), file, no_check);
+    EXPECT_EQ(changed.waves.mask_pictures.at(path)->size(), glm::ivec2(3, 2));
+    const Scene coloured = parse_shot(text("colours.exr"), file, no_check);
+    EXPECT_EQ(coloured.waves.mask_pictures.begin()->second->shares(),
+              (std::vector<float>{0.5f, 1.0f, 0.0f, 1.0f}));
+}
+
+TEST(Shot, AMasksPictureThatIsNoneIsRefused) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "s.toml";
+    const auto refused_with = [&](const std::string& picture) -> std::string {
+        try {
+            parse_shot("[waves]\nmasks = [{ east_m = 1, north_m = 2, picture = " + picture + " }]\n", file,
+                       no_check);
+        } catch (const ShotError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string whole = exr_of(64, 64, std::vector<float>(4096, 0.5f));
+    folder.write("small.exr", exr_of(1, 1, {1.0f}));
+    folder.write("wide.exr", exr_of(4097, 2, std::vector<float>(8194, 1.0f)));
+    folder.write("wider.exr", exr_of(65536, 2, std::vector<float>(131072, 1.0f)));
+    // Our own writer writes none.
+    std::string with_nan = exr_of(2, 2, {0.0f, 0.3f, 1.0f, 1.0f});
+    const auto bytes_of = [](float value) {
+        return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const std::size_t at = with_nan.find(bytes_of(0.3f));
+    ASSERT_NE(at, std::string::npos);
+    folder.write("nan.exr", with_nan.replace(at, sizeof(float), bytes_of(std::nanf(""))));
+    folder.write("bright.exr", exr_of(2, 2, {0.0f, 1.5f, 1.0f, 1.0f}));
+    folder.write("cut.exr", whole.substr(0, whole.size() / 2));
+    folder.write("text.exr", "not a picture");
+    const std::string place = file.string() + ":2:47: waves.masks[0].picture = ";
+    const std::string accepted = "a picture of 2 … 4096 pixels a side, with values of 0 … 1";
+    for (const auto& [name, problem] :
+         {std::pair{"small.exr", "has 1 x 1 pixels; accepted: " + accepted},
+          std::pair{"wide.exr", "has 4097 x 2 pixels; accepted: " + accepted},
+          std::pair{"nan.exr", "has a value of nan in its row 2, column 2; accepted: " + accepted},
+          std::pair{"bright.exr", "has a value of 1.5 in its row 2, column 2; accepted: " + accepted}})
+        EXPECT_EQ(refused_with(quoted_text(name)), place + quoted_text(name) + ": " + problem);
+    for (const char* name : {"wider.exr", "cut.exr", "text.exr", "gone.exr", "", ".", "a\\u0000b"}) {
+        const std::string message = refused_with('"' + std::string(name) + '"');
+        EXPECT_EQ(lines(message), 1u) << message;
+        EXPECT_NE(message.find("waves.masks[0].picture = "), std::string::npos) << message;
+        EXPECT_NE(message.find("; accepted: "), std::string::npos) << message;
+    }
+    EXPECT_EQ(lines(refused_with("3")), 1u);
 }
 
 TEST(Shot, BudgetsAreInsteadOfALevel) {

@@ -280,7 +280,31 @@ TEST(QueryOnTheGpu, OfCalmAndRoughPlacesIsEvaluates) {
     const Compared at{.unresolved_mss = 4e-6f};  // in a rough place there is twice as much of them
     Scene scene = copied(WaveModel::Fft);
     scene.waves.masks = masks;
+    // With pictures beside them, one coarser than its edge.
+    const auto picture = [](int width, int height) {
+        std::vector<float> shares;
+        for (int i = 0; i < width * height; ++i)
+            shares.push_back(static_cast<float>(0.5 + 0.5 * std::sin(1.7 * i)));
+        return std::make_shared<const MaskPicture>(width, height, std::move(shares));
+    };
+    scene.waves.masks.push_back({.north_m = -30.0,
+                                 .length_m = 250.0,
+                                 .width_m = 90.0,
+                                 .direction_deg = -35.0,
+                                 .edge_m = 40.0,
+                                 .waves = 1.3,
+                                 .picture = "fine"});
+    scene.waves.masks.push_back({.east_m = 20.0,
+                                 .north_m = 5.0,
+                                 .length_m = 70.0,
+                                 .width_m = 80.0,
+                                 .edge_m = 15.0,
+                                 .ripples = 0.4,
+                                 .foam = 0.2,
+                                 .picture = "coarse"});
+    scene.waves.mask_pictures = {{"fine", picture(64, 48)}, {"coarse", picture(3, 5)}};
     compare(scene, fine, at, 3000);
+    scene.waves.mask_pictures.clear();
     for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
         scene = scene_of_model(model);
         scene.waves.tiling = Tiling::Periodic;

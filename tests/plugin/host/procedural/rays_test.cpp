@@ -380,10 +380,12 @@ TEST_P(RaysAgainstMesh, MeetTheSeaWhereItIs) {
 
 constexpr char kStorm[] = "[sea]\nwind_speed_mps = 22.0\n[waves]\nchoppiness = 1.2\n";
 constexpr char kTrains[] = "[sea]\nwind_speed_mps = 9.0\n[waves]\nmodel = \"trochoid\"\n";
-// A rough place and a lee within reach of each other.
+// A rough place, a lee and a rough picture within reach of each other.
 constexpr char kPlaces[] =
     "[[waves.masks]]\neast_m = 8.0\nnorth_m = 0.0\nlength_m = 10.0\nwidth_m = 6.0\nedge_m = 8.0\nwaves = 2.0\n"
-    "[[waves.masks]]\neast_m = -10.0\nnorth_m = 4.0\nlength_m = 12.0\nwidth_m = 12.0\nedge_m = 9.0\nwaves = 0.1\n";
+    "[[waves.masks]]\neast_m = -10.0\nnorth_m = 4.0\nlength_m = 12.0\nwidth_m = 12.0\nedge_m = 9.0\nwaves = 0.1\n"
+    "[[waves.masks]]\neast_m = 2.0\nnorth_m = -6.0\nlength_m = 20.0\nwidth_m = 15.0\nedge_m = 4.0\nwaves = 1.8\n"
+    "picture = \"" PELAGIC_SOURCE_DIR "/examples/data/tiles.exr\"\n";
 // A calm that begins a kilometre east and is wider than what the tolerance is measured over.
 constexpr char kCalmAfar[] =
     "[[waves.masks]]\neast_m = 51000.0\nnorth_m = 33000.0\nlength_m = 99000.0\nwidth_m = 99000.0\nedge_m = 500.0\n"

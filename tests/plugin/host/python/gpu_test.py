@@ -1,6 +1,7 @@
 """What a host's GPU code draws the sea from. The pictures themselves: tests/addon/viewport.py, tests/plugin/host/preview."""
 
 import math
+import pathlib
 import time
 import unittest
 
@@ -43,6 +44,19 @@ class Seas(unittest.TestCase):
         self.assertGreater(4 * height_m.std(), 0.3 * pelagic.Sea(small_scene()).significant_height_m)
         with self.assertRaises(ValueError):
             sea.textures["cell_fields"][0, 0, 0] = 1.0
+
+    def test_pictures_of_masks_are_a_texture(self):
+        picture = str(pathlib.Path(__file__).parents[4] / "examples" / "data" / "tiles.exr")
+        scene = small_scene(masks=[pelagic.WaveMask(0.0, 0.0, length_m=40.0, width_m=30.0, edge_m=8.0, waves=0.5, picture=picture),
+                                   pelagic.WaveMask(9.0, 0.0, foam=0.5),
+                                   pelagic.WaveMask(50.0, 0.0, length_m=24.0, width_m=20.0, edge_m=4.0, waves=0.5, picture=picture)])
+        sea = pelagic.GpuSea(scene)
+        sea.set(1.0)
+        cells = sea.textures["mask_cells"]  # of half an edge, one picture's rows after another's
+        self.assertEqual(cells.shape, (7 + 10, 12, 1))
+        np.testing.assert_array_equal(cells[:7, 10:], 0.0)
+        self.assertTrue((cells[:7, :10] > 0.0).all() and (cells <= 1.0).all())
+        self.assertIn("kMaskPictures = true", sea.shaders(pelagic.GpuLight(scene))["sea"][0])
 
     def test_a_view_under_water_is_known(self):
         sea = pelagic.GpuSea(small_scene(), 0.125)

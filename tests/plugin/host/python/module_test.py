@@ -1,6 +1,7 @@
 """The module `pelagic`: arrays of any stride, refusals, threads. What the numbers mean is tested in tests/core."""
 
 import math
+import pathlib
 import threading
 import time
 import unittest
@@ -97,6 +98,28 @@ class Scene(unittest.TestCase):
         scene.waves.shortest_m = None
         self.assertEqual(scene.validate(), [])
 
+    def test_a_masks_picture_is_read_when_it_is_named(self):
+        data = pathlib.Path(__file__).parents[4] / "examples" / "data"
+        scene = pelagic.Scene()
+        masks = [pelagic.WaveMask(0.0, 5.0, length_m=40.0, width_m=40.0, edge_m=5.0, waves=0.0, picture=str(data / "tiles.exr"))]
+        scene.waves.masks = masks
+        self.assertEqual((scene.waves.masks, scene.validate()), (tuple(masks), []))
+        self.assertIn("texels", str(scene))
+        self.assertNotIn("tiles.exr", str(scene))
+        with self.assertRaisesRegex(pelagic.ShotError, r"waves.masks\[0\].picture = .*atoll.exr\": has .*; accepted: "):
+            scene.waves.masks = [masks[0]._replace(picture=str(data / "atoll.exr"))]
+        self.assertEqual(scene.waves.masks, tuple(masks))  # as it was
+        again = pelagic.Scene.from_text(scene.shot_text(), "elsewhere")
+        self.assertEqual(str(again), str(scene))
+        rest = np.float32([(0.0, 5.0), (9.0, 8.0), (200.0, 0.0)])
+        plain = pelagic.Scene()
+        heights = [pelagic.Frame(pelagic.Sea(each)) for each in (plain, scene)]
+        for frame in heights:
+            frame.set(1.0)
+        was, now = (frame.evaluate(rest)["position"][:, 2] for frame in heights)
+        self.assertTrue((np.abs(now[:2]) < np.abs(was[:2])).all())
+        self.assertEqual(now[2], was[2])
+
     def test_every_key_of_the_table_is_an_attribute(self):
         scene = pelagic.Scene()
         written = 0
@@ -117,7 +140,8 @@ class Scene(unittest.TestCase):
                      "point": lambda: (1.0, 2.0, 3.5), "pair": lambda: (3, 5), "entries": lambda: ()}[key["type"]]()
             if key["type"] == "entries":
                 entry = getattr(pelagic, key["entry"])
-                other = (entry(*({"point": (1.0, 2.0, 3.0), "integer": 64, "text": "other", "word": (k["choices"] or [""])[-1]}.get(k["type"], 3.5) for k in key["keys"])),)
+                other = (entry(*({"point": (1.0, 2.0, 3.0), "integer": 64, "word": (k["choices"] or [""])[-1],
+                                 "text": None if k["name"] == "picture" else "other"}.get(k["type"], 3.5) for k in key["keys"])),)
                 setattr(holder, name, [dict(zip(entry._fields, other[0]))])  # a dictionary does as well
                 self.assertEqual(getattr(holder, name), other, key["path"])
             setattr(holder, name, other)

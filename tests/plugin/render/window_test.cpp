@@ -28,7 +28,7 @@ Scene everything() {
     scene.quality.level = QualityLevel::Draft;
     scene.sea.wind_speed_mps = 16.0;
     scene.waves.cascades = {{250.0, 64}, {30.0, 64}};
-    scene.effects.foam_decay_s = 3.0;
+    scene.effects.foam_decay_s = 1.5;
     scene.effects.spray = true;
     scene.camera.resolution = {80, 48};
     scene.camera.shift_x = 0.1;
@@ -99,7 +99,7 @@ TEST(PictureWindow, PixelsAreThoseOfThePictureWithout) {
         double shutter_frames;
         bool alpha;
     };
-    for (const Look& look : {Look{1, 0.0, false}, {2, 0.0, true}, {2, 0.5, false}}) {
+    for (const Look& look : {Look{2, 0.0, true}, {2, 0.5, false}}) {
         SCOPED_TRACE(testing::Message() << look.samples << " samples, shutter " << look.shutter_frames);
         RenderOptions options = options_of(scene, look.samples, look.shutter_frames);
         options.alpha = look.alpha;

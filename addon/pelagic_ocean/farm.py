@@ -1,12 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a render farm needs for a scene: the add-on or not, and which files; said in words, in a text of the text editor."""
+"""What a render farm needs for a scene: the add-on or not, and which files; said in words, in a text of the text editor. And a bake as a
+job for one: the shot, and the scripts of `pelagic farm`."""
 
+import json
+import re
+import shlex
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import bpy
 
-from . import baked, floating, module, ocean, play, volumes
+from . import baked, baking, floating, module, ocean, play, volumes
+from .exchange import shot_of
+from .operators import NeedsOcean
+from .panels import draw_words
 from .properties import FIELDS, entry_fields
 
 TEXT = "Check for the Farm"
@@ -142,16 +151,81 @@ class PELAGIC_OT_check_farm(bpy.types.Operator):
         return {"FINISHED"}
 
 
+def program():
+    """The command line's, or None."""
+    return shutil.which("pelagic")
+
+
+def write_job(scene, out):
+    """The shot and copies of the files that it names, in `out`/farm, where a bake's check looks at nothing. Returns the shot's file."""
+    folder = out / "farm"
+    folder.mkdir(parents=True, exist_ok=True)
+    copies = {}
+
+    def copied(match):
+        file = Path(json.loads(match[0]))  # TOML's strings of one line are JSON's
+        if not (file.is_absolute() and file.is_file()):
+            return match[0]
+        if file not in copies:
+            copies[file] = f"files/{len(copies)}/{file.name}"
+            (folder / copies[file]).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, folder / copies[file])
+        return json.dumps(copies[file], ensure_ascii=False)
+
+    text = re.sub(r'"(?:[^"\\]|\\.)*"', copied, scene.shot_text())
+    shot = folder / f"{scene.shot.name}.toml"
+    shot.write_text(text, encoding="utf-8", newline="\n")
+    return shot
+
+
+class PELAGIC_OT_write_job(NeedsOcean, bpy.types.Operator):
+    """Write the bake as a job for a render farm, into its folder, instead of running it: the shot, the files that it names, and scripts"""
+
+    bl_idname = "pelagic.write_job"
+    bl_label = "Write a Job for the Farm"
+
+    def execute(self, context):
+        try:
+            scene, remarks = shot_of(context, context.object)
+            out = baking.folder_of(context.object).absolute()
+            shot = write_job(scene, out)
+        except (ValueError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        for remark in remarks:
+            self.report({"WARNING"}, remark)
+        line = ["pelagic", "farm", str(shot), "--out", str(out)]
+        if program() is None:
+            context.window_manager.clipboard = shlex.join(line)
+            self.report({"WARNING"}, f"The shot is written. Where the command line's program is, go on with: {shlex.join(line)}")
+            return {"FINISHED"}
+        try:
+            ended = subprocess.run([program(), *line[1:]], capture_output=True, text=True, encoding="utf-8", errors="replace")
+        except OSError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if ended.returncode:
+            self.report({"ERROR"}, ended.stderr.strip() or f"{program()} ended with status {ended.returncode}")
+            return {"CANCELLED"}
+        self.report({"INFO"}, ended.stdout.strip())
+        return {"FINISHED"}
+
+
 PANELS = ("PELAGIC_PT_object_output", "PELAGIC_PT_view_output")
 
 
 def _draw(self, _context):
     """The end of the Output panels."""
-    self.layout.operator(PELAGIC_OT_check_farm.bl_idname, icon="CHECKMARK")
+    layout = self.layout
+    layout.operator(PELAGIC_OT_check_farm.bl_idname, icon="CHECKMARK")
+    layout.operator(PELAGIC_OT_write_job.bl_idname, icon="FILE_SCRIPT")
+    if program() is None:
+        draw_words(layout.box(), "The program pelagic isn't in the PATH: a job is the shot then, and the command that goes on is copied")
 
 
 def register():
     bpy.utils.register_class(PELAGIC_OT_check_farm)
+    bpy.utils.register_class(PELAGIC_OT_write_job)
     for name in PANELS:
         getattr(bpy.types, name).append(_draw)
 
@@ -159,4 +233,5 @@ def register():
 def unregister():
     for name in PANELS:
         getattr(bpy.types, name).remove(_draw)
+    bpy.utils.unregister_class(PELAGIC_OT_write_job)
     bpy.utils.unregister_class(PELAGIC_OT_check_farm)

@@ -17,6 +17,7 @@ GERMAN = {
     "Water": "Wasser", "Quality": "Qualität", "Shot": "Aufnahme", "More": "Weiteres", "Presets": "Voreinstellungen", "Floating": "Schwimmt",
     "Pelagic Bake": "Pelagic-Bake", "Pelagic Ocean": "Pelagic-Ozean", "Pelagic Volume": "Pelagic-Volumen",
     "Viewport Preview": "Vorschau in der Ansicht", "Check for the Farm": "Für die Renderfarm prüfen",
+    "Write a Job for the Farm": "Auftrag für die Renderfarm schreiben",
     "The mesh is linked, which plays slowly. Object, Relations, Make Local plays fast":
         "Das Netz ist verknüpft und spielt langsam. Objekt, Relationen, Lokal machen spielt schnell",
     # Keys
@@ -116,6 +117,8 @@ GERMAN = {
     "Waiting: a view in Rendered or Wireframe shows the mesh": "Wartet: eine Ansicht als Rendering oder Drahtgitter zeigt das Netz",
     "The view is under water, which can't be drawn: raise it":
         "Die Ansicht ist unter Wasser, was sich nicht zeichnen lässt: sie muss höher",
+    "The program pelagic isn't in the PATH: a job is the shot then, and the command that goes on is copied":
+        "Das Programm pelagic ist nicht im PATH: ein Auftrag ist dann die Aufnahme, und der Befehl, mit dem es weitergeht, wird kopiert",
     "This ocean was made by a newer Pelagic: what is new in it is missing here":
         "Diesen Ozean hat ein neueres Pelagic gemacht: was darin neu ist, fehlt hier",
 }

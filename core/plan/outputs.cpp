@@ -154,7 +154,7 @@ const std::array kOutputTable = std::to_array<OutputRow>({
     {OutputKind::Mesh, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Mesh), 9, add_mesh},
     {OutputKind::Map, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Maps), 7, add_patch_maps},
     {OutputKind::Tile, key_parts(KeyPart::Clock, KeyPart::Waves), 8, add_tiles},
-    {OutputKind::Volume, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Volumes), 2, add_volumes},
+    {OutputKind::Volume, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Volumes), 3, add_volumes},
     {OutputKind::Drops,
      key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality,
                KeyPart::Volumes, KeyPart::Spray),

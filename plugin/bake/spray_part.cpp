@@ -126,24 +126,26 @@ class SprayPart final : public VolumePart {
 
     std::string encoded(int frame, const SpraySlot& slot) const {
         const VoxelLattice lattice = voxels();
-        const auto grid_of = [&](const char* name, vdb::GridKind kind, const char* content,
-                                 const char* unit) {
+        const auto grid_of = [&](const char* name, const char* also_named, vdb::GridKind kind,
+                                 const char* content, const char* unit) {
             std::vector<vdb::Attribute> about = attributes(frame, content, unit);
             if (law_.haze.extinction_per_m > 0.0) {
                 about.push_back({"haze_extinction_per_m", law_.haze.extinction_per_m});
                 about.push_back({"haze_scale_m", law_.haze.scale_m});
             }
             return vdb::Grid({.name = name,
+                              .also_named = also_named,
                               .kind = kind,
                               .voxel_m = lattice.voxel_m,
                               .first_m = lattice.first_m,
                               .attributes = std::move(about)});
         };
         std::vector<vdb::Grid> grids;
-        grids.push_back(
-            grid_of("density", vdb::GridKind::FogVolume, "extinction of spray, means over voxels", "1/m"));
-        grids.push_back(grid_of("velocity", vdb::GridKind::Velocity, "velocity of the air that carries it",
-                                "m/s, of the shot's seconds"));
+        grids.push_back(grid_of("density", "", vdb::GridKind::FogVolume,
+                                "extinction of spray, means over voxels", "1/m"));
+        // As Blender calls it, and Houdini with Karma.
+        grids.push_back(grid_of("velocity", "v", vdb::GridKind::Velocity,
+                                "velocity of the air that carries it", "m/s, of the shot's seconds"));
         const int a_side = static_cast<int>((columns() + vdb::kBlock - 1) / vdb::kBlock);
         tbb::parallel_for(0, a_side * a_side, [&](int i) {
             add_blocks(slot, {i % a_side, i / a_side}, grids[0], grids[1]);

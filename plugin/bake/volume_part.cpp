@@ -31,7 +31,7 @@ usd::Volume volume_prim(const Plan& plan, VolumeKind volume) {
         return {
             .prim = "Spray",
             .file_prefix = {},
-            .fields = {{"density", "fogVolume"}, {"velocity", "unknown", true}},
+            .fields = {{"density", "fogVolume"}, {"velocity", "unknown", true}, {"v", "unknown", true}},
             .extent = round(
                 {-half_m, -half_m, -height_m - voxel_m},
                 {half_m + voxel_m, half_m + voxel_m,

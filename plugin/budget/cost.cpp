@@ -85,14 +85,15 @@ void add_foam(const Plan& plan, WorkDone& work) {
     }
 }
 
-double water_share(const Camera& camera, int frame) {
+double water_share(const Camera& camera, int frame, const PixelWindow& window) {
     constexpr int kLines = 64;
     const View view = view_at(camera, frame);
     int water = 0;
     for (int y = 0; y < kLines; ++y)
         for (int x = 0; x < kLines; ++x)
-            water += view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kLines) *
-                                    glm::dvec2(view.resolution))
+            water += view.direction(glm::dvec2(window.low) + (glm::dvec2(x, y) + 0.5) /
+                                                                 static_cast<double>(kLines) *
+                                                                 glm::dvec2(window.size()))
                          .z < 0.0;
     return static_cast<double>(water) / (kLines * kLines);
 }
@@ -141,9 +142,12 @@ WorkDone work_of(const Plan& plan) {
 WorkDone picture_work(const Plan& plan, std::span<const int> frames, const RenderOptions& options) {
     const Camera& camera = plan.from->scene.camera;
     const auto moments = static_cast<double>(passes_of(camera, frames.front(), options).all.size());
+    PixelWindow window = data_window(camera.resolution / options.samples, options);
+    window = {window.low * options.samples, window.high * options.samples};
     double water = 0.0;
-    for (const int frame : frames) water = std::max(water, water_share(camera, frame));
-    const double samples = 1e-6 * camera.resolution.x * camera.resolution.y;
+    for (const int frame : frames) water = std::max(water, water_share(camera, frame, window));
+    const glm::dvec2 size(window.size());
+    const double samples = 1e-6 * size.x * size.y;
     const double points = 1e-6 * static_cast<double>(plan.queries.front().query.points);
     WorkDone work = with_samples(work_of(plan), points, water * samples, moments);
     const bool is_integral = options.lighting.sky_quality == SkyQuality::Integral;

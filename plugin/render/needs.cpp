@@ -53,10 +53,14 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     if (!options.lighting.spray) row_of(Effect::Spray).turn_off(shown);
     auto prepared = prepare(std::move(shown));
     if (frames.empty()) throw std::invalid_argument("a plan of pictures needs at least one frame");
+    std::vector<glm::ivec2> overscans;
+    for (const PicturePart& part : picture_parts(scene.camera.resolution / options.samples, options))
+        overscans.push_back(part.overscan_px * options.samples);
     std::vector<SeaView> seen;
     for (const int frame : frames)
         for (const PicturePass& pass : passes_of(scene.camera, frame, options).all)
-            seen.push_back({view_of(scene.camera, pass), frame});
+            for (const glm::ivec2 overscan : overscans)
+                seen.push_back({view_of(scene.camera, pass, overscan), frame});
     const DrawnSea::Needs needs = DrawnSea(*prepared, false).needs(seen);
     Query query = view_query(*prepared, {.products = {},
                                          .finest_cell_m = needs.finest_cell_m,
@@ -68,6 +72,44 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     return make_plan(std::move(prepared), {query}, {.knobs = options.knobs, .filter = options.filter});
 }
 
+PixelWindow data_window(glm::ivec2 display, const RenderOptions& options) {
+    const PixelWindow whole{-options.overscan_px, display + options.overscan_px};
+    return options.region ? intersection(*options.region, whole) : whole;
+}
+
+std::vector<PicturePart> picture_parts(glm::ivec2 display, const RenderOptions& options) {
+    const PixelWindow data = data_window(display, options);
+    const PixelWindow inside = intersection(data, {.high = display});
+    std::vector<PicturePart> parts{{.windows = {inside}}};
+    PicturePart beyond{options.overscan_px, {}};
+    for (const PixelWindow& side : {PixelWindow{data.low, {data.high.x, inside.low.y}},
+                                    {{data.low.x, inside.low.y}, {inside.low.x, inside.high.y}},
+                                    {{inside.high.x, inside.low.y}, {data.high.x, inside.high.y}},
+                                    {{data.low.x, inside.high.y}, data.high}})
+        if (!side.is_empty()) beyond.windows.push_back(side);
+    if (!beyond.windows.empty()) parts.push_back(std::move(beyond));
+    return parts;
+}
+
+void check_window(glm::ivec2 display, const RenderOptions& options) {
+    const auto text = [](glm::ivec2 at) { return std::to_string(at.x) + ',' + std::to_string(at.y); };
+    const glm::ivec2 most = display / 2;
+    if (std::min(options.overscan_px.x, options.overscan_px.y) < 0 || options.overscan_px.x > most.x ||
+        options.overscan_px.y > most.y)
+        throw std::invalid_argument("an overscan of " + text(options.overscan_px) + " pixels of " +
+                                    text(display) + ": up to half of the picture on each side, " +
+                                    text(most) + ", is accepted");
+    if (options.region) {
+        const PixelWindow whole{-options.overscan_px, display + options.overscan_px};
+        if (data_window(display, options) != *options.region ||
+            intersection(*options.region, {.high = display}).is_empty())
+            throw std::invalid_argument("a region of " + text(options.region->low) + ',' +
+                                        text(options.region->high) + ": accepted are the pixels from " +
+                                        text(whole.low) + " on, before " + text(whole.high) +
+                                        ", and some of the picture's own");
+    }
+}
+
 void check_render(const Scene& scene, const RenderOptions& options) {
     if (options.samples < 1 || options.samples > kMostSamples)
         throw std::invalid_argument(std::to_string(options.samples) + " x " +
@@ -76,7 +118,9 @@ void check_render(const Scene& scene, const RenderOptions& options) {
     if (!(options.shutter_frames >= 0.0 && options.shutter_frames <= kLongestShutter_frames))
         throw std::invalid_argument("a shutter that is open for " + number_text(options.shutter_frames) +
                                     " frames: 0 to " + number_text(kLongestShutter_frames) + " are accepted");
-    const glm::ivec2 all = scene.camera.resolution * options.samples;
+    const glm::ivec2 display = scene.camera.resolution;
+    check_window(display, options);
+    const glm::ivec2 all = (display + 2 * options.overscan_px) * options.samples;
     if (std::max(all.x, all.y) > Rasteriser::kLargestSide)
         throw std::invalid_argument("a picture of " + std::to_string(all.x) + " x " + std::to_string(all.y) +
                                     " samples: up to " + std::to_string(Rasteriser::kLargestSide) +
@@ -84,6 +128,18 @@ void check_render(const Scene& scene, const RenderOptions& options) {
 }
 
 namespace {
+
+std::size_t pixels_of(const PixelWindow& window) {
+    const glm::ivec2 size = window.size();
+    return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+}
+
+// [bytes] of what encode_png() cuts out where there are pixels round the display window.
+std::size_t cut_bytes(glm::ivec2 display, const RenderOptions& options) {
+    const PixelWindow data = data_window(display, options), shown = intersection(data, {.high = display});
+    if (shown == data) return 0;
+    return pixels_of(shown) * (sizeof(SeaRadiance) + (options.alpha ? sizeof(float) : 0));
+}
 
 // [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
 // encode_exr() and encode_png() hold beside them.
@@ -120,6 +176,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                          std::optional<int> in_flight, int threads) {
     const Scene sampled = of_samples(scene, options.samples);
     const Plan plan = picture_plan(sampled, frames, options);
+    const PixelWindow data = data_window(scene.camera.resolution, options);
     MemoryNeed need;
     add_sea(need, plan, threads);
     with_precision(plan.knobs.double_precision, [&]<class T>(T) {
@@ -127,10 +184,14 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the camera's grid of points",
                  points * (kPointBytes<T> + (needs_motion(options.layers) ? 3 * sizeof(T) : 0)),
                  "raise surface.cell_px, or ask for a smaller picture (--size)");
-        const glm::ivec2 samples = sampled.camera.resolution;
-        const auto rows =
-            static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
-        const std::size_t at_hand = rows * static_cast<std::size_t>(samples.x);
+        std::size_t at_hand = 0;
+        for (const PicturePart& part : picture_parts(scene.camera.resolution, options))
+            for (const PixelWindow& window : part.windows) {
+                const glm::ivec2 samples = window.size() * options.samples;
+                const int rows = std::min(rows_of_batch(samples.x, options.samples), samples.y);
+                at_hand =
+                    std::max(at_hand, static_cast<std::size_t>(rows) * static_cast<std::size_t>(samples.x));
+            }
         need.add("the pixels at hand", at_hand * kSampleBytes<T>,
                  "ask for a smaller picture (--size) or fewer --samples");
         if (sampled.surface.kind == SurfaceKind::Cage)
@@ -150,21 +211,24 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         if (counted.insert(object.mesh.get()).second) meshes += object.mesh->bytes();
     if (meshes > 0) need.add("the objects' meshes", meshes, "give coarser ones");
     if (options.lighting.spray) {
-        need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
+        need.add("the map of the spray",
+                 spray_map_bytes(spray_map_size(sampled.camera.resolution.x +
+                                                2 * options.overscan_px.x * options.samples)),
                  "set effects.spray to false");
         add_seen_drops(need, plan);
     }
     if (in_flight && scene.camera.glare > 0.0)
         need.add("the lens' glare",
-                 static_cast<std::size_t>(*in_flight) * glare_bytes(scene.camera.resolution),
+                 static_cast<std::size_t>(*in_flight) *
+                     glare_bytes(intersection(data, {.high = scene.camera.resolution}).size()),
                  "set camera.glare to 0");
-    const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
-                        static_cast<std::size_t>(scene.camera.resolution.y);
+    const std::size_t pixels = pixels_of(data);
     need.add("pictures",
              pixels * (in_flight ? static_cast<std::size_t>(*in_flight) *
                                            (picture_bytes(options) + file_bytes(options)) +
                                        kEncodingBytes
-                                 : picture_bytes(options)),
+                                 : picture_bytes(options)) +
+                 (in_flight ? cut_bytes(scene.camera.resolution, options) : 0),
              "ask for a smaller picture (--size)");
     return need;
 }

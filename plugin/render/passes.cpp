@@ -62,10 +62,11 @@ PicturePasses passes_of(const Camera& camera, int frame, const RenderOptions& op
     return passes;
 }
 
-View view_of(const Camera& camera, const PicturePass& pass) {
-    const View view = view_at(camera, pass.frame);
+View view_of(const Camera& camera, const PicturePass& pass, glm::ivec2 overscan_px) {
+    View view = view_at(camera, pass.frame);
     const double radius_m = aperture_radius_m(camera, view);
-    return radius_m > 0.0 ? through_lens(view, radius_m * pass.lens, camera.focus_distance_m) : view;
+    if (radius_m > 0.0) view = through_lens(view, radius_m * pass.lens, camera.focus_distance_m);
+    return with_overscan(view, overscan_px);
 }
 
 PixelPlace place_of(const PicturePass& pass, int parts, int samples, int frame, glm::ivec2 pixel) {

@@ -35,8 +35,8 @@ struct PicturePasses {
 };
 PicturePasses passes_of(const Camera& camera, int frame, const RenderOptions& options);
 
-// What a pass sees.
-View view_of(const Camera& camera, const PicturePass& pass);
+// What a pass sees, in a picture with that overscan [pixels of the camera's resolution].
+View view_of(const Camera& camera, const PicturePass& pass, glm::ivec2 overscan_px = glm::ivec2(0));
 
 // Where in its cell a pixel's sample lies, from the middle, in cells: −½ … ½. Of a pixel's n × n cells no two samples stand in one row
 // or column, so that an edge that is nearly level, as a horizon is, takes n² steps from one pixel to the next, and not n

@@ -90,6 +90,16 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
+// Which pixels there are, where it isn't the display window's own; with an overscan those are others, too.
+std::string window_text(glm::ivec2 display, const RenderOptions& options) {
+    const PixelWindow data = data_window(display, options);
+    if (data == PixelWindow{.high = display} && options.overscan_px == glm::ivec2(0)) return {};
+    std::string text = " window";
+    for (const glm::ivec2 at : {options.overscan_px, data.low, data.high})
+        text += ' ' + std::to_string(at.x) + ' ' + std::to_string(at.y);
+    return text;
+}
+
 // The light's layers as they stand in a sentence.
 std::string light_names() {
     std::string names, last;
@@ -194,7 +204,8 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add("exposure " + number_text(source.exposure_stops))
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
-             " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));
+             " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : "") +
+             window_text(source.scene.camera.resolution, options_));
     if (plan.from->weather) {
         hash.add(weather_plan_text(plan, true));
         weather_ = plan;
@@ -220,6 +231,39 @@ std::string PictureFingerprint::of(int frame) const {
     return hash.text();
 }
 
+namespace {
+
+// What encode_png() needs of those pixels.
+Picture cut_to(const Picture& picture, const PixelWindow& window) {
+    Picture cut{.resolution = window.size(), .layers = {}, .sea = {}};
+    cut.low = window.low;
+    cut.display = picture.display;
+    const auto width = static_cast<std::size_t>(picture.resolution.x),
+               cut_width = static_cast<std::size_t>(cut.resolution.x);
+    const glm::ivec2 from = window.low - picture.low;
+    const auto first = [&](int row) {
+        return width * static_cast<std::size_t>(from.y + row) + static_cast<std::size_t>(from.x);
+    };
+    for (int row = 0; row < cut.resolution.y; ++row) {
+        const auto take = [&](const auto& values, auto& to) {
+            if (values.empty()) return;
+            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first(row));
+            to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(cut_width));
+        };
+        take(picture.layers, cut.layers);
+        take(picture.alpha, cut.alpha);
+        auto both = std::lower_bound(picture.skyline.begin(), picture.skyline.end(), first(row),
+                                     [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
+        for (; both != picture.skyline.end() && both->pixel < first(row) + cut_width; ++both) {
+            cut.skyline.push_back(*both);
+            cut.skyline.back().pixel = cut_width * static_cast<std::size_t>(row) + (both->pixel - first(row));
+        }
+    }
+    return cut;
+}
+
+}  // namespace
+
 std::string encode_exr(const PictureContext& context, const Picture& rendered, int frame) {
     Picture converted;
     if (context.colours.acescg) {
@@ -236,7 +280,12 @@ std::string encode_exr(const PictureContext& context, const Picture& rendered, i
     std::transform(picture.layers.begin(), picture.layers.end(), sum.begin(), radiance_of);
 
     const Ranges ranges = ranges_of(context.scene, context.sky, context.options.lighting.spray);
-    exr::Image image{.width = picture.resolution.x, .height = picture.resolution.y, .channels = {}};
+    exr::Image image{.width = picture.resolution.x,
+                     .height = picture.resolution.y,
+                     .channels = {},
+                     .x = picture.low.x,
+                     .y = picture.low.y};
+    if (picture.display) image.display = {picture.display->x, picture.display->y};
     // Rows from the top, where the writer counts from the bottom: from the last row backwards.
     const auto add = [&](std::span<const char* const> names, const float& first, std::ptrdiff_t pixel_bytes,
                          exr::PixelType type) {
@@ -281,11 +330,16 @@ std::vector<glm::vec3> glaring_light(const Camera& camera, const Picture& pictur
     std::transform(picture.layers.begin(), picture.layers.end(), light.begin(), radiance_of);
     add_glare(light, picture.resolution,
               {.share = camera.glare,
-               .pixel_tangent = 2.0 * view_at(camera, frame).tan_half_width / picture.resolution.x});
+               .pixel_tangent = 2.0 * view_at(camera, frame).tan_half_width / display_size(picture).x});
     return light;
 }
 
-std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
+std::string encode_png(const PictureContext& context, const Picture& rendered, int frame) {
+    const PixelWindow data{rendered.low, rendered.low + rendered.resolution},
+        shown = intersection(data, {.high = display_size(rendered)});
+    std::optional<Picture> cut;
+    if (shown != data) cut = cut_to(rendered, shown);
+    const Picture& picture = cut ? *cut : rendered;
     const bool has_alpha = !picture.alpha.empty();
     const std::size_t components = has_alpha ? 4 : 3;
     std::vector<std::uint8_t> bytes(picture.layers.size() * components);
@@ -326,10 +380,9 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
         }
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = width * row + x;
-            const glm::ivec2 pixel(static_cast<int>(x), row);
-            const auto shown = dithered_bytes(lights[x], pixel);
-            std::copy(shown.begin(), shown.end(),
-                      bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
+            const glm::ivec2 pixel = picture.low + glm::ivec2(static_cast<int>(x), row);
+            const auto seen = dithered_bytes(lights[x], pixel);
+            std::copy(seen.begin(), seen.end(), bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
             if (has_alpha)
                 bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * picture.alpha[i]));
         }

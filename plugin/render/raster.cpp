@@ -51,7 +51,7 @@ static_assert(kSubpixels == 1 << 8);
 }  // namespace
 
 void Rasteriser::set(std::span<const glm::dvec4> clip, std::span<const std::uint32_t> indices,
-                     glm::ivec2 resolution, bool has_places) {
+                     glm::ivec2 resolution, bool has_places, const std::optional<PixelWindow>& window) {
     if (std::min(resolution.x, resolution.y) < 1 || std::max(resolution.x, resolution.y) > kLargestSide)
         throw std::invalid_argument("a picture of " + std::to_string(resolution.x) + " x " +
                                     std::to_string(resolution.y) + " samples: both must be 1 to " +
@@ -59,6 +59,7 @@ void Rasteriser::set(std::span<const glm::dvec4> clip, std::span<const std::uint
     clip_ = clip;
     indices_ = indices;
     resolution_ = resolution;
+    window_ = window.value_or(PixelWindow{.high = resolution});
     beside_ = has_places ? 1 : 0;
     pieces_.clear();
     for (std::uint32_t triangle = 0; triangle < indices.size() / 3; ++triangle) add_clipped(triangle);
@@ -112,12 +113,17 @@ void Rasteriser::add_piece(std::uint32_t triangle, const std::array<glm::dvec4, 
 }
 
 void Rasteriser::sort_into_bands() {
-    const int bands = (resolution_.y + kBandRows - 1) / kBandRows;
+    const int bands = (window_.size().y + kBandRows - 1) / kBandRows;
     const auto rows_of = [&](const Piece& piece) {
         const auto [low, high] = std::minmax({piece.corner[0].y, piece.corner[1].y, piece.corner[2].y});
-        // Up to and including the row whose centre is at the lowest corner. No rows: first > last.
-        return std::pair(std::max(first_centre(low) - beside_, 0),
-                         std::min(first_centre(high + 1) - 1 + beside_, resolution_.y - 1));
+        const auto [left, right] = std::minmax({piece.corner[0].x, piece.corner[1].x, piece.corner[2].x});
+        if (first_centre(left) - beside_ >= window_.high.x ||
+            first_centre(right + 1) - 1 + beside_ < window_.low.x)
+            return std::pair(0, -1);
+        // Of the window's; up to and including the row whose centre is at the lowest corner. No rows: first > last.
+        return std::pair(
+            std::max(first_centre(low) - beside_ - window_.low.y, 0),
+            std::min(first_centre(high + 1) - 1 + beside_ - window_.low.y, window_.size().y - 1));
     };
     band_begin_.assign(static_cast<std::size_t>(bands) + 1, 0);
     for (const Piece& piece : pieces_) {
@@ -137,9 +143,9 @@ void Rasteriser::sort_into_bands() {
 
 void Rasteriser::draw(int band, std::span<std::uint32_t> triangles,
                       std::span<const PixelPlace> places) const {
-    const int first_row = band * kBandRows;
-    const int rows = std::min(kBandRows, resolution_.y - first_row);
-    const auto width = static_cast<std::size_t>(resolution_.x);
+    const int first_row = window_.low.y + band * kBandRows;
+    const int rows = std::min(kBandRows, window_.high.y - first_row);
+    const auto width = static_cast<std::size_t>(window_.size().x);
     std::fill_n(triangles.begin(), width * rows, kNone);
     std::vector<double> nearness(width * rows, 0.0);  // 1/w of the triangle shown
     for (std::size_t at = band_begin_[band]; at < band_begin_[band + 1]; ++at) {
@@ -147,8 +153,8 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles,
         const auto& [a, b, c] = piece.corner;
         const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
         const auto [y_low, y_high] = std::minmax({a.y, b.y, c.y});
-        const int left = std::max(first_centre(x_low) - beside_, 0);
-        const int right = std::min(first_centre(x_high + 1) - 1 + beside_, resolution_.x - 1);
+        const int left = std::max(first_centre(x_low) - beside_, window_.low.x);
+        const int right = std::min(first_centre(x_high + 1) - 1 + beside_, window_.high.x - 1);
         const int top = std::max(first_centre(y_low) - beside_, first_row);
         const int bottom = std::min(first_centre(y_high + 1) - 1 + beside_, first_row + rows - 1);
         if (left > right || top > bottom) continue;
@@ -187,7 +193,8 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles,
             const double row_nearness = plane.y * (y + 0.5) + plane.z;
             if (!places.empty()) {
                 for (int x = left; x <= right; ++x) {
-                    const PixelPlace place = places[row + x];
+                    const std::size_t sample = row + static_cast<std::size_t>(x - window_.low.x);
+                    const PixelPlace place = places[sample];
                     if (!place.is_taken()) continue;
                     const std::int64_t right_by = std::int64_t{x - left} * kSubpixels + place.x;
                     bool is_inside = true;
@@ -199,9 +206,9 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles,
                         std::clamp(plane.x * (x + 0.5 + place.x / double{kSubpixels}) + row_nearness +
                                        plane.y * (place.y / double{kSubpixels}),
                                    farthest, nearest);
-                    if (here > nearness[row + x]) {
-                        nearness[row + x] = here;
-                        triangles[row + x] = piece.triangle;
+                    if (here > nearness[sample]) {
+                        nearness[sample] = here;
+                        triangles[sample] = piece.triangle;
                     }
                 }
                 continue;
@@ -209,9 +216,10 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles,
             for (int x = left; x <= right; ++x) {
                 if (edge[0] >= least[0] && edge[1] >= least[1] && edge[2] >= least[2]) {
                     const double here = std::clamp(plane.x * (x + 0.5) + row_nearness, farthest, nearest);
-                    if (here > nearness[row + x]) {
-                        nearness[row + x] = here;
-                        triangles[row + x] = piece.triangle;
+                    const std::size_t sample = row + static_cast<std::size_t>(x - window_.low.x);
+                    if (here > nearness[sample]) {
+                        nearness[sample] = here;
+                        triangles[sample] = piece.triangle;
                     }
                 }
                 for (int i = 0; i < 3; ++i) edge[i] += steps[i];

@@ -18,8 +18,11 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "plugin/render/picture_window.h"
 
 namespace pelagic {
 
@@ -39,14 +42,14 @@ class Rasteriser {
 
     // clip: OpenGL's clip coordinates by vertex, finite. indices: three per triangle. Both must stay alive
     // and unchanged until the last call. has_places: whether draw() gets any. Throws std::invalid_argument for a
-    // resolution out of range.
+    // resolution out of range. window: the pixels that are drawn, some of the picture's; by default all.
     void set(std::span<const glm::dvec4> clip, std::span<const std::uint32_t> indices, glm::ivec2 resolution,
-             bool has_places = false);
+             bool has_places = false, const std::optional<PixelWindow>& window = {});
 
     int band_count() const { return static_cast<int>(band_begin_.size()) - 1; }
 
     // Writes the triangle that each pixel of a band shows, or kNone. Rows begin at band·kBandRows, from the
-    // top, x fastest, at full width; the last band may have fewer rows. Bands may be drawn in parallel.
+    // window's top, x fastest, at its full width; the last band may have fewer rows. Bands may be drawn in parallel.
     // Without places each pixel is looked at in its centre; otherwise where its own says, and kNone is of those that
     // aren't.
     void draw(int band, std::span<std::uint32_t> triangles, std::span<const PixelPlace> places = {}) const;
@@ -78,6 +81,7 @@ class Rasteriser {
     std::span<const glm::dvec4> clip_;
     std::span<const std::uint32_t> indices_;
     glm::ivec2 resolution_{0};
+    PixelWindow window_;
     int beside_ = 0;  // pixels that a triangle may meet beside those whose centres it does
     std::vector<Piece> pieces_;
     std::vector<std::size_t> band_begin_{0};  // into band_pieces_; one more for the end of the last band

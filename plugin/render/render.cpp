@@ -62,7 +62,10 @@ class RendererOf final : public Impl {
         : scene_(plan.from->scene),
           options_(options),
           sea_(plan, options.lighting, std::move(sky), watch),
-          drawn_(*plan.from, plan.queries[kQuery].query.pixel_m.size() > 1) {}
+          drawn_(*plan.from, plan.queries[kQuery].query.pixel_m.size() > 1),
+          display_(scene_.camera.resolution / options.samples),
+          data_(data_window(display_, options)),
+          picture_parts_(picture_parts(display_, options)) {}
 
     const Plan& plan() const override { return sea_.plan(); }
     const Sky& sky() const override { return sea_.sky(); }
@@ -78,10 +81,14 @@ class RendererOf final : public Impl {
         std::iota(order.begin(), order.end(), 0);
         std::stable_sort(order.begin(), order.end(),
                          [&](int a, int b) { return all[a].frame < all[b].frame; });
-        double begun = 0.0;  // the share of the pass that its foam's past took
-        int ended = 0;       // passes
+        double begun = 0.0;  // the share of the part that its foam's past took
+        double ended = 0.0;  // the share of the picture, in parts of its passes
+        double share = 1.0;  // of the part
         const auto tell = [&](double done) {
-            if (watch.progress) watch.progress((ended + begun + (1.0 - begun) * done) / passes);
+            if (watch.progress) watch.progress(ended + share * (begun + (1.0 - begun) * done));
+        };
+        const auto pixels = [](const PixelWindow& window) {
+            return static_cast<double>(window.size().x) * window.size().y;
         };
         for (const int pass : order) {
             // With others the first pass is for what isn't blurred.
@@ -93,37 +100,48 @@ class RendererOf final : public Impl {
             parts_ = parts;
             frame_ = frame;
             const bool is_answered = is_lit || has_data();
-            begun = 0.0;
-            begin(all[pass], is_lit, watch);
-            const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
-            if (is_answered && sea_.foam_lives()) {
-                const BuildWatch past{.progress =
-                                          [&](double done) {
-                                              begun = 0.5 * done;
-                                              tell(0.0);
-                                          },
-                                      .cancel = watch.cancel};
-                prepare(past);
-            }
-            for (int row = 0; row < height; row += step) {
-                const int rows = std::min(step, height - row);
-                draw(row, rows);
-                if (is_lit) light_sky(row);
-                if (is_answered && !batch_.sea.empty()) {
-                    find_places(row);
-                    sea_.answer(batch_.seen);
+            for (const PicturePart& part : picture_parts_) {
+                double all_pixels = 0.0, done_pixels = 0.0;
+                for (const PixelWindow& window : part.windows) all_pixels += pixels(window);
+                share = all_pixels / pixels(data_) / passes;
+                begun = 0.0;
+                begin(all[pass], part, is_lit, watch);
+                if (is_answered && sea_.foam_lives()) {
+                    const BuildWatch past{.progress =
+                                              [&](double done) {
+                                                  begun = 0.5 * done;
+                                                  tell(0.0);
+                                              },
+                                          .cancel = watch.cancel};
+                    prepare(part, past);
                 }
-                if (is_lit) light_sea();
-                if (is_lit) light_water(row);
-                if (is_lit) light_meniscus(row);
-                if (is_lit && !drops_.empty()) draw_drops(row, rows);
-                if (is_lit) average(row, rows, picture);
-                if (is_own) describe(row, rows, frame, picture);
-                tell(static_cast<double>(row + rows) / height);
-                stop_if(watch.cancel);
+                for (const PixelWindow& window : part.windows) {
+                    aim(window);
+                    const auto [height, step] = std::pair(drawn_window().size().y, rows_of_pass());
+                    for (int row = 0; row < height; row += step) {
+                        const int rows = std::min(step, height - row);
+                        draw(row, rows);
+                        if (is_lit) light_sky(row);
+                        if (is_answered && !batch_.sea.empty()) {
+                            find_places(row);
+                            sea_.answer(batch_.seen);
+                        }
+                        if (is_lit) light_sea();
+                        if (is_lit) light_water(row);
+                        if (is_lit) light_meniscus(row);
+                        if (is_lit && !drops_.empty()) draw_drops(row, rows);
+                        if (is_lit) average(row, rows, picture);
+                        if (is_own) describe(row, rows, frame, picture);
+                        tell((done_pixels + pixels(window) * (row + rows) / height) / all_pixels);
+                        stop_if(watch.cancel);
+                    }
+                    done_pixels += pixels(window);
+                }
+                ended += share;
             }
-            ++ended;
         }
+        std::sort(picture.skyline.begin(), picture.skyline.end(),
+                  [](const SkylinePixel& a, const SkylinePixel& b) { return a.pixel < b.pixel; });
     }
 
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
@@ -147,9 +165,30 @@ class RendererOf final : public Impl {
     }
     bool has_data() const { return data_components(options_.layers) > 0; }
     glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }
+    // The window in the rasteriser's pixels.
+    PixelWindow drawn_window() const {
+        const int a_pixel = options_.samples / sampling_.stride;
+        return {(window_.low + overscan_px_) * a_pixel, (window_.high + overscan_px_) * a_pixel};
+    }
+    // From here on batches are of this window, one of the part's.
+    void aim(const PixelWindow& window) {
+        if (is_aimed_ && window == window_) return;
+        window_ = window;
+        raster_.set(clip_, mesh_.triangles, raster_size(), has_places(), drawn_window());
+        is_aimed_ = true;
+    }
+    // Of the picture, the pixel in which a row of samples of the batch begins.
+    std::size_t first_pixel(const Picture& picture, int row) const {
+        const glm::ivec2 at = window_.low - data_.low + glm::ivec2(0, row);
+        return static_cast<std::size_t>(picture.resolution.x) * static_cast<std::size_t>(at.y) +
+               static_cast<std::size_t>(at.x);
+    }
 
     void clear(Picture& picture) const {
-        picture.resolution = scene_.camera.resolution / options_.samples;
+        picture.resolution = data_.size();
+        picture.low = data_.low;
+        picture.display.reset();
+        if (data_ != PixelWindow{.high = display_}) picture.display = display_;
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
         picture.layers.assign(pixels, SeaRadiance{});
         picture.sea.resize(pixels);
@@ -161,18 +200,23 @@ class RendererOf final : public Impl {
     }
 
     // Rows that are computed at once.
-    int rows_of_pass() const { return rows_of_batch(raster_size().x, options_.samples / sampling_.stride); }
+    int rows_of_pass() const {
+        return rows_of_batch(drawn_window().size().x, options_.samples / sampling_.stride);
+    }
 
     // Makes the foam that earlier times have left where the samples look. So the samples' places are found twice,
     // which takes far less than going through the past once for each batch.
-    void prepare(const BuildWatch& watch) {
-        const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
-        for (int row = 0; row < height; row += step) {
-            stop_if(watch.cancel);
-            draw(row, std::min(step, height - row));
-            if (batch_.sea.empty()) continue;
-            find_places(row);
-            sea_.say(batch_.seen.points());
+    void prepare(const PicturePart& part, const BuildWatch& watch) {
+        for (const PixelWindow& window : part.windows) {
+            aim(window);
+            const auto [height, step] = std::pair(drawn_window().size().y, rows_of_pass());
+            for (int row = 0; row < height; row += step) {
+                stop_if(watch.cancel);
+                draw(row, std::min(step, height - row));
+                if (batch_.sea.empty()) continue;
+                find_places(row);
+                sea_.say(batch_.seen.points());
+            }
         }
         sea_.prepare(watch);
     }
@@ -187,23 +231,25 @@ class RendererOf final : public Impl {
     }
 
     // Of large pictures each step takes tenths of a second.
-    void begin(const PicturePass& pass, bool is_lit, const BuildWatch& watch) {
+    void begin(const PicturePass& pass, const PicturePart& part, bool is_lit, const BuildWatch& watch) {
         set_time(pass.frame, watch);
         if (drawn_.has_below())
             refuse_in_floor(scene_, pass.frame, sea_.floor_below(drawn_.rest_m()));
         else
             drawn_.refuse_under_water(sea_.frame(), scene_, pass.frame);
-        view_ = view_of(scene_.camera, pass);
+        overscan_px_ = part.overscan_px;
+        const glm::ivec2 overscan = overscan_px_ * options_.samples;
+        view_ = view_of(scene_.camera, pass, overscan);
         may_be_below_ = drawn_.has_below() && may_be_in_water(view_, drawn_.grid_options().bounds.height_m);
         // Before all of the lens the air is that before its middle.
         const double height_m = view_at(scene_.camera, pass.frame).position_m.z;
         if (air_.empty() || height_m != air_height_m_) air_ = sea_.air_before(height_m);
         air_height_m_ = height_m;
         stop_if(watch.cancel);
-        lay_out_mesh(watch);
+        lay_out_mesh(part, watch);
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
-            const SeaView middle{view_at(scene_.camera, pass.frame), frame_};
+            const SeaView middle{with_overscan(view_at(scene_.camera, pass.frame), overscan), frame_};
             FloorLightWanted wanted;
             wanted.view = middle.view;
             // Places of a lens may differ; made for one of them, the maps are for all.
@@ -231,7 +277,7 @@ class RendererOf final : public Impl {
                                       .spray = spray_});
     }
 
-    void lay_out_mesh(const BuildWatch& watch) {
+    void lay_out_mesh(const PicturePart& part, const BuildWatch& watch) {
         const SeaView seen{view_, frame_};
         drawn_.lay_out(seen, mesh_);
         stop_if(watch.cancel);
@@ -282,7 +328,8 @@ class RendererOf final : public Impl {
             clip_[i].y -= shift.y * clip_[i].w;
         }
         stop_if(watch.cancel);
-        raster_.set(clip_, mesh_.triangles, raster_size(), has_places());
+        is_aimed_ = false;
+        aim(part.windows.front());
         stop_if(watch.cancel);
         waterline_.reset();
         if (may_be_below_)
@@ -329,7 +376,7 @@ class RendererOf final : public Impl {
 
     // Which triangle each sample of the rows shows.
     void draw(int first_row, int rows) {
-        const auto width = static_cast<std::size_t>(raster_size().x);
+        const auto width = static_cast<std::size_t>(drawn_window().size().x);
         batch_.triangles.resize(width * rows);
         batch_.radiance.assign(width * rows, SeaRadiance{});
         batch_.places.resize(has_places() ? width * rows : 0);
@@ -344,8 +391,9 @@ class RendererOf final : public Impl {
                 const std::size_t at = begin + i;
                 const glm::ivec2 pixel(static_cast<int>(at % width),
                                        first_row + static_cast<int>(at / width));
-                places[i] = sampling_.is_by_pixel ? place_of(pass_, parts_, options_.samples, frame_, pixel)
-                                                  : place_of_sample(pixel);
+                places[i] = sampling_.is_by_pixel
+                                ? place_of(pass_, parts_, options_.samples, frame_, window_.low + pixel)
+                                : place_of_sample(pixel);
             }
             raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });
@@ -384,9 +432,10 @@ class RendererOf final : public Impl {
 
     // A sample of the batch in the rasteriser's pixels, and in those of the view.
     glm::dvec2 centre(int first_row, std::size_t sample) const {
-        const auto width = static_cast<std::size_t>(raster_size().x);
-        const glm::dvec2 middle(static_cast<double>(sample % width) + 0.5,
-                                static_cast<double>(sample / width) + first_row + 0.5);
+        const PixelWindow window = drawn_window();
+        const auto width = static_cast<std::size_t>(window.size().x);
+        const glm::dvec2 middle(static_cast<double>(sample % width) + window.low.x + 0.5,
+                                static_cast<double>(sample / width) + first_row + window.low.y + 0.5);
         if (batch_.places.empty()) return middle;
         const PixelPlace place = batch_.places[sample];
         return middle + glm::dvec2(place.x, place.y) / 256.0;
@@ -468,22 +517,23 @@ class RendererOf final : public Impl {
 
     // Over what the samples of the rows show, from the farthest on.
     void draw_drops(int first_row, int rows) {
-        const auto width = raster_size().x;
+        const PixelWindow window = drawn_window();
+        const int width = window.size().x;
         batch_.sea_m.assign(batch_.triangles.size(), kSprayEndless_m);
         for (std::size_t i = 0; i < batch_.sea.size(); ++i)
             batch_.sea_m[batch_.sea[i]] = batch_.seen.distance_m[i];
         // Of the view's pixels to the rasteriser's, whose middles passes look beside.
         const double beside = batch_.places.empty() ? 0.0 : 0.5;
-        const auto raster_of = [&](double at_px, double first) {
-            return (at_px - first - 0.5) / sampling_.stride;
+        const auto drawn_at = [&](double at_px, double first, int low) {
+            return (at_px - first - 0.5) / sampling_.stride - low;
         };
         constexpr int kRows = 4;
         tbb::parallel_for(0, (rows + kRows - 1) / kRows, [&](int band) {
             const int low = first_row + kRows * band, high = std::min(low + kRows, first_row + rows) - 1;
             for (const SeenDrop& drop : drops_) {
                 const double radius = drop.radius_px / sampling_.stride + beside;
-                const double x = raster_of(drop.at_px.x, sampling_.first.x),
-                             y = raster_of(drop.at_px.y, sampling_.first.y);
+                const double x = drawn_at(drop.at_px.x, sampling_.first.x, window.low.x),
+                             y = drawn_at(drop.at_px.y, sampling_.first.y, window.low.y);
                 const int top = std::max(static_cast<int>(std::ceil(y - radius)), low),
                           bottom = std::min(static_cast<int>(std::floor(y + radius)), high),
                           left = std::max(static_cast<int>(std::ceil(x - radius)), 0),
@@ -584,13 +634,13 @@ class RendererOf final : public Impl {
     // The batch's samples into the picture's pixels.
     void average(int first_row, int rows, Picture& picture) const {
         const int n = options_.samples / sampling_.stride;  // of this pass, a side
-        const auto sample_width = static_cast<std::size_t>(raster_size().x);
-        const auto width = static_cast<std::size_t>(picture.resolution.x);
+        const auto sample_width = static_cast<std::size_t>(drawn_window().size().x);
+        const auto width = static_cast<std::size_t>(window_.size().x);
         const float share = 1.0f / static_cast<float>(options_.samples * options_.samples);
         const bool has_skyline = has_places() && !sampling_.is_by_pixel && !options_.alpha;
         std::vector<std::vector<SkylinePixel>> skyline(rows / n);
         tbb::parallel_for(0, rows / n, [&](int row) {
-            const std::size_t to = width * (first_row / n + row);
+            const std::size_t to = first_pixel(picture, first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
                 glm::vec3 of_sky(0.0f);
@@ -631,13 +681,13 @@ class RendererOf final : public Impl {
     // What the middle of each pixel shows, beside its light.
     void describe(int first_row, int rows, int frame, Picture& picture) const {
         const int n = options_.samples / sampling_.stride;
-        const auto sample_width = static_cast<std::size_t>(raster_size().x);
-        const auto width = static_cast<std::size_t>(picture.resolution.x);
+        const auto sample_width = static_cast<std::size_t>(drawn_window().size().x);
+        const auto width = static_cast<std::size_t>(window_.size().x);
         Scene pictured = scene_;
-        pictured.camera.resolution = picture.resolution;
+        pictured.camera.resolution = display_;
         const Motion motion(pictured, frame, glm::dvec3(mesh_.points.origin_m, 0.0));
         tbb::parallel_for(0, rows / n, [&](int row) {
-            const std::size_t to = width * (first_row / n + row);
+            const std::size_t to = first_pixel(picture, first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
                 const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
                 picture.sea[to + x] = is_sea(middle);
@@ -716,6 +766,12 @@ class RendererOf final : public Impl {
     RenderOptions options_;
     SeaLight<T> sea_;
     DrawnSea drawn_;
+    glm::ivec2 display_;  // [pixels], as the camera has it
+    PixelWindow data_;
+    std::vector<PicturePart> picture_parts_;
+    glm::ivec2 overscan_px_{0};  // of the part at hand
+    PixelWindow window_;         // of the batch at hand
+    bool is_aimed_ = false;      // the rasteriser has it
     View view_;
     Air air_;  // before that view's eye
     Spray spray_;

@@ -29,6 +29,7 @@
 #include "core/waves/sea.h"
 #include "pelagic/scene.h"
 #include "plugin/render/layers.h"
+#include "plugin/render/picture_window.h"
 
 namespace pelagic {
 
@@ -57,7 +58,14 @@ struct Picture {
     std::array<std::vector<float>, kPictureLayerCount> data{};
     // In rising order, of pictures that aren't blurred and have their sky.
     std::vector<SkylinePixel> skyline{};
+    // Of the first pixel, where it isn't the display window's; and that one's size, where the picture isn't all of it.
+    glm::ivec2 low{0};
+    std::optional<glm::ivec2> display{};
 };
+
+inline glm::ivec2 display_size(const Picture& picture) {
+    return picture.display.value_or(picture.resolution);
+}
 
 // The layers' sum.
 inline glm::vec3 radiance_of(const SeaRadiance& layers) {
@@ -74,6 +82,10 @@ struct RenderOptions {
     bool alpha =
         false;  // transparent where there is no sea, nor spray; the light is then multiplied by alpha
     PictureLayerSet layers = light_layers();
+    // Computed round the display window: at the left and the right, above and below [pixels], each no more than half of it. The
+    // camera's keys are those of the display window, and so are the exposure, the lens and motion vectors.
+    glm::ivec2 overscan_px{0};
+    std::optional<PixelWindow> region{};  // only these pixels, of the display window and its overscan
     // Of the waves' sums, without as the quality level has them; and of footprints. To measure what others would cost.
     std::optional<Knobs> knobs{};
     FootprintFilter filter{};
@@ -87,12 +99,29 @@ inline constexpr int kMostSamples = 16;
 // here.
 RenderOptions render_options(const Scene& scene);
 
-// Throws std::invalid_argument, saying what is accepted, for options out of range or more samples a side than
+// The pixels that pictures of a display window of this size have.
+PixelWindow data_window(glm::ivec2 display, const RenderOptions& options);
+
+// Some of them, with the overscan of the view that draws them. The display window's pixels are drawn as if there were no other ones:
+// the mesh of a wider view has other points, and on a rough sea every pixel would get another light. Those round it are of the wider
+// view, so that one picture has them all.
+struct PicturePart {
+    glm::ivec2 overscan_px{0};
+    std::vector<PixelWindow> windows;  // without a pixel in common
+};
+std::vector<PicturePart> picture_parts(glm::ivec2 display, const RenderOptions& options);
+
+// Throws std::invalid_argument, saying what is accepted, for an overscan out of range, a region that reaches beyond it, and one that
+// shows nothing of a display window of this size.
+void check_window(glm::ivec2 display, const RenderOptions& options);
+
+// Throws as check_window(), and std::invalid_argument, saying what is accepted, for options out of range or more samples a side than
 // a picture can have.
 void check_render(const Scene& scene, const RenderOptions& options);
 
 // The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike, whose
-// levels are as fine as these frames need. The frames decide nothing about any frame's bits.
+// levels are as fine as these frames need. The frames decide nothing about any frame's bits. With an overscan the scene is that
+// of the samples (of_samples()).
 Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderOptions& options = {});
 
 // A picture is computed while the one before is encoded and written.
@@ -115,7 +144,7 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
+    // One frame of the shot, the data window of the camera's resolution, into a picture whose memory is used again. On all
     // threads of the calling arena; the same bits whatever their number and whichever frame came before.
     // Every value is finite. `watch` is told from the calling thread. Throws BuildCancelled, the picture being only
     // partly there, and std::invalid_argument for a camera under water where that can't be drawn

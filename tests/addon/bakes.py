@@ -3,7 +3,9 @@
     bakes.py -- PELAGIC_PROGRAM
 """
 
+import json
 import math
+import os
 import shutil
 import subprocess
 import sys
@@ -250,6 +252,35 @@ with checking("a second bake keeps what is there"):
     before = {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
     assert bpy.ops.pelagic.bake() == {"FINISHED"}
     assert before == {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
+
+with checking("a job for the farm leaves what a bake leaves, with copies of the files that it names; without the program the shot and a command"):
+    square = folder / "a square.obj"
+    square.write_text("v -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nf 1 2 3 4\n", encoding="utf-8")
+    change(sea, surface__kind="cage", surface__cage_file=str(square), output__maps=set())
+    path = os.environ["PATH"]
+    sea.pelagic_bake.folder = str(folder / "jobs")
+    job, baked_here = folder / "jobs" / "our_sea", folder / "jobs" / "baked"
+    assert bpy.ops.pelagic.bake() == {"FINISHED"}
+    job.rename(baked_here)
+    try:
+        os.environ["PATH"] = "/nowhere"
+        assert bpy.ops.pelagic.write_job() == {"FINISHED"}
+        assert [file.name for file in sorted(job.rglob("*")) if file.is_file()] == ["a square.obj", "our_sea.toml"]
+        os.environ["PATH"] = f"{Path(program).parent}:{path}"
+        assert bpy.ops.pelagic.write_job() == {"FINISHED"}
+        square.unlink()
+        tasks = json.loads((job / "farm" / "our_sea.bake.json").read_text())["tasks"]
+        for task in tasks:
+            subprocess.run(["bash", str(job / "farm" / "our_sea.bake.sh"), str(task["task"])], check=True, capture_output=True)
+        subprocess.run(["bash", str(job / "farm" / "our_sea.bake.verify.sh")], check=True, capture_output=True)
+    finally:
+        os.environ["PATH"] = path
+    files = [[file.relative_to(at) for file in sorted(at.rglob("*")) if file.is_file() and "farm" not in file.relative_to(at).parts]
+             for at in (baked_here, job)]
+    assert files[0] == files[1] and len(files[0]) > 6, files
+    for file in set(files[0]) - {Path("our_sea.json")}:  # that says where the cage was read
+        assert (baked_here / file).read_bytes() == (job / file).read_bytes(), file
+    change(sea, surface__kind="projected-grid", surface__cage_file="", output__maps={"displacement"})
 
 with checking("a folder that can't be written, // of a file that isn't saved, the own mesh: words"):
     scene.frame_end = 1

@@ -81,8 +81,8 @@ with checking("a volume of spray: below its ocean, with the scene's frames and a
 with checking("each frame shows its own file, with its grids; frames outside the bake show none"):
     for frame in (1, 3, 2):
         shown = grids(spray, frame)
-        assert set(shown) == {"density", "velocity"}, shown
-        assert shown["density"].data_type == "FLOAT" and shown["velocity"].data_type == "VECTOR_FLOAT"
+        assert set(shown) == {"density", "velocity", "v"}, shown
+        assert shown["density"].data_type == "FLOAT" and shown["velocity"].data_type == shown["v"].data_type == "VECTOR_FLOAT"
         evaluated = spray.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
         assert evaluated.grids.frame == frame
         assert not volumes.problem_of(spray, bpy.context.scene, frame), volumes.problem_of(spray, bpy.context.scene, frame)

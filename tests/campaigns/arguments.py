@@ -35,6 +35,8 @@ VALUES = {
     "--samples": NUMBERS,
     "--sky-quality": ["one", "nine", "integral", "two", ""],
     "--terms": ["sun", "sun,sky", "sun,,sky", "sun,sun", ",", "all", "", "spray,air"],
+    "--overscan": ["10%", "0%", "50%", "51%", "3", "0", "9", "-1", "1.5", "1.5%", "nan%", "%", "", "1e9", "4294967297"],
+    "--region": ["0,0,16,9", "2,3,9,8", "-2,-1,8,4", "0,0,0,0", "8,0,4,4", "0,0,4", "0,0,4,4,4", ",,,", "", "0;0;4;4", "0,0,4294967297,4", "1.5,0,4,4"],
     "--shutter": ["0", "0.5", "4", "4.1", "-1", "nan", "1e-320", ""],
     "--layers": ["all", "none", "depth", "depth,depth", "all,none", ",", "", "x"],
     "--threads": NUMBERS, "--instruction-set": ["sse4", "avx2", "avx512", "avx3", "", "AVX2"],
@@ -49,7 +51,7 @@ VALUES = {
 }
 OPTIONS = {
     "bake": ["--out", "--frames", "--trust-times", "--threads", "--max-memory", "--instruction-set", "--json", "--chosen"],
-    "render": ["--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms", "--shutter", "--alpha", "--layers",
+    "render": ["--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms", "--overscan", "--region", "--shutter", "--alpha", "--layers",
                "--trust-times", "--threads", "--max-memory", "--instruction-set"],
     "preview": ["--frame", "--size", "--quality", "--scale", "--threads", "--max-memory", "--offscreen", "--after"],
     "explain": ["--threads", "--json"],

@@ -167,7 +167,11 @@ void insert(Imf::Header& header, const Attribute& attribute) {
 }
 
 Imf::Header imf_header(const Header& header, const Image& image) {
-    Imf::Header result(image.width, image.height);
+    const Imath::V2i first(image.x, image.y), last(image.x + image.width - 1, image.y + image.height - 1);
+    const auto side = [](int own, int display) { return (display > 0 ? display : own) - 1; };
+    Imf::Header result(
+        Imath::Box2i({0, 0}, {side(image.width, image.display[0]), side(image.height, image.display[1])}),
+        Imath::Box2i(first, last));
     result.compression() = imf_compression(header.compression);
     result.zipCompressionLevel() = kZipLevel;
     for (const Channel& channel : image.channels)
@@ -247,7 +251,8 @@ class Scratch {
             gather(image, channel, block, planes_[c].data());
             const std::size_t step = sample_size(channel);
             const std::size_t row = step * static_cast<std::size_t>(block.width);
-            const Imath::V2i origin = from_corner ? Imath::V2i(0, 0) : Imath::V2i(block.x, block.y);
+            const Imath::V2i origin =
+                from_corner ? Imath::V2i(0, 0) : Imath::V2i(image.x + block.x, image.y + block.y);
             buffer.insert(channel.name,
                           Imf::Slice::Make(imf_type(channel.type), planes_[c].data(), origin, block.width,
                                            block.height, step, row, 1, 1, 0.0, from_corner, from_corner));

@@ -42,6 +42,10 @@ struct Image {
     int width = 0;   // > 0
     int height = 0;  // > 0
     std::vector<Channel> channels;
+    // Of a scan-line picture whose pixels aren't just the display window's: where the first column and the top row lie from that
+    // window's upper left corner, y down, and the window's width and height; 0: the image's own.
+    int x = 0, y = 0;
+    std::array<int, 2> display{};
 };
 
 // All lossless. Auto is None, the best for maps of a sea; exr.cpp has the measurement.

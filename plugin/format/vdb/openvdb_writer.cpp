@@ -119,7 +119,7 @@ class Writer final : public openvdb::io::Archive {
 
 class OpenVdbGrid final : public GridWriter {
   public:
-    explicit OpenVdbGrid(const GridOptions& options) : kind_(options.kind) {
+    explicit OpenVdbGrid(const GridOptions& options) : kind_(options.kind), also_named_(options.also_named) {
         switch (options.kind) {
             case GridKind::FogVolume:
                 floats_ = make_grid<openvdb::FloatGrid>(options);
@@ -150,6 +150,8 @@ class OpenVdbGrid final : public GridWriter {
         vectors_->tree().addLeaf(leaf.release());
     }
 
+    const std::string& also_named() const { return also_named_; }
+
     openvdb::GridBase::Ptr finished() const {
         if (kind_ == GridKind::LevelSet) openvdb::tools::signedFloodFill(floats_->tree());
         return grid();
@@ -162,6 +164,7 @@ class OpenVdbGrid final : public GridWriter {
     }
 
     GridKind kind_;
+    std::string also_named_;
     openvdb::FloatGrid::Ptr floats_;  // one of the two
     openvdb::Vec3SGrid::Ptr vectors_;
     std::mutex mutex_;
@@ -178,7 +181,15 @@ class Library final : public OpenVdbWriter {
     std::string encode(std::span<const GridWriter* const> grids, const std::vector<Attribute>& attributes,
                        const std::string& identifier) const override {
         openvdb::GridCPtrVec all;
-        for (const GridWriter* grid : grids) all.push_back(static_cast<const OpenVdbGrid*>(grid)->finished());
+        for (const GridWriter* grid : grids) {
+            const auto* const of = static_cast<const OpenVdbGrid*>(grid);
+            const openvdb::GridBase::Ptr finished = of->finished();
+            all.push_back(finished);
+            if (of->also_named().empty()) continue;
+            const openvdb::GridBase::Ptr same = finished->copyGrid();  // of the same tree
+            same->setName(of->also_named());
+            all.push_back(same);
+        }
         openvdb::MetaMap about;
         for (const Attribute& attribute : attributes) insert(about, attribute);
         std::string bytes;

@@ -36,6 +36,8 @@ enum class GridKind {
 
 struct GridOptions {
     std::string name;  // "density"
+    // Under this name, too; empty: under none. The file holds the voxels once (OpenVDB's instances), and readers get two grids.
+    std::string also_named{};
     GridKind kind = GridKind::FogVolume;
     double voxel_m = 1.0;
     glm::dvec3 first_m{0.0};  // the middle of voxel (0, 0, 0)

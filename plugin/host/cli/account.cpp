@@ -40,8 +40,8 @@ FrameAccount picture_account(const Scene& scene, const RenderOptions& options, i
     std::size_t channels = options.alpha ? 4 : 3;  // of the light
     for (const PictureLayerRow& row : kPictureLayers)
         if (options.layers[index(row.layer)]) channels += row.components;
-    const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
-                        static_cast<std::size_t>(scene.camera.resolution.y);
+    const glm::ivec2 size = data_window(scene.camera.resolution, options).size();
+    const auto pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
     return {.seconds = 1e-3 * cost_ms(picture_work(plan, frames, options), rates),
             .bytes = pixels * (channels * sizeof(float) + 3),  // and the PNG
             .memory_bytes = render_memory(scene, options, frames, kPicturesInFlight, threads).bytes()};

@@ -141,6 +141,8 @@ const char* const kRenderFooter =
     "  pelagic render storm.toml --frames 12 --terms sun only the glitter\n"
     "  pelagic render storm.toml --shutter 0.5 --samples 4 --alpha --layers all\n"
     "                                                    for compositing\n"
+    "  pelagic render storm.toml --frames 12 --overscan 10%\n"
+    "                                                    with pixels round the picture\n"
     "  pelagic render storm.toml --ocio env --primaries acescg\n"
     "                                                    in a studio's colours\n"
     "\n"
@@ -169,6 +171,17 @@ const char* const kRenderFooter =
 const char* const kSize =
     "The pictures' width and height in pixels.\n"
     "Default: the shot's camera.resolution";
+const char* const kOverscan =
+    "Pixels round the picture, through the same lens, for distortion and shake in the composite: 10% of\n"
+    "its width at the left and the right and of its height above and below, or 64 pixels on all sides;\n"
+    "up to half of it. The EXR's data window has them, its display window is the picture, and so is\n"
+    "the PNG. Default: none";
+const char* const kRegion =
+    "Compute these pixels alone: X0,Y0,X1,Y1 from the picture's upper left corner, x to the right and\n"
+    "y down, X1 and Y1 not among them, as the EXR's data window counts (that one names the last\n"
+    "pixel). They are the whole picture's own, to the bit. The PNG is cut to them, and its camera.glare\n"
+    "is that of their light alone. Below 0 with --overscan: --region=-20,0,100,50.\n"
+    "The files have the whole picture's names, so each region needs an --out. Default: all";
 const char* const kExposure =
     "Stops by which the PNG is brighter (or darker, if negative): each doubles the light";
 const char* const kSamples =

@@ -28,6 +28,8 @@ extern const char* const kPreviewMaxMemory;
 extern const char* const kRender;
 extern const char* const kRenderFooter;
 extern const char* const kSize;
+extern const char* const kOverscan;
+extern const char* const kRegion;
 extern const char* const kExposure;
 extern const char* const kSamples;
 extern const char* const kSkyQuality;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -68,6 +69,46 @@ SkyQuality parse_sky_quality(const std::string& text) {
     throw WrongUsage("sky quality \"" + text + "\"; accepted: one, nine, integral");
 }
 
+// What is left of a text behind a number; nullptr without one.
+template <class Number>
+const char* read_number(const char* from, const char* end, Number& number) {
+    const auto [rest, error] = std::from_chars(from, end, number);
+    return error == std::errc() ? rest : nullptr;
+}
+
+// "10%": of the width at the left and the right, of the height above and below; "64": pixels on all sides.
+glm::ivec2 parse_overscan(const std::string& text, glm::ivec2 size) {
+    const char* const end = text.data() + text.size();
+    double number = 0.0;
+    const char* const rest = read_number(text.data(), end, number);
+    const bool is_share = rest && std::string_view(rest, end) == "%";
+    if (!rest || !(number >= 0.0) ||
+        (is_share ? number > 50.0 : rest != end || number != std::floor(number) || number > size.x))
+        throw WrongUsage(
+            "overscan \"" + text +
+            "\"; accepted: a share of the picture, 0% to 50%, or whole pixels, up to half of its width and of its height");
+    if (!is_share) return glm::ivec2(static_cast<int>(number));
+    return {std::lround(0.01 * number * size.x), std::lround(0.01 * number * size.y)};
+}
+
+PixelWindow parse_region(const std::string& text) {
+    std::array<int, 4> corners{};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < corners.size() && at; ++i) {
+        at = read_number(at, end, corners[i]);
+        const bool is_last = i + 1 == corners.size();
+        if (at && !is_last) at = at != end && *at == ',' ? at + 1 : nullptr;
+        if (at && is_last && at != end) at = nullptr;
+    }
+    const PixelWindow region{{corners[0], corners[1]}, {corners[2], corners[3]}};
+    if (!at || region.is_empty())
+        throw WrongUsage(
+            "region \"" + text +
+            "\"; accepted: X0,Y0,X1,Y1, pixels from the upper left corner, those from X0,Y0 on, before X1,Y1");
+    return region;
+}
+
 PictureColours colours_of(const RenderArguments& arguments) {
     PictureColours colours;
     if (arguments.primaries != "rec709" && arguments.primaries != "acescg")
@@ -120,6 +161,13 @@ PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
     options.alpha = arguments.alpha;
     if (arguments.layers) options.layers = asked([&] { return parse_picture_layers(*arguments.layers); });
     if (arguments.sky_quality) options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
+    const glm::ivec2 size = order.scene.camera.resolution;
+    if (!arguments.overscan.empty()) options.overscan_px = parse_overscan(arguments.overscan, size);
+    if (!arguments.region.empty()) options.region = parse_region(arguments.region);
+    asked([&] {
+        check_window(size, options);
+        return true;
+    });
     fixed = {
         .samples = arguments.samples, .shutter_frames = options.shutter_frames, .layers = options.layers};
     if (arguments.sky_quality) fixed.sky_quality = options.lighting.sky_quality;
@@ -199,6 +247,8 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
     command.add_option("--sky-quality", arguments.sky_quality, help::kSkyQuality)->type_name("QUALITY");
     command.add_option("--terms", arguments.terms, help::kTerms)->type_name("TERMS");
     command.add_option("--shutter", arguments.shutter_frames, help::kShutter)->type_name("FRAMES");
+    command.add_option("--overscan", arguments.overscan, help::kOverscan)->type_name("P%|PX");
+    command.add_option("--region", arguments.region, help::kRegion)->type_name("X0,Y0,X1,Y1");
     command.add_flag("--alpha", arguments.alpha, help::kAlpha);
     command.add_option("--layers", arguments.layers, help::kLayers)->type_name("LAYERS");
     command.add_option("--ocio", arguments.ocio, help::kOcio)->type_name("CONFIG");

@@ -123,9 +123,10 @@ RunOrder bake_order(const Scene& scene, const Out& out, const Frames& frames, bo
 RunOrder pictures_order(const Scene& scene, const Out& out, const Frames& frames, bool trust_times,
                         Bytes max_memory, const PictureSize& size, std::optional<int> samples,
                         const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
-                        double shutter, bool alpha, double exposure) {
+                        double shutter, bool alpha, const PictureSides& overscan, const PictureRegion& region,
+                        double exposure) {
     const auto work = [asked = picture_request(scene, size, samples, sky_quality, layers, shutter, alpha,
-                                               exposure)](const RunOptions& options) {
+                                               overscan, region, exposure)](const RunOptions& options) {
         return settled_run(options, asked.scene, Purpose::Pictures, asked.fixed,
                            [&](const Settled& settled, const RunOptions& run) {
                                PictureOrder order = asked;
@@ -248,7 +249,7 @@ void add_render_files(py::module_& module) {
         "bits. Those that are whole already, and made of the same, are kept. Other threads run meanwhile.\n\n"
         "out, frames, max_memory_bytes, progress, cancel, what it raises, and Ctrl-C: as bake()'s; progress is told "
         "\"looking\" as well (share: of the cameras, those that are known to be above water), and in \"frames\" the "
-        "share of the picture at hand. size, samples, sky_quality, layers, shutter, alpha: as render()'s. exposure: "
+        "share of the picture at hand. size, samples, sky_quality, layers, shutter, alpha, overscan, region: as render()'s. exposure: "
         "how much brighter the PNGs are [stops], -30 to 30.\n"
         "trust_times: pictures count as whole by what they say at their beginning and end; otherwise each is read "
         "in full.",
@@ -256,7 +257,7 @@ void add_render_files(py::module_& module) {
         "render_files() calls progress with.",
         py::arg("size") = py::none(), py::arg("samples") = py::none(), py::arg("sky_quality") = py::none(),
         py::arg("layers") = std::vector<std::string>(), py::arg("shutter") = 0.0, py::arg("alpha") = false,
-        py::arg("exposure") = 0.0);
+        py::arg("overscan") = PictureSides{}, py::arg("region") = py::none(), py::arg("exposure") = 0.0);
 }
 
 // ---- Arrays

@@ -39,9 +39,11 @@ py::array layer_of(const py::capsule& owner, const Picture& picture, glm::vec3 S
 
 py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, std::optional<int> samples,
                       const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
-                      double shutter, bool alpha, const py::object& progress, const py::object& cancel,
+                      double shutter, bool alpha, const PictureSides& overscan, const PictureRegion& region,
+                      const py::object& progress, const py::object& cancel,
                       std::optional<std::size_t> max_memory_bytes) {
-    PictureRequest asked = picture_request(scene, size, samples, sky_quality, layers, shutter, alpha);
+    PictureRequest asked =
+        picture_request(scene, size, samples, sky_quality, layers, shutter, alpha, overscan, region);
     asked.options.layers &= ~light_layers();  // which are there in any case
     const auto watch = shared_watch(progress, cancel);
     const auto drawn = std::make_shared<Picture>();
@@ -92,7 +94,7 @@ py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, st
 PictureRequest picture_request(const Scene& scene, const PictureSize& size, std::optional<int> samples,
                                const std::optional<std::string>& sky_quality,
                                const std::vector<std::string>& layers, double shutter, bool alpha,
-                               double exposure) {
+                               const PictureSides& overscan, const PictureRegion& region, double exposure) {
     PictureRequest order{{.scene = scene, .options = {}, .exposure_stops = exposure}, {.samples = samples}};
     FixedSettings& fixed = order.fixed;
     if (sky_quality) fixed.sky_quality = sky_quality_of(*sky_quality);
@@ -108,6 +110,9 @@ PictureRequest picture_request(const Scene& scene, const PictureSize& size, std:
     options.shutter_frames = fixed.shutter_frames = shutter;
     fixed.layers = options.layers;
     options.alpha = alpha;
+    options.overscan_px = {overscan[0], overscan[1]};
+    if (region) options.region = {{(*region)[0], (*region)[1]}, {(*region)[2], (*region)[3]}};
+    check_window(order.scene.camera.resolution, options);
     if (!has_budget(order.scene.quality)) check_render(order.scene, options);
     return order;
 }
@@ -117,6 +122,7 @@ void add_picture(py::module_& module) {
         "render", &render_frame, py::arg("scene"), py::arg("frame"), py::arg("size") = py::none(),
         py::arg("samples") = py::none(), py::kw_only(), py::arg("sky_quality") = py::none(),
         py::arg("layers") = std::vector<std::string>(), py::arg("shutter") = 0.0, py::arg("alpha") = false,
+        py::arg("overscan") = PictureSides{}, py::arg("region") = py::none(),
         py::arg("progress") = py::none(), py::arg("cancel") = py::none(),
         py::arg("max_memory_bytes") = py::none(),
         "A frame through the scene's camera, as `pelagic render` draws it: a dict of float32 (height, width, 3), "
@@ -127,6 +133,8 @@ void add_picture(py::module_& module) {
         "\"nine\" or \"integral\"; by default the quality level's. layers: further ones, "
         "\"depth\", \"coverage\" and whatever else `pelagic render --help` lists: float32 (height, width) or (height, width, components). shutter: how long it is open, in frames, 0 to 4. "
         "alpha: no sky beside the sea, and \"alpha\", float32 (height, width), by which the light is multiplied. "
+        "overscan: pixels beside `size` at the left and the right, and above and below, through the same lens, each up to half of it; the "
+        "arrays have them. region: (x0, y0, x1, y1), these pixels alone, from the upper left corner of `size`, x1 and y1 not among them. "
         "progress: called with the share that is "
         "done, 0 … 1. cancel: a Cancel, or a callable; Cancelled is then raised. "
         "max_memory_bytes: MemoryError, before any work, for a picture that needs more; by default what the "

@@ -12,6 +12,8 @@
 namespace pelagic::python {
 
 using PictureSize = std::optional<std::array<int, 2>>;
+using PictureSides = std::array<int, 2>;                  // RenderOptions::overscan_px
+using PictureRegion = std::optional<std::array<int, 4>>;  // its low corner, and its high one
 
 struct PictureRequest : PictureOrder {
     FixedSettings fixed;
@@ -22,6 +24,7 @@ struct PictureRequest : PictureOrder {
 PictureRequest picture_request(const Scene& scene, const PictureSize& size, std::optional<int> samples,
                                const std::optional<std::string>& sky_quality,
                                const std::vector<std::string>& layers, double shutter, bool alpha,
+                               const PictureSides& overscan, const PictureRegion& region,
                                double exposure = 0.0);
 
 // How what a budget would decide is asked for by name.

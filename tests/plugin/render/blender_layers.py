@@ -70,6 +70,16 @@ assert np.abs(vector[sea][:, :2] - vector[sea][:, 2:]).max() < 0.05, "both have 
 assert combined[0, 0, 3] == 1.0 and combined[-1, 0, 3] == 0.0, "rows from the bottom: sea below"
 assert np.abs(combined[..., :3][combined[..., 3] == 0.0]).max() == 0.0, "no sky"
 
+# Of a picture with overscan Blender has the whole data window; inside it is the picture without.
+shown = []
+for name, more in (("plain", []), ("wide", ["--overscan", "8"])):
+    subprocess.run([program, "render", shot, "--frames", "3", "--samples", "1", "--layers", "none", "--out", os.path.join(folder, name), *more],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    picture = bpy.data.images.load(os.path.join(folder, name, "sea.0003.exr"))
+    shown.append(np.array(picture.pixels[:]).reshape(picture.size[1], picture.size[0], 4))
+assert shown[1].shape == (56, 80, 4), shown[1].shape
+assert np.array_equal(shown[1][8:-8, 8:-8], shown[0]) and shown[0].std() > 0.0
+
 # Cycles's own passes of the same moment: a still plane, and a camera that moves, turns and comes nearer.
 KEYS = {2: ((0.0, -60.0, 12.0), (0.0, 0.0, 4.0)), 3: ((1.5, -58.0, 11.5), (2.0, 0.0, 4.0)),
         4: ((3.0, -56.0, 11.0), (4.0, 0.0, 4.0))}

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -112,6 +113,33 @@ std::string refusal(const Header& header, const Image& image) {
 
 // The contract: column i is at x = −L/2 + i·L/N, the bottom row is at y = −L/2, and up is +y. A wave along
 // (1, 2)·2π/L is evaluated at those corners and compared with the picture, whose rows begin at the top.
+// A picture of which some is outside the display window, and some of that isn't there.
+TEST(Exr, DataWindowMayBeAnotherThanTheDisplays) {
+    constexpr int kWidth = 5, kHeight = 70;  // more rows than are written at once
+    std::vector<float> values(kWidth * kHeight);
+    std::iota(values.begin(), values.end(), 0.0f);
+    const Image image{.width = kWidth,
+                      .height = kHeight,
+                      .channels = {{.name = "Y", .data = values.data()}},
+                      .x = -2,
+                      .y = 3,
+                      .display = {100, 50}};
+    const std::string bytes = encode_scanline({}, image);
+    StringReader reader(bytes);
+    Imf::InputFile file(reader);
+    EXPECT_EQ(file.header().dataWindow(), Imath::Box2i({-2, 3}, {2, 72}));
+    EXPECT_EQ(file.header().displayWindow(), Imath::Box2i({0, 0}, {99, 49}));
+    std::vector<float> read(values.size());
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, read.data(), Imath::V2i(-2, 3), kWidth, kHeight));
+    file.setFrameBuffer(buffer);
+    file.readPixels(3, 72);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            ASSERT_EQ(read[static_cast<std::size_t>(y * kWidth + x)],
+                      values[static_cast<std::size_t>((kHeight - 1 - y) * kWidth + x)]);
+}
+
 TEST(Exr, TheBottomRowIsTheSmallestYAndColumnsAreCorners) {
     const int n = 8;
     const double length_m = 100.0;

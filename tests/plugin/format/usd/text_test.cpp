@@ -266,6 +266,7 @@ def Xform "a_b" (
     )
     {
         rel material:binding = </a_b/Materials/Water>
+        color3f[] primvars:displayColor = [(0, 0, 0)] (interpolation = "constant")
     }
 
     def Scope "Materials"

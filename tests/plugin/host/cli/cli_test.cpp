@@ -66,7 +66,7 @@ TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
           "folder in the working folder"}},
         {"render",
          {"SHOT.toml", "--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms",
-          "--trust-times", "--threads", "--help", "sun, sky, sea, foam and air"}},
+          "--overscan", "--region", "--trust-times", "--threads", "--help", "sun, sky, sea, foam and air"}},
         {"preview",
          {"SHOT.toml", "--offscreen", "--frame", "--size", "--quality", "--scale", "--screenshot", "--after",
           "--threads", "--help", "F1"}},

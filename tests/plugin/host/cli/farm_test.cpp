@@ -160,14 +160,16 @@ TEST_F(Farm, ABudgetIsSettledOnceForAllTasks) {
 TEST_F(Farm, PicturesToo) {
     ASSERT_EQ(
         shell(
-            "$P farm small.toml --out out --tasks 2 --verb render --size 32x18 --samples 1 --layers none --frames 1-4")
+            "$P farm small.toml --out out --tasks 2 --verb render --size 32x18 --samples 1 --overscan 10% --region=-2,0,20,19 --layers none --frames 1-4")
             .status,
         0);
     EXPECT_EQ(result("$P farm --status out --json", 3).at("missing"), "1-4");
     ASSERT_EQ(shell("for n in 0 1; do bash out/farm/small.render.sh $n || exit; done").status, 0);
     EXPECT_EQ(result("$P farm --status out --json").at("whole"), "1-4");
     ASSERT_EQ(
-        shell("$P render small.toml --out whole --size 32x18 --samples 1 --layers none --frames 1-4").status,
+        shell(
+            "$P render small.toml --out whole --size 32x18 --samples 1 --overscan 10% --region=-2,0,20,19 --layers none --frames 1-4")
+            .status,
         0);
     EXPECT_EQ(shell("bash out/farm/small.render.verify.sh").status, 0);
     ASSERT_EQ(shell("mkdir kept; mv out/small.0003.* kept").status, 0);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -66,6 +67,11 @@ const std::set<std::string> kChannels{"R",      "G",      "B",      "sun.R", "su
                                       "sky.R",  "sky.G",  "sky.B",  "sea.R", "sea.G", "sea.B",
                                       "foam.R", "foam.G", "foam.B", "air.R", "air.G", "air.B"};
 
+std::array<int, 4> data_window(const fs::path& file) {
+    const auto window = Imf::InputFile(file.c_str()).header().dataWindow();
+    return {window.min.x, window.min.y, window.max.x, window.max.y};
+}
+
 // The largest value in a layer; 0 means black.
 float brightest(const fs::path& file, const std::string& layer) {
     Imf::InputFile exr(file.c_str());
@@ -122,6 +128,29 @@ TEST_F(Pictures, RenderLeavesAnExrWithLayersAndAPngForEachFrame) {
     EXPECT_EQ(png_size(folder() / "small/small.0003.png"), std::pair(48, 27));
     EXPECT_TRUE(has(ended.out, "small/small.0001.exr")) << ended.out;
     EXPECT_TRUE(has(ended.out, "2 frames rendered")) << ended.out;
+}
+
+// A share is of the width and of the height; a region's numbers are those of the data window, but for its last pixel. The PNG is what
+// of it is in the picture. Neither counts as the other, nor as the picture without.
+TEST_F(Pictures, OverscanAndRegionsAreInTheDataWindow) {
+    const auto rendered = [&](std::vector<std::string> options) {
+        std::vector<std::string> arguments{"render", "small.toml", "--frames", "2", "--out", "out"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Ended ended = cli(arguments);
+        EXPECT_EQ(ended.status, 0) << ended.err;
+        EXPECT_TRUE(has(ended.out, "1 frame rendered")) << ended.out;
+        return data_window(folder() / "out/small.0002.exr");
+    };
+    const auto png = [&] { return png_size(folder() / "out/small.0002.png"); };
+    using Corners = std::array<int, 4>;
+    EXPECT_EQ(rendered({}), (Corners{0, 0, 47, 26}));
+    EXPECT_EQ(rendered({"--overscan", "10%"}), (Corners{-5, -3, 52, 29}));
+    EXPECT_EQ(png(), std::pair(48, 27));
+    EXPECT_EQ(rendered({"--overscan", "4"}), (Corners{-4, -4, 51, 30}));
+    EXPECT_EQ(rendered({"--overscan", "4", "--region=-2,3,20,31"}), (Corners{-2, 3, 19, 30}));
+    EXPECT_EQ(png(), std::pair(20, 24));
+    EXPECT_EQ(rendered({"--region", "7,3,20,15"}), (Corners{7, 3, 19, 14}));
+    EXPECT_EQ(png(), std::pair(13, 12));
 }
 
 // Every other layer of the table, the others, none and all: their channels and no others beside the picture's.
@@ -258,6 +287,12 @@ TEST_F(Pictures, RenderRefusesWhatItCannotDoBeforeItBegins) {
         refused({"render", "small.toml", std::string("--samples=") + samples}, 2, {"--samples"});
     refused({"render", "small.toml", "--sky-quality", "ten"}, 2,
             {"\"ten\"", "accepted: one, nine, integral"});
+    for (const char* overscan : {"51%", "-1", "1.5", "49", "10 %", "nan%"})
+        refused({"render", "small.toml", std::string("--overscan=") + overscan}, 2,
+                {"overscan", "accepted: "});
+    refused({"render", "small.toml", "--overscan", "14"}, 2, {"overscan of 14,14", "24,13, is accepted"});
+    for (const char* region : {"0,0,9", "0,0,9,9,9", "0,0,49,27", "-1,0,9,9", "9,9,9,12", "a,b,c,d"})
+        refused({"render", "small.toml", std::string("--region=") + region}, 2, {"region", "accepted"});
     for (const char* stops : {"31", "-31", "nan", "inf"})
         refused({"render", "small.toml", std::string("--exposure=") + stops}, 2, {"exposure", "-30 to 30"});
     for (const char* frames : {"0", "5", "3-1", "x"})

@@ -300,6 +300,18 @@ class Pictures(unittest.TestCase):
         with self.assertRaises(TypeError):
             pelagic.render(shot(), 1, (12, 8), 1, layers=5)
 
+    def test_overscan_and_regions(self):
+        def look(**more):
+            return pelagic.render(shot(), 1, (48, 32), 1, layers=["position"], alpha=True, **more)
+        whole, wide, part = look(), look(overscan=(6, 4)), look(region=(5, 20, 30, 31))
+        for name, values in whole.items():
+            self.assertEqual(wide[name].shape[:2], (40, 60), name)
+            np.testing.assert_array_equal(wide[name][4:-4, 6:-6], values, name)
+            np.testing.assert_array_equal(part[name], values[20:31, 5:30], name)
+        for wrong in ({"overscan": (25, 0)}, {"overscan": (-1, 0)}, {"region": (0, 0, 49, 1)}, {"region": (5, 5, 5, 6)}):
+            with self.assertRaises(ValueError, msg=wrong):
+                look(**wrong)
+
     def test_it_is_the_sky_that_sky_has(self):
         scene = shot()
         scene.camera.position_m, scene.camera.look_at_m = (0.0, 0.0, 3.0), (0.0, 10.0, 13.0)

@@ -9,6 +9,7 @@
 #include "core/lighting/lighting.h"
 #include "pelagic/scene.h"
 #include "plugin/render/raster.h"
+#include "plugin/render/ray_scene.h"
 #include "plugin/render/sea_light.h"
 
 namespace pelagic {
@@ -44,9 +45,15 @@ struct Batch {
     std::vector<double> glass_m;  // by sample: its height above the water at the camera's glass [m]; likewise
     std::vector<std::size_t> climbed;  // which samples look through what climbs the glass, rising
     std::vector<std::size_t> water;    // which samples show water without a surface, rising
+    // Of shots with objects, otherwise empty, by sample: the body that it shows, the light from there, and what the sea mirrors of bodies.
+    std::vector<RayHit> body;
+    std::vector<glm::vec3> object, reflection;
     std::vector<std::size_t> sea;      // which samples show the sea, rising
     SeenSea<T> seen;                   // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;
+    std::vector<SeaRadiance> unlit;       // without the sun, where bodies hide it; likewise
+    std::vector<std::uint8_t> in_shadow;  // whether they do
+    std::vector<float> sun_share;         // how much of it they leave
 };
 
 }  // namespace pelagic

@@ -226,6 +226,11 @@ void LitObjects::light(const SeaLight<T>& sea) {
         all += part * kColumns;
     }
     mean_sea_ /= all;
+    constexpr float kStep_m = 0.5f, kFarthest_m = 64.0f, kLeast = 0.01f;
+    sight_in_water_m_ = kStep_m;
+    const auto most = [](const glm::vec3& of) { return std::max({of.x, of.y, of.z}); };
+    while (sight_in_water_m_ < kFarthest_m && most(water_lets_through(*water_, sight_in_water_m_)) > kLeast)
+        sight_in_water_m_ *= 1.25f;
 }
 template void LitObjects::light(const SeaLight<float>&);
 template void LitObjects::light(const SeaLight<double>&);
@@ -456,12 +461,12 @@ glm::vec3 LitObjects::left_at_depth(float way_m) const {
 
 // The sun's ray is refracted by level water; the sky's light comes from a cone, the mean way through it is 1.17 of the depth (water.glsl).
 glm::vec3 LitObjects::radiance_in_water(const Ray& ray, const RayHit& hit) const {
-    constexpr float kIndex = 1.34f, kSkySlant = 1.17f, kOfSky = 0.93f;  // the part of the sky's that enters
+    constexpr float kSkySlant = 1.17f, kOfSky = 0.93f;  // the part of the sky's that enters
     const Surface at = surface(ray, hit);
     const float depth_m = bodies_[at.body].water_m - at.place.z;
     const glm::vec3 to_sun =
-        glm::normalize(glm::vec3(glm::vec2(to_sun_) / kIndex,
-                                 std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kIndex * kIndex))));
+        glm::normalize(glm::vec3(glm::vec2(to_sun_) / kWaterIndex,
+                                 std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kWaterIndex * kWaterIndex))));
     const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
     glm::vec3 light = (0.6f + 0.4f * at.normal.z) * kOfSky * above * left_at_depth(kSkySlant * depth_m);
     const float facing = glm::dot(at.normal, to_sun);
@@ -490,6 +495,13 @@ bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye
         const float size = 1.5f * body.radius / distance * (1.0f + glm::length(slope)) / half.z;
         return glm::length(slope - mean) <= farthest + size;
     });
+}
+
+float LitObjects::mirrored_by_water(float cosine) {
+    const float g = std::sqrt(kWaterIndex * kWaterIndex + cosine * cosine - 1.0f);
+    const float across = (g - cosine) / (g + cosine),
+                along = (cosine * (g + cosine) - 1.0f) / (cosine * (g - cosine) + 1.0f);
+    return 0.5f * across * across * (1.0f + along * along);
 }
 
 bool LitObjects::is_near(const glm::vec3& place, float distance_m) const {

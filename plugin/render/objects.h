@@ -28,6 +28,8 @@
 
 namespace pelagic {
 
+inline constexpr float kWaterIndex = 1.34f;  // as core/lighting/special.glsl has it
+
 // As mattes and messages call it.
 std::string object_name(const SceneObject& object);
 
@@ -73,8 +75,12 @@ class LitObjects {
     // Whether facets of a sea with these hidden slopes (their variances' sum) mirror some body to the eye, 4 deviations far.
     bool may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,
                          float slope_variance) const;
-    // Whether a body is nearer than this.
+    // Whether a body may be nearer than this.
     bool is_near(const glm::vec3& place, float distance_m) const;
+    // From how far a hundredth of a body's light comes through the water [m].
+    float sight_in_water_m() const { return sight_in_water_m_; }
+    // Of a level facet, Fresnel's term.
+    static float mirrored_by_water(float cosine);
     // The sky's light that the sea mirrors where no body is.
     glm::vec3 sky(const glm::vec3& direction) const;
 
@@ -132,6 +138,7 @@ class LitObjects {
     static constexpr int kRows = 12, kColumns = 24;
     std::array<std::vector<glm::vec3>, 2> sea_;  // by whether the sun shines on it: rows by the root of to_eye.z, columns by azimuth
     glm::vec3 mean_sea_{0.0f};
+    float sight_in_water_m_ = 0.0f;
 };
 
 }  // namespace pelagic

@@ -4,6 +4,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
@@ -512,13 +514,14 @@ class RendererOf final : public Impl {
     }
 
     void light_sea(int first_row) {
-        batch_.reflection.assign(objects_ ? batch_.triangles.size() : 0, glm::vec3(0.0f));
+        batch_.in_sea.assign(objects_ ? batch_.triangles.size() : 0, BodiesInSea{});
         if (batch_.sea.empty()) return;
         batch_.lit.resize(batch_.sea.size());
         sea_.light(batch_.seen, sea_.sky(), air_, spray_, batch_.lit);
         if (objects_) {
             shadow_sea(first_row);
             mirror_objects(first_row);
+            see_into_water(first_row);
         }
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
     }
@@ -583,16 +586,45 @@ class RendererOf final : public Impl {
                               static_cast<float>(count * numbers.all);
             }
             sea_.mirror(batch_.seen, i, std::span(places).first(count), std::span(mirrored).first(count));
-            glm::vec3 light(0.0f);
+            const glm::vec3 left = left_before(i);
+            BodiesInSea& shown = batch_.in_sea[sample];
             for (std::uint32_t k = 0; k < count; ++k) {
                 if (!(mirrored[k].weight > 0.0f)) continue;
                 const Ray ray{.from = place + 1e-3f * batch_.seen.up[i], .towards = mirrored[k].from};
+                const glm::vec3 weight = mirrored[k].weight * left, sky = weight * objects_->sky(ray.towards);
+                shown.sky += sky;
                 const RayHit hit = objects_->nearest(ray);
-                if (hit.is_hit())
-                    light += mirrored[k].weight * (objects_->estimate(ray, hit) - objects_->sky(ray.towards));
+                if (!hit.is_hit()) continue;
+                shown.mirrored += weight * objects_->estimate(ray, hit);
+                shown.hidden += sky;
             }
-            if (light == glm::vec3(0.0f)) return;
-            batch_.reflection[sample] = light * left_before(i);
+        });
+    }
+
+    // Bodies in the water, through its surface as one mean facet, and in front of what the water behind them sends.
+    void see_into_water(int first_row) {
+        if (!options_.lighting.water || !sea_.water().has_body) return;
+        const std::vector<glm::vec3>& normal = sea_.answers().vectors(Product::Normal);
+        const std::vector<float>& coverage = sea_.answers().numbers(Product::Coverage);
+        const float clear_m = objects_->sight_in_water_m();
+        in_parallel(batch_.sea.size(), [&](std::size_t i) {
+            if (!batch_.seen.from_below.empty() && batch_.seen.from_below[i] != 0) return;
+            const glm::vec3 place = sea_place(first_row, batch_.sea[i]);
+            if (!objects_->is_near(place, clear_m)) return;
+            const glm::vec3 upright(from_level(glm::dvec3(normal[i]), glm::dvec3(batch_.seen.up[i])));
+            const glm::vec3 to_eye = batch_.seen.to_eye[i];
+            const float cosine = glm::dot(upright, to_eye);
+            if (!(cosine > 0.02f)) return;
+            const Ray ray{.from = place,
+                          .towards = glm::refract(-to_eye, upright, 1.0f / kWaterIndex),
+                          .farthest_m = clear_m};
+            const RayHit hit = objects_->nearest(ray);
+            if (!hit.is_hit() || hit.distance_m > clear_m) return;
+            const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);
+            const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
+            const glm::vec3 body = (clear * (1.0f - LitObjects::mirrored_by_water(cosine)) * kBehindGlass) * left *
+                                   objects_->radiance_in_water(ray, hit);
+            batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
         });
     }
 
@@ -649,19 +681,24 @@ class RendererOf final : public Impl {
         return is_sea(sample) || (is_object(sample) && !objects_->is_holdout(batch_.body[sample]));
     }
 
-    // Chance may take more of the sky from a pixel than the sea mirrors there; a Cryptomatte has its largest share first.
+    // A Cryptomatte has its largest share first.
     void end_objects(Picture& picture) const {
-        float* const of = picture.data[index(PictureLayer::Reflection)].data();
-        in_parallel(picture.layers.size(), [&](std::size_t pixel) {
-            for (int c = 0; c < 3; ++c) {
-                const SeaRadiance& layers = picture.layers[pixel];
-                of[3 * pixel + c] = std::max(of[3 * pixel + c], -layers.sky[c]);
-            }
-        });
         if (std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)]; !mattes.empty())
             in_parallel(picture.layers.size(), [&](std::size_t pixel) {
                 sort_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>());
             });
+    }
+
+    // What a pixel's samples of the sea show of bodies, more than without them, in all. Of the sky that they mirror, `sky`, bodies take the
+    // share that they do among the facets: so no chance takes more than there is.
+    static glm::vec3 shown_in_sea(const BodiesInSea& all, const glm::vec3& sky) {
+        glm::vec3 shown = all.through;
+        for (int c = 0; c < 3; ++c) {
+            constexpr float kMost = 4.0f;  // facets tell more or less of a bright spot of the sky
+            const float scale = all.sky[c] > 0.0f ? sky[c] / all.sky[c] : 1.0f;
+            shown[c] += std::clamp(scale, 1.0f / kMost, kMost) * all.mirrored[c] - scale * all.hidden[c];
+        }
+        return shown;
     }
 
     FloorEye eye() const {
@@ -695,7 +732,7 @@ class RendererOf final : public Impl {
             batch_.radiance[sample] = mixed(batch_.radiance[sample], batch_.lit[i], share);
             if (objects_) {
                 batch_.object[sample] *= 1.0f - share;
-                batch_.reflection[sample] *= 1.0f - share;
+                batch_.in_sea[sample] *= 1.0f - share;
             }
             if (!batch_.veil.empty() && !is_covered(sample))
                 batch_.veil[sample] += share * (1.0f - batch_.veil[sample]);
@@ -744,7 +781,7 @@ class RendererOf final : public Impl {
             *layer *= 1.0f - hidden;
         if (objects_) {
             batch_.object[sample] *= 1.0f - hidden;
-            batch_.reflection[sample] *= 1.0f - hidden;
+            batch_.in_sea[sample] *= 1.0f - hidden;
         }
         seen.air += hidden * drop.radiance;
         if (!batch_.veil.empty() && batch_.triangles[sample] == Rasteriser::kNone && !is_covered(sample))
@@ -876,17 +913,24 @@ class RendererOf final : public Impl {
     void add_objects(int row, std::size_t x, int n, float share, Picture& picture, std::size_t pixel) const {
         std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
         const auto sample_width = static_cast<std::size_t>(raster_size().x);
-        glm::vec3 object(0.0f), reflection(0.0f);
+        glm::vec3 object(0.0f), sky(0.0f);
+        BodiesInSea shown;
         for (int y = 0; y < n; ++y)
             for (int i = 0; i < n; ++i) {
                 const std::size_t at = sample_width * (row * n + y) + x * n + i;
                 object += batch_.object[at];
-                reflection += batch_.reflection[at];
+                const BodiesInSea& in_sea = batch_.in_sea[at];
+                shown.mirrored += in_sea.mirrored;
+                shown.hidden += in_sea.hidden;
+                shown.sky += in_sea.sky;
+                shown.through += in_sea.through;
+                if (in_sea.sky != glm::vec3(0.0f)) sky += batch_.radiance[at].sky;
                 if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
                 add_to_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>(),
                              is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte,
                              share);
             }
+        const glm::vec3 reflection = shown_in_sea(shown, sky);
         for (int c = 0; c < 3; ++c) {
             picture.data[index(PictureLayer::Object)][3 * pixel + c] += share * object[c];
             picture.data[index(PictureLayer::Reflection)][3 * pixel + c] += share * reflection[c];

@@ -205,8 +205,11 @@ void SeaLight<T>::light_from_afar(std::span<const glm::vec3> to_eye, bool lit,
     const Scene& scene = plan().from->scene;
     // Of water without a body nobody has asked for the waves' slopes: Cox and Munk 1954.
     const auto slopes = static_cast<float>(0.003 + 0.00512 * scene.sea.wind_speed_mps);
-    const glm::vec3 variance =
-        water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
+    glm::vec3 variance = water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
+    // A calm sea's glitter would be a point that tables of directions miss, or see as a wide one.
+    constexpr float kLeast = 0.01f;
+    variance.x = std::max(variance.x, kLeast);
+    variance.y = std::max(variance.y, kLeast);
     const float coverage = choice_.whitecaps ? static_cast<float>(law_coverage(scene)) : 0.0f;
     std::vector<SeaPoint> points(to_eye.size());
     for (std::size_t i = 0; i < points.size(); ++i)

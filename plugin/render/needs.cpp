@@ -152,10 +152,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
             rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
         constexpr std::size_t kSample = sizeof(RayHit) + 2 * sizeof(glm::vec3) + sizeof(SeaRadiance) +
                                         sizeof(std::uint8_t) + sizeof(float);
-        need.add("the objects",
-                 LitObjects::bytes(scene) +
-                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
-                 "give meshes of fewer triangles");
+        need.add(
+            "the objects",
+            LitObjects::bytes(scene) + rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
+            "give meshes of fewer triangles");
     }
     if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
@@ -168,13 +168,13 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                  "set camera.glare to 0");
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);
-    need.add("pictures",
-             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) *
-                                           (picture_bytes(options, has_objects) +
-                                            file_bytes(options, has_objects)) +
-                                       kEncodingBytes
-                                 : picture_bytes(options, has_objects)),
-             "ask for a smaller picture (--size)");
+    need.add(
+        "pictures",
+        pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (picture_bytes(options, has_objects) +
+                                                                      file_bytes(options, has_objects)) +
+                                  kEncodingBytes
+                            : picture_bytes(options, has_objects)),
+        "ask for a smaller picture (--size)");
     return need;
 }
 

@@ -120,8 +120,8 @@ int run(const PreviewArguments& arguments) {
     }
     if (arguments.frame) asked([&] { return parse_frames(std::to_string(*arguments.frame), scene.shot); });
     if (!scene.objects.empty())
-        std::cerr << line_text(arguments.shot) << ": note: the preview doesn't show objects; pelagic render does"
-                  << std::endl;
+        std::cerr << line_text(arguments.shot)
+                  << ": note: the preview doesn't show objects; pelagic render does" << std::endl;
     if (arguments.offscreen) {
         refuse_file("--offscreen", *arguments.offscreen, {".png", ".exr"});
         // Signals end it at once: no file is begun.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -146,12 +147,17 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");
+    std::size_t meshes = 0;
+    std::set<const ObjectMesh*> counted;  // bodies of one file share its mesh
+    for (const SceneObject& object : scene.objects)
+        if (counted.insert(object.mesh.get()).second) meshes += object.mesh->bytes();
+    if (meshes > 0) need.add("the objects' meshes", meshes, "give coarser ones");
     const bool has_objects = !scene.objects.empty();
     if (has_objects) {
         const auto rows = static_cast<std::size_t>(std::min(
             rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
-        constexpr std::size_t kSample = sizeof(RayHit) + 2 * sizeof(glm::vec3) + sizeof(SeaRadiance) +
-                                        sizeof(std::uint8_t) + sizeof(float);
+        constexpr std::size_t kSample = sizeof(RayHit) + sizeof(glm::vec3) + sizeof(BodiesInSea) +
+                                        sizeof(SeaRadiance) + sizeof(std::uint8_t) + sizeof(float);
         need.add(
             "the objects",
             LitObjects::bytes(scene) + rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,

@@ -117,7 +117,7 @@ RelativeError relative_error(const Picture& picture, const Picture& reference) {
     double sum = 0.0;
     for (std::size_t i = 0; i < reference.layers.size(); ++i) {
         if (!picture.sea[i] || !reference.sea[i]) continue;
-        const glm::dvec3 seen(radiance_of(picture.layers[i])), exact(radiance_of(reference.layers[i]));
+        const glm::dvec3 seen(light_of(picture, i)), exact(light_of(reference, i));
         const double scale = glm::length(exact);
         off.push_back(glm::length(seen - exact) / (scale > 0.0 ? scale : 1.0));
         sum += off.back();

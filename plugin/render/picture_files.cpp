@@ -264,13 +264,15 @@ Picture cut_to(const Picture& picture, const PixelWindow& window) {
         return width * static_cast<std::size_t>(from.y + row) + static_cast<std::size_t>(from.x);
     };
     for (int row = 0; row < cut.resolution.y; ++row) {
-        const auto take = [&](const auto& values, auto& to) {
+        const auto take = [&](const auto& values, auto& to, std::size_t components = 1) {
             if (values.empty()) return;
-            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first(row));
-            to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(cut_width));
+            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(components * first(row));
+            to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(components * cut_width));
         };
         take(picture.layers, cut.layers);
         take(picture.alpha, cut.alpha);
+        for (const PictureLayer layer : {PictureLayer::Object, PictureLayer::Reflection})
+            take(picture.data[index(layer)], cut.data[index(layer)], 3);
         auto both = std::lower_bound(picture.skyline.begin(), picture.skyline.end(), first(row),
                                      [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
         for (; both != picture.skyline.end() && both->pixel < first(row) + cut_width; ++both) {

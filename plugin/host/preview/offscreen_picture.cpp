@@ -21,6 +21,7 @@
 #include "core/waves/whitecaps.h"
 #include "plugin/host/gpu/packed_foam.h"
 #include "plugin/host/gpu/sea_layout.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -157,6 +158,8 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
                  "set effects.spray to false");
         add_seen_drops(need, planned.plan);
     }
+    if (!planned.scene.objects.empty())
+        need.add("the objects", DrawnObjects::bytes(planned.scene), "give simpler meshes");
     need.add("the driver", kDriverBytes, smaller());
     return need;
 }
@@ -288,6 +291,9 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
         renderer.set_floor(floor);
     }
     renderer.set_sky(sky, water);
+    if (!planned.scene.objects.empty())
+        renderer.set_objects(drawn_objects(planned.scene, planned.frame, planned.drawn->rest_m()),
+                             object_surroundings(lighting, sky, water, law_coverage(planned.scene)));
     if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);

@@ -11,7 +11,6 @@
 #include <set>
 #include <utility>
 
-#include "core/scene/object_pose.h"
 #include "core/surface/earth.h"
 #include "plugin/host/gpu/shader_variants.h"
 #include "plugin/host/preview/gl_textures.h"
@@ -44,14 +43,15 @@ glm::dmat4 translation(glm::dvec3 by) {
 
 }  // namespace
 
-std::vector<DrawnObject> drawn_objects(const Scene& scene, double frame, double rest_m) {
+std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& scene,
+                                       const ObjectMoment& at) {
     std::vector<DrawnObject> drawn;
     for (const SceneObject& object : scene.objects) {
-        const ObjectPose pose = object_pose(scene, object, frame);
+        const auto [pose, water_m] = place_object(state, scene, object, at);
         drawn.push_back({.mesh = object.mesh,
                          .place_m = pose.place_m,
                          .axes = pose.scale * pose.turn,
-                         .water_m = rest_m,
+                         .water_m = water_m,
                          .colour = glm::vec3(object.colour),
                          // Radiance 1 is a thousand cd/m² by daylight; a sky's picture counts as if it were so.
                          .glow = static_cast<float>(1e-3 * object.glow_cd_m2),

@@ -18,6 +18,7 @@
 #include "plugin/host/gpu/uniforms.h"
 #include "plugin/host/preview/gl_objects.h"
 #include "plugin/host/preview/shader_program.h"
+#include "plugin/render/object_place.h"
 
 namespace pelagic {
 
@@ -32,8 +33,8 @@ struct DrawnObject {
     bool holdout = false;
 };
 
-// A scene's at a frame, also between two, on a calm sea that rests at that height. They have meshes.
-std::vector<DrawnObject> drawn_objects(const Scene& scene, double frame, double rest_m);
+// A scene's, which have meshes, in its sea. Any thread; needs no context.
+std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& scene, const ObjectMoment& at);
 
 class DrawnObjects {
   public:

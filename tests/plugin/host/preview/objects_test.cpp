@@ -8,12 +8,17 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/lighting/object.h"
+#include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
+#include "plugin/host/gpu/packed_frame.h"
 #include "plugin/host/gpu/shader_variants.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
@@ -48,6 +53,7 @@ Scene object_scene(double wind_mps, double sun_elevation_deg) {
     scene.sea.wind_speed_mps = wind_mps;
     scene.waves.cascades = {{160.0, 128}, {37.7, 128}, {8.9, 128}};
     scene.quality.level = QualityLevel::Preview;
+    scene.effects.foam_decay_s = 0.0;
     scene.camera.position_m = {0.0, -60.0, 9.0};
     scene.camera.look_at_m = {0.0, 0.0, 1.0};
     scene.camera.fov_deg = 40.0;
@@ -57,52 +63,185 @@ Scene object_scene(double wind_mps, double sun_elevation_deg) {
     return scene;
 }
 
-Scene with_box(Scene scene, glm::vec3 half_m = {6.0f, 2.0f, 4.0f}) {
+constexpr glm::dvec3 kHalf_m(6.0, 2.0, 4.0);
+constexpr double kHeading = 20.0 * 3.14159265358979 / 180.0;
+
+Scene with_box(Scene scene, const ObjectMaterial& material = {.name = "paint",
+                                                              .colour = glm::vec3(0.6f, 0.25f, 0.1f)}) {
     SceneObject object;
     object.name = "box";
-    object.mesh = box(half_m, {.name = "paint", .colour = glm::vec3(0.6f, 0.25f, 0.1f)});
+    object.mesh = box(glm::vec3(kHalf_m), material);
     object.heading_deg = 20.0;
     scene.objects = {object};
     return scene;
 }
 
-Picture drawn(const Scene& scene) {
-    gpu::need_context();
-    return render_offscreen(plan_offscreen(scene, 1), make_sky(scene)).picture;
-}
-
-void dump(const char* name, const Picture& p, float e) {  // TEMPORARY
-    const std::string file = std::string("/tmp/view_") + name + ".ppm";
-    std::FILE* f = std::fopen(file.c_str(), "wb");
-    std::fprintf(f, "P6 %d %d 255\n", p.resolution.x, p.resolution.y);
-    for (const SeaRadiance& l : p.layers) {
-        const glm::vec3 c = radiance_of(l) * e;
-        for (int i = 0; i < 3; ++i)
-            std::fputc(static_cast<int>(255.0f * std::pow(glm::clamp(1.0f - std::exp(-c[i]), 0.0f, 1.0f), 1.0f / 2.2f)), f);
+// Whether a ray meets that box, and how far away.
+std::optional<double> box_ahead(glm::dvec3 from, glm::dvec3 towards) {
+    const auto turned = [](glm::dvec3 v) {
+        const double c = std::cos(kHeading), s = std::sin(kHeading);
+        return glm::dvec3(c * v.x + s * v.y, c * v.y - s * v.x, v.z);
+    };
+    from = turned(from);
+    towards = turned(towards);
+    double enters = 0.0, leaves = 1e30;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = (-kHalf_m[axis] - from[axis]) / towards[axis],
+                     b = (kHalf_m[axis] - from[axis]) / towards[axis];
+        enters = std::max(enters, std::min(a, b));
+        leaves = std::min(leaves, std::max(a, b));
     }
-    std::fclose(f);
+    if (leaves < enters) return {};
+    return enters;
 }
 
-TEST(PreviewsObjects, Dump) {
-    Scene scene = with_box(object_scene(0.5, 35.0));
-    scene.camera.resolution = {640, 360};
-    dump("calm", drawn(scene), 0.15f);
-    scene = with_box(object_scene(8.0, 35.0));
-    scene.camera.resolution = {640, 360};
-    dump("wind", drawn(scene), 0.15f);
-    scene = with_box(object_scene(8.0, 8.0));
-    scene.light.sun_azimuth_deg = 80.0;
-    scene.camera.resolution = {640, 360};
-    dump("low", drawn(scene), 0.25f);
-    scene = with_box(object_scene(18.0, 30.0));
-    scene.camera.resolution = {640, 360};
-    dump("storm", drawn(scene), 0.15f);
+// One renderer for all pictures here: a driver in software takes seconds for its programs.
+class ObjectStage {
+  public:
+    explicit ObjectStage(const Scene& scene)
+        : scene_(scene), view_(view_at(scene.camera, 1)), sky_(make_sky(scene)) {
+        gpu::need_context();
+        const auto prepared = prepare(scene);
+        mesh_ = open_sea(projected_grid(view_, projected_grid_options(*prepared)));
+        frame_.emplace(std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1})));
+        frame_->set(scene.shot.time_s(1));
+        PackedFrame packed(frame_->shared_sea(), 0);
+        packed.pack(*frame_);
+        water_ = make_water(scene, frame_->sea().plan().from->spectrum);
+        renderer().set_sky(sky_, water_);
+        renderer().upload(packed);
+    }
+    static SeaRenderer& renderer() {
+        static SeaRenderer one;
+        return one;
+    }
+    Picture with_objects() {
+        return drawn(drawn_objects(*frame_, scene_, {.frame = 1.0}));
+    }
+    Picture without() { return drawn({}); }
+    const View& view() const { return view_; }
+    const Sky& sky() const { return sky_; }
+    // Where a pixel's ray meets level water; none for the sky.
+    std::optional<glm::dvec3> on_water(std::size_t pixel) const {
+        const auto width = static_cast<std::size_t>(view_.resolution.x);
+        const glm::dvec3 towards =
+            view_.direction({static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5});
+        if (towards.z >= 0.0) return {};
+        return view_.position_m - towards * (view_.position_m.z / towards.z);
+    }
+
+  private:
+    Picture drawn(std::vector<DrawnObject> objects) {
+        const LightingChoice lighting = render_options(scene_).lighting;
+        renderer().set_objects(std::move(objects), object_surroundings(lighting, sky_, water_, 0.0));
+        renderer().draw(view_, mesh_, {.lighting = lighting, .layers = true});
+        return renderer().read_layers();
+    }
+
+    Scene scene_;
+    View view_;
+    Sky sky_;
+    SeaMesh mesh_;
+    WaterBody water_;
+    std::optional<Frame<float>> frame_;
+};
+
+Scene calm_scene() {
+    Scene scene = object_scene(0.1, 35.0);
+    scene.surface.earth_curvature = false;
+    return scene;
 }
 
-TEST(PreviewsObjects, AreSeen) {
-    const Scene scene = with_box(object_scene(6.0, 35.0));
-    const Picture with = drawn(scene);
-    EXPECT_GT(std::count(with.sea.begin(), with.sea.end(), 1), 1000);
+// Against rays to the box and to level water.
+TEST(PreviewsObjects, AreWhereTheyStandInTheWater) {
+    ObjectStage stage(with_box(calm_scene()));
+    const Picture with = stage.with_objects(), without = stage.without();
+    int seen = 0, wrong = 0;
+    for (std::size_t i = 0; i < with.sea.size(); ++i) {
+        const std::optional<glm::dvec3> water = stage.on_water(i);
+        if (!water) continue;
+        const glm::dvec3 way = *water - stage.view().position_m;
+        const bool is_box = box_ahead(stage.view().position_m, way).value_or(1.0) < 1.0;
+        seen += is_box;
+        wrong += is_box != (without.sea[i] == 1 && with.sea[i] == 0);
+    }
+    std::printf("    %d pixels show the box, %d differ\n", seen, wrong);
+    EXPECT_GT(seen, 2000);
+    EXPECT_LE(wrong, seen / 100);
+}
+
+// The sun behind the box, its shadow before it: half of the water's light is the sun's.
+TEST(PreviewsObjects, ThrowTheirShadowsOnTheSea) {
+    Scene scene = with_box(calm_scene());
+    scene.light.sun_azimuth_deg = 70.0;
+    ObjectStage stage(scene);
+    const Picture with = stage.with_objects(), without = stage.without();
+    int dark = 0, wrong = 0;
+    for (std::size_t i = 0; i < with.sea.size(); ++i) {
+        const std::optional<glm::dvec3> water = stage.on_water(i);
+        if (!water || with.sea[i] == 0) continue;
+        const bool is_dark = box_ahead(*water, glm::dvec3(stage.sky().sun_direction)).has_value();
+        const float left = with.layers[i].sea.y / without.layers[i].sea.y;
+        dark += is_dark;
+        wrong += is_dark != (left < 0.75f);
+    }
+    std::printf("    %d pixels in the shadow, %d differ\n", dark, wrong);
+    EXPECT_GT(dark, 500);
+    EXPECT_LE(wrong, dark / 50);
+}
+
+// A black box that glows: its image is Fresnel's term times the glow.
+TEST(PreviewsObjects, AreMirroredByCalmWater) {
+    constexpr float kGlow = 50.0f;
+    Scene scene = with_box(calm_scene(), {.name = "lamp", .colour = glm::vec3(0.0f), .roughness = 1.0f, .glow = glm::vec3(1.0f)});
+    scene.objects.front().glow_cd_m2 = 1e3 * static_cast<double>(kGlow);
+    ObjectStage stage(scene);
+    const Picture with = stage.with_objects(), without = stage.without();
+    int mirrored = 0, wrong = 0;
+    std::vector<double> of_expected;
+    for (std::size_t i = 0; i < with.sea.size(); ++i) {
+        const std::optional<glm::dvec3> water = stage.on_water(i);
+        if (!water || with.sea[i] == 0) continue;
+        glm::dvec3 ray = glm::normalize(*water - stage.view().position_m);
+        const double cosine = -ray.z;
+        ray.z = -ray.z;
+        const bool is_image = box_ahead(*water, ray).has_value();
+        // Fresnel's equations for an index of 1.34.
+        const double g = std::sqrt(1.34 * 1.34 + cosine * cosine - 1.0);
+        const double a = (g - cosine) / (g + cosine),
+                     b = (cosine * (g + cosine) - 1.0) / (cosine * (g - cosine) + 1.0);
+        const double whole = 0.5 * a * a * (1.0 + b * b) * static_cast<double>(kGlow);
+        const double more = static_cast<double>(with.layers[i].sky.y - without.layers[i].sky.y);
+        mirrored += is_image;
+        wrong += is_image != (more > 0.5 * whole);
+        if (is_image) of_expected.push_back(static_cast<double>(with.layers[i].sky.y) / whole);
+    }
+    std::ranges::nth_element(of_expected, of_expected.begin() + static_cast<std::ptrdiff_t>(of_expected.size() / 2));
+    const double median = of_expected[of_expected.size() / 2];
+    std::printf("    %d pixels in the image, %d differ; median %.3f of what a mirror shows\n", mirrored, wrong, median);
+    EXPECT_GT(mirrored, 2000);
+    EXPECT_LE(wrong, mirrored / 12);  // small waves blur its edge
+    EXPECT_NEAR(median, 1.0, 0.05);
+}
+
+TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {
+    ObjectStage stage(with_box(calm_scene()));
+    const auto bits = [](const Picture& picture) {
+        std::vector<float> all;
+        for (const SeaRadiance& of : picture.layers)
+            for (const glm::vec3& term : {of.sun, of.sky, of.sea, of.foam, of.air})
+                all.insert(all.end(), {term.x, term.y, term.z});
+        return all;
+    };
+    const std::vector<float> before = bits(stage.without());
+    stage.with_objects();
+    EXPECT_EQ(bits(stage.without()), before);
+    DrawOptions options;
+    const SeaLayout layout(std::make_shared<const Sea<float>>(picture_plan(calm_scene(), std::array{1})), 0);
+    const std::string plain = ShaderVariant::of_sea(layout, options, 256).fragment().text();
+    EXPECT_EQ(plain.find("sun_shadow"), std::string::npos);
+    options.has_objects = true;
+    EXPECT_NE(ShaderVariant::of_sea(layout, options, 256).fragment().text().find("sun_shadow"), std::string::npos);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ std::string canonical(const Scene& scene, KeyPartSet parts) {
             if (scene.sea.measured && key.path == kSpectrumFile) value = content_text(*scene.sea.measured);
             if (scene.surface.cage && key.path == kCageFile) value = scene.surface.cage->content();
         } else if (key.type != KeyType::DataTime) {  // is part of its file's line
-            value = value_text(key, value_of(scene, key));
+            value = value_text(key, content_value(scene, key));
         }
         if (!value.empty()) text += key.path + " = " + value + '\n';
     }

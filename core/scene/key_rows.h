@@ -361,4 +361,17 @@ void add_table(std::vector<KeyTable>& tables, std::vector<Key>& keys, KeyTable a
     tables.push_back(std::move(about));
 }
 
+// A list of the scene's own, [[name]] in the shot file: a table of one key, whose path is its name.
+template <auto kList>
+void add_list(std::vector<KeyTable>& tables, std::vector<Key>& keys, Row<Scene, 1> made) {
+    Key key = std::move(made.key);
+    key.path = key.name;
+    for (Key& inner : key.entry_keys) inner.path = key.path + "[]." + inner.name;
+    key.fallback = made.get(Scene{});
+    key.get = std::move(made.get);
+    key.set = std::move(made.set);
+    tables.push_back({key.name, key.help, {}, [](const Scene& from, Scene& to) { to.*kList = from.*kList; }});
+    keys.push_back(std::move(key));
+}
+
 }  // namespace pelagic

@@ -12,8 +12,8 @@ namespace pelagic {
 namespace {
 
 constexpr std::array<std::string_view, kKeyParts> kKeyPartWords{
-    "name", "range", "clock", "waves",   "foam", "gusts", "surface", "cage",  "grid",
-    "view", "light", "water", "quality", "mesh", "maps",  "volumes", "spray", "choice"};
+    "name",  "range", "clock",   "waves", "foam", "gusts",   "surface", "cage",    "grid",  "view",
+    "light", "water", "quality", "mesh",  "maps", "volumes", "spray",   "objects", "choice"};
 static_assert(!kKeyPartWords.back().empty(), "each part has a word");
 
 constexpr std::array<std::string_view, 11> kTypeWords{"truth",   "integer",   "number",   "text",
@@ -193,6 +193,19 @@ KeyValue value_of(const Scene& scene, const Key& key) {
     return key.get(scene);
 }
 
+KeyValue content_value(const Scene& scene, const Key& key) {
+    KeyValue value = value_of(scene, key);
+    if (key.path != kObjectsKey) return value;
+    auto& entries = std::get<std::vector<KeyEntry>>(value);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        for (auto& [name, inner] : entries[i].values) {
+            const SceneObject& object = scene.objects[i];
+            if (name == "name") inner = object.called();
+            if (name == "file") inner = object.mesh ? object.mesh->content() : "";
+        }
+    return value;
+}
+
 Problem unknown_word(const Key& key, const std::string& path, std::string_view word) {
     const std::string near = nearest(word, key.choices);
     return {path, quoted_text(word),
@@ -297,6 +310,7 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
     if (scene.waves.model == WaveModel::Trochoid &&
         (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
         return false;
+    if (key.path == kObjectsKey && scene.objects.empty()) return false;
     return (key.key_parts & parts).any();
 }
 
@@ -311,7 +325,7 @@ std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts) {
                 out.push_back({"sea.spectrum_station", measured->station, quoted_text(measured->station)});
             continue;
         }
-        KeyValue value = value_of(scene, key);
+        KeyValue value = content_value(scene, key);
         if (std::holds_alternative<std::monostate>(value)) continue;
         const auto* entries = std::get_if<std::vector<KeyEntry>>(&value);
         const bool is_word = entries && entries->empty() && !key.other_word.empty();

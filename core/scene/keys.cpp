@@ -955,6 +955,113 @@ void add_effects_and_quality(Built& out) {
              .key_parts = kQuality}));
 }
 
+void add_objects(Built& out) {
+    const Row<SceneObject, 2> file{
+        key_of_member<std::string>(
+            {.name = "file",
+             .help =
+                 "its mesh, a Wavefront OBJ in metres, z up, its bow along +x and 0 at the waterline; a path from the shot "
+                 "file's folder",
+             .accepted = "a string, the path of an .obj"}),
+        [](const SceneObject& object) { return KeyValue(object.file); },
+        [](SceneObject& object, const KeyValue& value) {
+            return MemberValue<std::string>::take(value, object.file);
+        }};
+    auto made = entries<&Scene::objects>(
+        {.name = "objects",
+         .help =
+             "bodies in the light of the sea: seen, shadowing, mirrored. Of pictures alone; their wakes are waves.vessels",
+         .key_parts = key_parts(KeyPart::Objects),
+         .most_entries = limits::kObjects,
+         .are_entries_independent = false,
+         .entry_name = "Object"},
+        row<&SceneObject::name>(
+            {.name = "name",
+             .help =
+                 "as mattes and messages call it, each another; \"\": as its file, without folder and ending",
+             .accepted = "a string, at most 100 bytes of UTF-8"}),
+        file,
+        row<&SceneObject::path>(
+            {.name = "path",
+             .help =
+                 "where its origin is, as waves.vessels[].path: frame, east and north in metres of each key; its bow goes ahead. "
+                 "Where two neighbours are one place it stands there. Frames are the camera's, also where the sea stands still",
+             .accepted =
+                 "a string, \"frame east north, frame east north, …\"; \"\": it stands at east_m and north_m"}),
+        row<&SceneObject::interpolation>(
+            {.name = "interpolation", .help = "of the path between keys: straight, or smooth"}),
+        row<&SceneObject::vessel>(
+            {.name = "vessel",
+             .help =
+                 "it is the hull of that one of waves.vessels, counted from 1, and goes where its wake is; 0: of none",
+             .range = Range{0.0, limits::kVessels}}),
+        row<&SceneObject::east_m>(
+            {.name = "east_m",
+             .help = "of its origin, along +x; with a path or a vessel, from there along its course",
+             .unit = "m",
+             .range = kEach_m,
+             .soft = SoftRange{-200.0, 200.0}}),
+        row<&SceneObject::north_m>(
+            {.name = "north_m",
+             .help = "of its origin, along +y; with a path or a vessel, from there to port",
+             .unit = "m",
+             .range = kEach_m,
+             .soft = SoftRange{-200.0, 200.0}}),
+        row<&SceneObject::up_m>({.name = "up_m",
+                                 .help = "of its origin over the calm sea",
+                                 .unit = "m",
+                                 .range = limits::kObjectUp_m,
+                                 .soft = SoftRange{-20.0, 100.0}}),
+        row<&SceneObject::heading_deg>(
+            {.name = "heading_deg",
+             .help =
+                 "of its +x, counter-clockwise from +x of the sea; with a path or a vessel, from its course",
+             .unit = "degrees",
+             .range = limits::kAngle_deg,
+             .soft = kTurn}),
+        row<&SceneObject::pitch_deg>({.name = "pitch_deg",
+                                      .help = "its bow up",
+                                      .unit = "degrees",
+                                      .range = limits::kAngle_deg,
+                                      .soft = kTurn}),
+        row<&SceneObject::roll_deg>({.name = "roll_deg",
+                                     .help = "its starboard side down",
+                                     .unit = "degrees",
+                                     .range = limits::kAngle_deg,
+                                     .soft = kTurn}),
+        row<&SceneObject::scale>({.name = "scale",
+                                  .help = "of its mesh: 0.01 for one in centimetres",
+                                  .range = limits::kObjectScale,
+                                  .soft = SoftRange{0.01, 100.0, true}}),
+        row<&SceneObject::floats>(
+            {.name = "floats", .help = "heaves, pitches and rolls with the waves that are as long as it is"}),
+        row<&SceneObject::colour>({.name = "colour",
+                                   .help = "times its materials' colours, linear Rec. 709",
+                                   .range = limits::kObjectColour}),
+        row<&SceneObject::glow_cd_m2>(
+            {.name = "glow_cd_m2",
+             .help =
+                 "luminance of its materials that glow (Ke of 1): a lit window has some 500, a lamp's glass 10000",
+             .unit = "cd/m²",
+             .range = limits::kObjectGlow_cd_m2,
+             .soft = SoftRange{1.0, 1e5, true}}),
+        row<&SceneObject::holdout>(
+            {.name = "holdout",
+             .help =
+                 "it is rendered elsewhere: where it stands is nothing, of alpha 0, and it shadows and is mirrored all the same"}));
+    // A mesh is no value: who has read a file keeps it.
+    made.set = [set = std::move(made.set)](Scene& scene, const KeyValue& value) {
+        const std::vector<SceneObject> before = scene.objects;
+        if (!set(scene, value)) return false;
+        for (SceneObject& object : scene.objects)
+            if (const auto same = std::ranges::find(before, object.file, &SceneObject::file);
+                same != before.end())
+                object.mesh = same->mesh;
+        return true;
+    };
+    add_list<&Scene::objects>(out.tables, out.keys, std::move(made));
+}
+
 void add_output(Built& out) {
     constexpr KeyPartSet kMesh = key_parts(KeyPart::Mesh), kChoice = key_parts(KeyPart::Choice);
     add_table<&Scene::output>(
@@ -1006,10 +1113,13 @@ Built build() {
     add_light_and_water(out);
     add_effects_and_quality(out);
     add_output(out);
-    static_assert(member_count<Scene>() == 11, "a table without keys: add it above");
+    add_objects(out);
+    static_assert(member_count<Scene>() == 12, "a table without keys: add it above");
     // All keys of a table are neighbours in the list.
     for (KeyTable& table : out.tables) {
-        const auto of_table = [&](const Key& key) { return key.path.starts_with(table.name + '.'); };
+        const auto of_table = [&](const Key& key) {
+            return key.path == table.name || key.path.starts_with(table.name + '.');
+        };
         const auto first = std::find_if(out.keys.begin(), out.keys.end(), of_table);
         const auto last = std::find_if_not(first, out.keys.end(), of_table);
         table.keys = std::span<const Key>(first, last);

@@ -45,9 +45,10 @@ enum class KeyPart {
     Maps,     // what is in a map, besides the sea
     Volumes,  // what a volume covers and how finely, besides the sea
     Spray,    // the droplets over breaking crests
+    Objects,  // bodies in the light of the sea: pictures alone
     Choice,   // whether an output exists; what is in it does not depend on the key
 };
-inline constexpr std::size_t kKeyParts = 18;
+inline constexpr std::size_t kKeyParts = 19;
 using KeyPartSet = std::bitset<kKeyParts>;
 
 template <class... Parts>
@@ -139,12 +140,14 @@ struct Key {
     std::function<bool(Scene&, const KeyValue&)> set;  // empty: likewise, and for data, which hosts load
 };
 
-// A table of the shot file and the keys in it.
+// A table of the shot file and the keys in it. One that is a list, [[objects]], has one key, whose path is the table's name.
 struct KeyTable {
     std::string name;  // "sea"
     std::string help;
     std::span<const Key> keys;
     std::function<void(const Scene& from, Scene& to)> copy;  // the whole table
+
+    bool is_list() const { return keys.size() == 1 && keys.front().path == name; }
 };
 
 // All tables and all their keys, in the order of the shot file's documentation.
@@ -157,6 +160,8 @@ const Key* find_key(std::string_view path);
 // The keys of data files: what hosts read from them is a member of the scene.
 inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file",
                                   kCameraFile = "camera.file";
+// The list of bodies, whose meshes are as well.
+inline constexpr std::string_view kObjectsKey = "objects";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);
@@ -165,6 +170,8 @@ const Key& key_of(std::string_view path);
 
 // Throws std::logic_error for a key that has none.
 KeyValue value_of(const Scene& scene, const Key& key);
+// The same as what the scene depends on: bodies with their meshes' content as "file", and as they are called.
+KeyValue content_value(const Scene& scene, const Key& key);
 
 // The keys whose pictures a scene names by their paths.
 std::vector<const Key*> picture_keys(const Scene& scene);

@@ -126,6 +126,15 @@ inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest ai
 inline constexpr Range kChlorophyll_mg_m3{0.01, 100.0};  // from the clearest gyres to a bloom
 inline constexpr Range kFloorColour{0.0, 1.0};
 inline constexpr Range kWaterGain{0.0, 10.0};
+inline constexpr int kObjects = 64;                          // each has a colour in mattes, and its own pose
+inline constexpr std::size_t kObjectTriangles = 20'000'000;  // of all bodies: some 2 GB with what rays need
+inline constexpr std::size_t kObjectMaterials = 4096;        // of a body
+inline constexpr std::size_t kObjectCorners = 1000;  // of a face: to cut it goes with the square and more
+inline constexpr Range kObjectPoint_m{-1e6, 1e6};    // a float holds 6 cm there
+inline constexpr Range kObjectUp_m{-1e4, 1e5};
+inline constexpr Range kObjectScale{1e-4, 1e4};
+inline constexpr Range kObjectColour{0.0, 1.0};
+inline constexpr Range kObjectGlow_cd_m2{0.0, 1e9};  // the sun has 1.6e9
 inline constexpr Range kMapResolution{1, 8192};
 inline constexpr Range kVoxel_m{1e-3, 1e5};
 inline constexpr double kVoxelsASide =

@@ -1,6 +1,7 @@
 #include "pelagic/scene.h"
 
 #include <cmath>
+#include <filesystem>
 
 namespace pelagic {
 
@@ -20,6 +21,10 @@ double Shot::exact_loop_s() const {
 
 double Shot::sea_loop_s() const {
     return time_scale * exact_loop_s();
+}
+
+std::string SceneObject::called() const {
+    return name.empty() ? std::filesystem::path(file).stem().string() : name;
 }
 
 }  // namespace pelagic

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -51,7 +52,7 @@ class SceneChecker {
     std::vector<Problem> take() {
         const auto table_of = [](const Problem& problem) {
             const std::span<const KeyTable> tables = key_tables();
-            const std::string name = problem.key.substr(0, problem.key.find('.'));
+            const std::string name = problem.key.substr(0, problem.key.find_first_of(".["));
             return std::find_if(tables.begin(), tables.end(),
                                 [&](const KeyTable& table) { return table.name == name; }) -
                    tables.begin();
@@ -664,6 +665,92 @@ void check_vessels(SceneChecker& check, const Scene& scene) {
                "asks for tiles, which are alike everywhere, and waves.vessels make places differ", "false");
 }
 
+// A path that a body can take: of one place it stands there.
+void check_object_path(SceneChecker& check, const Shot& shot, const std::string& key,
+                       const SceneObject& object) {
+    const auto refuse = [&](const std::string& value, const std::string& problem,
+                            const std::string& accepted) {
+        check.refuse({key, value, problem, accepted});
+    };
+    std::size_t wrong = 0;
+    const auto keys = course_of(object.path, &wrong);
+    if (!keys || keys->size() > limits::kVesselKeys)
+        return refuse(quoted_text(shortened(object.path)),
+                      !keys ? "is no list of keys: key " + std::to_string(wrong + 1) + " isn't three numbers"
+                            : "has too many keys",
+                      "\"frame east north, frame east north, …\", of 1 … " +
+                          std::to_string(limits::kVesselKeys) + " keys");
+    bool moves = false;
+    for (std::size_t k = 0; k < keys->size(); ++k) {
+        const CourseKey &at = (*keys)[k], &before = (*keys)[k > 0 ? k - 1 : 0];
+        const std::string text = "key " + std::to_string(k + 1) + ", " + number_text(at.frame) + ' ' +
+                                 number_text(at.east_m) + ' ' + number_text(at.north_m);
+        if (!limits::kFrame.holds(at.frame))
+            return refuse(text, "is at a frame outside the range", text_of(limits::kFrame));
+        if (!limits::kCameraCoordinate_m.holds(at.east_m) || !limits::kCameraCoordinate_m.holds(at.north_m))
+            return refuse(text, "is no place on the sea", text_of(limits::kCameraCoordinate_m) + " m");
+        if (k > 0 && !(at.frame > before.frame))
+            return refuse(text, "does not come after the key before, of frame " + number_text(before.frame),
+                          "rising frames, each once");
+        moves = moves || at.east_m != before.east_m || at.north_m != before.north_m;
+    }
+    if (moves && shot.loop_s > 0.0)
+        refuse(quoted_text(shortened(object.path)), "goes from place to place, which a loop has no end for",
+               "keys of one place, or shot.loop_s = 0");
+}
+
+void check_objects(SceneChecker& check, const Scene& scene) {
+    const std::string list(kObjectsKey);
+    constexpr std::size_t kMostOfName = 100;
+    std::map<std::string, std::size_t> names;
+    std::map<const ObjectMesh*, std::size_t> triangles;  // bodies of one file share its mesh
+    std::size_t all_triangles = 0;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const SceneObject& object = scene.objects[i];
+        const std::string here = indexed(list, i);
+        if (!object.mesh) {
+            check.refuse({here + ".file", quoted_text(object.file),
+                          object.file.empty() ? "names no file" : "is named and not read",
+                          "the path of an .obj, which the host reads"});
+        } else if (triangles.try_emplace(object.mesh.get()).second) {
+            all_triangles += object.mesh->data().triangles.size() / 3;
+        }
+        const std::string name = object.called();
+        // Nothing in it needs an escape where mattes list it.
+        if (name.empty() || name.size() > kMostOfName || quoted_text(name) != '"' + name + '"' ||
+            line_text(name) != name) {
+            if (object.mesh || !object.name.empty())
+                check.refuse({here + ".name", quoted_text(shortened(name)),
+                              object.name.empty() ? "is its file's name, and none for mattes"
+                                                  : "is no name for mattes",
+                              "1 … " + std::to_string(kMostOfName) +
+                                  " bytes of UTF-8 without \", \\ and control characters"});
+        } else if (const auto [first, is_new] = names.try_emplace(name, i); !is_new) {
+            check.refuse({here + ".name", quoted_text(name),
+                          "is what " + indexed(list, first->second) + " is called" +
+                              (object.name.empty() ? ": without a name it is its file's" : ""),
+                          "a name of its own for each of them"});
+        }
+        const std::size_t vessels = scene.waves.vessels.size();
+        if (check.is_good(here + ".vessel") && object.vessel > static_cast<int>(vessels))
+            check.refuse({here + ".vessel", std::to_string(object.vessel),
+                          "is not one of waves.vessels, which has " +
+                              (vessels == 0 ? "none" : std::to_string(vessels)),
+                          vessels == 0 ? "0, or a list waves.vessels"
+                                       : "1 … " + std::to_string(vessels) + ", or 0: of none"});
+        if (object.path.empty()) continue;
+        if (object.vessel > 0)
+            check.refuse({here + ".path", quoted_text(shortened(object.path)),
+                          "is given beside vessel = " + std::to_string(object.vessel) + ", which has one",
+                          "one of the two"});
+        else
+            check_object_path(check, scene.shot, here + ".path", object);
+    }
+    if (all_triangles > limits::kObjectTriangles)
+        check.refuse({list, std::to_string(all_triangles) + " triangles", "is too many",
+                      "at most " + std::to_string(limits::kObjectTriangles) + " of all files together"});
+}
+
 // What calm and rough places can't do yet.
 void check_masks(SceneChecker& check, const Scene& scene) {
     const Waves& waves = scene.waves;
@@ -793,6 +880,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_tiles(check, scene.output, scene.waves);
     check_masks(check, scene);
     check_vessels(check, scene);
+    check_objects(check, scene);
     check_volumes(check, scene);
     return check.take();
 }

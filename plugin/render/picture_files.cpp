@@ -79,7 +79,8 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
 
 // What a picture depends on, besides the camera at its frame.
 KeyPartSet parts_beside_the_view(const RenderOptions& options) {
-    KeyPartSet fed = key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Grid, KeyPart::Light, KeyPart::Water);
+    KeyPartSet fed = key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Grid, KeyPart::Light, KeyPart::Water,
+                               KeyPart::Objects);
     for (const EffectRow& row : effect_table()) fed |= row.key_parts;
     if (options.lighting.spray) fed |= key_parts(KeyPart::Spray);
     return fed;

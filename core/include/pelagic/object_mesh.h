@@ -36,8 +36,8 @@ struct ObjectMeshData {
 class ObjectMesh {
   public:
     // Throws std::invalid_argument, which says what is wrong, for counts that disagree, indices out of range, numbers that aren't
-    // finite, and a mesh without area.
-    explicit ObjectMesh(ObjectMeshData data);
+    // finite or out of their range, and a mesh without area. `notes`: what its reader passed over, a sentence each.
+    explicit ObjectMesh(ObjectMeshData data, std::vector<std::string> notes = {});
 
     const ObjectMeshData& data() const { return data_; }
     glm::dvec3 least_m() const { return least_m_; }  // its box
@@ -45,11 +45,13 @@ class ObjectMesh {
     // 16 hexadecimal digits of all of the above.
     const std::string& content() const { return content_; }
     std::size_t bytes() const;
+    const std::vector<std::string>& notes() const { return notes_; }  // not a part of the content
 
   private:
     ObjectMeshData data_;
     glm::dvec3 least_m_{0.0}, most_m_{0.0};
     std::string content_;
+    std::vector<std::string> notes_;
 };
 
 }  // namespace PELAGIC_VERSION_NAMESPACE

@@ -284,11 +284,11 @@ struct Effects {
 // A body in the light of the sea: it is seen, shadows the sea, mirrors itself in it and stands in its light. It makes no waves: those are
 // of waves.vessels.
 struct SceneObject {
-    std::string name;  // as mattes and messages call it; empty: its file's, without folder and extension
-    std::string file;  // where the mesh was read; what a shot depends on is the content
-    std::shared_ptr<const ObjectMesh> mesh;
+    std::string name{};  // as mattes and messages call it; empty: its file's, without folder and extension
+    std::string file{};  // where the mesh was read; what a shot depends on is the content
+    std::shared_ptr<const ObjectMesh> mesh{};
     // Where its origin is: "1 0 0, 48 20 5", frame, east and north [m] of each key, as a vessel's path; empty: it stands.
-    std::string path;
+    std::string path{};
     CameraInterpolation interpolation = CameraInterpolation::Smooth;  // of the path
     int vessel = 0;  // 1 …: it is that one of waves.vessels; 0: none
     double east_m = 0.0, north_m = 0.0,
@@ -302,6 +302,9 @@ struct SceneObject {
     double glow_cd_m2 = 0.0;  // luminance of materials that glow, ≥ 0
     bool holdout =
         false;  // it is rendered elsewhere: nothing, with alpha 0, where it stands, but mirrored and shadowing
+
+    // Its name, or its file's without folder and extension.
+    std::string called() const;
 };
 
 // [quality]

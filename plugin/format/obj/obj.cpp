@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -11,70 +9,27 @@
 
 #include "core/scene/limits.h"
 #include "core/scene/text.h"
+#include "plugin/format/obj/lines.h"
 
 namespace pelagic {
 namespace {
 
-using Words = std::vector<std::string_view>;
+using obj::Refused, obj::Words, obj::quoted, obj::number_of, obj::integer_of, obj::index_of;
 
 constexpr const char* kLines =
     "v, vt, f, t crease, t corner, t hole, t interpolateboundary, and o, g, s, l, p, vn, usemtl, mtllib and #, which "
     "are passed over";
-constexpr const char* kCorners = "corners as 7, 7/2, 7//3 or 7/2/3, from 1 on or from -1 backwards";
-
-// What is wrong with a line.
-struct Refused {
-    std::string problem, accepted;
-};
-
-std::string quoted(std::string_view word) {
-    return quoted_text(shortened(word));
-}
-
-double number_of(std::string_view word) {
-    const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-    const char* const end = word.data() + word.size();
-    double value = 0.0;
-    const auto [stop, problem] = std::from_chars(word.data() + (has_plus ? 1 : 0), end, value);
-    if (problem == std::errc::invalid_argument || stop != end)
-        throw Refused{quoted(word) + " is no number", "numbers"};
-    if (const std::size_t e = word.find_first_of("eE");
-        problem == std::errc::result_out_of_range && e + 1 < word.size() && word[e + 1] == '-')
-        return 0.0;  // smaller than any double but 0
-    if (problem != std::errc() || !std::isfinite(value))
-        throw Refused{quoted(word) + " is not a finite number", "finite numbers"};
-    return value;
-}
-
-std::int64_t integer_of(std::string_view word, const char* accepted) {
-    std::int64_t value = 0;
-    const char* const end = word.data() + word.size();
-    const auto [stop, problem] = std::from_chars(word.data(), end, value);
-    if (problem != std::errc() || stop != end) throw Refused{quoted(word) + " is no whole number", accepted};
-    return value;
-}
-
-// Splits at spaces and tabs, up to a comment.
-void split(std::string_view line, Words& words) {
-    constexpr std::string_view kBlank = " \t\r\v\f";
-    for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos && line[at] != '#';
-         at = line.find_first_not_of(kBlank, at)) {
-        const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
-        words.push_back(line.substr(at, end - at));
-        at = end;
-    }
-}
 
 class Parser {
   public:
-    Parser(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+    Parser(std::string_view text, const std::string& name) : lines_(text), name_(name) {}
 
     Cage parse() {
         Words words;
-        while (next_line(words)) try {
+        while (lines_.next(words)) try {
                 take(words);
             } catch (const Refused& refused) {
-                throw ObjError(place_text(line_) + refused.problem, refused.accepted);
+                throw ObjError(place_text(lines_.line()) + refused.problem, refused.accepted);
             }
         if (faces_with_st_ == 0) mesh_.st.clear();  // of no face
         try {
@@ -88,29 +43,11 @@ class Parser {
     std::string place_text(std::size_t line) const { return name_ + ':' + std::to_string(line) + ": "; }
 
     std::string where_text(CageError::Where where) const {
-        const std::vector<std::uint32_t>& lines = lines_[static_cast<std::size_t>(where.part)];
+        const std::vector<std::uint32_t>& lines = places_[static_cast<std::size_t>(where.part)];
         const auto& [part, index] = where;
         if (part == CageError::Part::Mesh || index >= lines.size()) return name_ + ": ";
         std::string what = text_of(where);
         return place_text(lines[index]) + "the " + what.substr(0, what.rfind(' ')) + ' ';
-    }
-
-    // A line's words, those of the lines that it goes on in included; line_ is then the first one's number.
-    bool next_line(Words& words) {
-        words.clear();
-        if (at_ >= text_.size()) return false;
-        line_ = ++lines_read_;
-        for (;;) {
-            const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-            std::string_view line = text_.substr(at_, end - at_);
-            at_ = end + 1;
-            if (line.ends_with('\r')) line.remove_suffix(1);
-            const bool goes_on = line.ends_with('\\') && at_ < text_.size();
-            if (line.ends_with('\\')) line.remove_suffix(1);
-            split(line, words);
-            if (!goes_on) return true;
-            ++lines_read_;
-        }
     }
 
     void take(const Words& words) {
@@ -137,20 +74,14 @@ class Parser {
     }
 
     void remember(CageError::Part part) {
-        lines_[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(line_));
+        places_[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(lines_.line()));
     }
 
     void take_point(const Words& words) {
-        if (words.size() != 4 && words.size() != 5 && words.size() != 7)
-            throw Refused{"a point has " + std::to_string(words.size() - 1) + " numbers",
-                          "three, in metres; a weight of 1 or a colour may follow"};
-        std::array<double, 6> numbers{};
-        for (std::size_t i = 1; i < words.size(); ++i) numbers[i - 1] = number_of(words[i]);
-        if (words.size() == 5 && numbers[3] != 1.0)
-            throw Refused{"a point has the weight " + number_text(numbers[3]), "1, or no weight"};
+        const glm::dvec3 point_m = obj::point_of(words);
         if (mesh_.points_m.size() == limits::kCagePoints)
             throw Refused{"there are too many points", "at most " + std::to_string(limits::kCagePoints)};
-        mesh_.points_m.emplace_back(numbers[0], numbers[1], numbers[2]);
+        mesh_.points_m.push_back(point_m);
         remember(CageError::Part::Point);
     }
 
@@ -167,35 +98,12 @@ class Parser {
         remember(CageError::Part::TextureCoordinate);
     }
 
-    // From 0 on.
-    static std::int32_t index_of(std::string_view word, std::size_t count, const char* what) {
-        std::int64_t index = integer_of(word, kCorners);
-        const auto signed_count = static_cast<std::int64_t>(count);
-        if (index < 0) index += signed_count + 1;
-        if (index < 1 || index > signed_count)
-            throw Refused{"the " + std::string(what) + ' ' + std::string(word) + " is outside the range",
-                          count == 0 ? std::string("faces after the ") + what + "s that they name"
-                                     : "1 … " + std::to_string(count) + " or -1 … -" + std::to_string(count) +
-                                           ": so many stand above"};
-        return static_cast<std::int32_t>(index - 1);
-    }
-
     struct CornerIndices {
         std::int32_t point = 0;
         std::optional<std::int32_t> st{};
     };
     CornerIndices corner_of(std::string_view word) const {
-        std::array<std::string_view, 3> parts;
-        std::size_t count = 0;
-        for (std::size_t at = 0;; ++count) {
-            const std::size_t end = std::min(word.find('/', at), word.size());
-            if (count == parts.size()) throw Refused{quoted(word) + " is no corner", kCorners};
-            parts[count] = word.substr(at, end - at);
-            if (end == word.size()) break;
-            at = end + 1;
-        }
-        ++count;
-        if (parts[count - 1].empty()) throw Refused{quoted(word) + " is no corner", kCorners};
+        const auto parts = obj::corner_parts(word);
         CornerIndices corner{index_of(parts[0], mesh_.points_m.size(), "point")};
         if (!parts[1].empty()) corner.st = index_of(parts[1], mesh_.st.size(), "texture coordinate");
         if (!parts[2].empty()) index_of(parts[2], normals_, "normal");
@@ -316,13 +224,12 @@ class Parser {
         }
     }
 
-    std::string_view text_;
+    obj::Lines lines_;
     const std::string& name_;
-    std::size_t at_ = 0, line_ = 0, lines_read_ = 0;
     std::size_t normals_ = 0, faces_with_st_ = 0;
     CageMesh mesh_;
     // Where each part of the mesh stands, by CageError::Part.
-    std::array<std::vector<std::uint32_t>, 7> lines_;
+    std::array<std::vector<std::uint32_t>, 7> places_;
 };
 
 }  // namespace

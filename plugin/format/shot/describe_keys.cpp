@@ -30,7 +30,8 @@ std::string describe_keys() {
         "preset_parts\n      what of the preset counts; all without it\n"
         "      a list of \"sea\", \"light\", \"camera\" and \"water\"\n";
     for (const KeyTable& table : key_tables()) {
-        out += "\n[" + table.name + "]  " + table.help + '\n';
+        out +=
+            (table.is_list() ? "\n[[" + table.name + "]]  " : "\n[" + table.name + "]  ") + table.help + '\n';
         for (const Key& key : table.keys) describe(out, key);
     }
     return out;

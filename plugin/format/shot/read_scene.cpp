@@ -449,6 +449,10 @@ Scene read_scene(Reader& reader, const toml::table& root) {
             continue;
         }
         reader.remember(table->name, node->source().begin);
+        if (table->is_list()) {
+            read_key(reader, {*node, table->name, table->keys.front()}, scene);
+            continue;
+        }
         if (const auto* inner = node->as_table()) {
             read_table(reader, *inner, *table, scene);
         } else {

@@ -3,6 +3,9 @@
 
 #include <toml++/toml.h>
 
+#include <map>
+#include <memory>
+
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -11,6 +14,7 @@
 #include "plugin/format/shot/bounds.h"
 #include "plugin/format/shot/chan.h"
 #include "plugin/format/shot/ndbc.h"
+#include "plugin/format/shot/object_file.h"
 #include "plugin/format/shot/read_scene.h"
 #include "plugin/format/shot/reader.h"
 #include "plugin/format/shot/text_file.h"
@@ -92,6 +96,26 @@ void load_cage(Reader& reader, const std::filesystem::path& folder, Surface& sur
     }
 }
 
+// Bodies' meshes are data of the scene as well; those of one file are one.
+void load_objects(Reader& reader, const std::filesystem::path& folder, std::vector<SceneObject>& objects) {
+    std::map<std::string, std::shared_ptr<const ObjectMesh>> read;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const std::string key = std::string(kObjectsKey) + '[' + std::to_string(i) + "].file";
+        SceneObject& object = objects[i];
+        if (object.file.empty() || reader.has_failed(key)) continue;
+        const std::string given = object.file;
+        const std::filesystem::path file = folder / given;
+        object.file = file.string();
+        std::shared_ptr<const ObjectMesh>& mesh = read[object.file];
+        if (!mesh) try {
+                mesh = load_object(file);
+            } catch (const ObjError& error) {
+                reader.refuse({key, quoted_text(given), error.problem(), error.accepted()});
+            }
+        object.mesh = mesh;
+    }
+}
+
 // A camera's path becomes keys, and is data of the scene as they are.
 void load_camera(Reader& reader, const std::filesystem::path& folder, Camera& camera) {
     const std::string key(kCameraFile);
@@ -152,6 +176,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     Scene scene = read_scene(reader, root);
     load_measured(reader, file.parent_path(), scene.sea);
     load_cage(reader, file.parent_path(), scene.surface);
+    load_objects(reader, file.parent_path(), scene.objects);
     load_camera(reader, file.parent_path(), scene.camera);
     find_pictures(reader, file.parent_path(), scene);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));

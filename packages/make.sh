@@ -11,7 +11,7 @@ mkdir -p "$folder" && folder=$(cd "$folder" && pwd)
 
 install_packages program preview python packages
 # A folder with everything may have been configured for tests too; their programs aren't built here.
-build release pelagic pelagic_procedural pelagic_python pelagic_openvdb_writer pelagic_ocio_module
+build release pelagic pelagic_procedural pelagic_python pelagic_openvdb_writer pelagic_ocio_module pelagic_rays_module
 release=$PELAGIC_ROOT/build/release
 "$here/man.sh" "$release/pelagic" "$release/man"
 (cd "$release" && cpack -G DEB -B "$folder")

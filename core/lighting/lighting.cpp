@@ -249,6 +249,50 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     }
 }
 
+// The inverse of the normal distribution, to 5e-4 (Abramowitz and Stegun 26.2.23).
+float normal_below(float share) {
+    const float tail = std::clamp(std::min(share, 1.0f - share), 1e-6f, 0.5f);
+    const float t = std::sqrt(-2.0f * std::log(tail));
+    const float y = t - (2.515517f + t * (0.802853f + t * 0.010328f)) /
+                            (1.0f + t * (1.432788f + t * (0.189269f + t * 0.001308f)));
+    return share < 0.5f ? -y : y;
+}
+
+// Eq. 20 as sky_integral() has it, by chance: x along the line of sight from the steepest visible facet, evenly; y across it by its own
+// distribution. That visible slopes have a density with the integral 1 (Eq. 11) makes the weights.
+void mirror(const LightingChoice& choice, const Sky& sky, const SeaPoint& p, std::span<const glm::vec2> places,
+            std::span<MirroredLight> mirrored, const FoamPattern& foam) {
+    using Variant = Shading<FresnelFit::Exact, SkyQuality::Nine>;
+    constexpr float kFarthest = 4.0f;  // deviations
+    Variant shading(sky.map, nullptr, choice, foam.picture);
+    const vec3 to_eye = shading.levelled(p.to_eye, p.up);
+    const vec3 normal = shading.facing_normal(
+        shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance), to_eye);
+    const typename Variant::SlopeFrame frame = shading.slope_frame(normal, p.slope_variance);
+    const vec3 v = shading.into_frame(frame, to_eye);
+    const typename Variant::VisibleSlopes seen = shading.visible_slopes(v, frame.variance);
+    const typename Variant::MaskedView view = shading.masked_view(v, frame.variance);
+    const float clear = 1.0f - foam_at(shading, choice, pattern_of<Variant>(foam), p, sky).opacity;
+    const float first = std::max(-seen.tilt, -kFarthest), all = kFarthest - first;
+    const float each = clear * all / (std::sqrt(2.0f * shading.kPi) * static_cast<float>(places.size()));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const float x = first + all * places[i].x;
+        const float facing = std::max(view.height + std::sqrt(view.along) * x, 0.0f);
+        const vec2 slope = seen.across * normal_below(places[i].y) - seen.along * x;
+        const vec3 f = normalize(vec3(-slope.x, -slope.y, 1.0f));
+        const float cosine = std::max(dot(v, f), 0.0f);
+        const vec3 r = 2.0f * cosine * f - v;
+        const float nested = shading.nested_part(view, facing);
+        const float lit = std::min(shading.lit_of(view, nested, facing, r, frame.variance),
+                                   shading.visible_of(view, nested));
+        const vec3 level = shading.out_of_frame(frame, r);
+        // levelled()'s inverse.
+        const vec3 both = p.up + vec3(0.0f, 0.0f, 1.0f);
+        mirrored[i].from = level - both * (dot(both, level) / (1.0f + p.up.z)) + 2.0f * level.z * p.up;
+        mirrored[i].weight = each * facing * std::exp(-0.5f * x * x) * shading.facet_fresnel(cosine) * lit;
+    }
+}
+
 // Below there is one variant.
 using FromBelow = Shading<FresnelFit::Exact, SkyQuality::Nine>;
 
@@ -398,6 +442,14 @@ void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoi
     if (points.size() != albedo.size())
         throw std::invalid_argument("water_albedo: give one albedo for each SeaPoint");
     sea_shading::albedo_batch(sky, water, points, albedo);
+}
+
+void mirrored_light(const LightingChoice& choice, const Sky& sky, const SeaPoint& point,
+                    std::span<const glm::vec2> places, std::span<MirroredLight> mirrored,
+                    const FoamPattern& foam) {
+    if (places.size() != mirrored.size())
+        throw std::invalid_argument("mirrored_light: give one MirroredLight for each place");
+    sea_shading::mirror(choice, sky, point, places, mirrored, foam);
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,

@@ -114,7 +114,20 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr,
                const FoamPattern& foam = {}, const FloorSeen& floor = {});
 
-// The same for an eye in a body of water, at this height above the sea at rest [m], that sees the points from below at these distances
+// A facet of the sea at a point: where the light comes from that it mirrors to the eye (unit, in the axes of to_eye), and which part of it
+// the eye sees. Of facets that mirror downwards, 0.
+struct MirroredLight {
+    glm::vec3 from{0.0f, 0.0f, 1.0f};
+    float weight = 0.0f;
+};
+// Some of the facets that shade_sea() integrates the sky over (the integral of SkyQuality::Integral), for light that no map of the sky has:
+// the sum of weight times radiance is an estimate of what the eye sees of it, without bias where places[i] are spread over the unit square
+// evenly, each in its own part of x: 1/N as wide. Foam hides its share. Throws as shade_sea() for spans of different lengths.
+void mirrored_light(const LightingChoice& choice, const Sky& sky, const SeaPoint& point,
+                    std::span<const glm::vec2> places, std::span<MirroredLight> mirrored,
+                    const FoamPattern& foam = {});
+
+// As shade_sea() for an eye in a body of water, at this height above the sea at rest [m], that sees the points from below at these distances
 // [m] through the water. `sea` has what the water between scatters.
 void shade_sea_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                           float height_m, std::span<const SeaPoint> points, std::span<const float> distance_m,

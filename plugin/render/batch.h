@@ -9,6 +9,7 @@
 #include "core/lighting/lighting.h"
 #include "pelagic/scene.h"
 #include "plugin/render/raster.h"
+#include "plugin/render/ray_scene.h"
 #include "plugin/render/sea_light.h"
 
 namespace pelagic {
@@ -31,6 +32,16 @@ inline int rows_of_batch(int sample_width, int samples) {
     return std::max(1, kBatch / (rows_at_once * sample_width)) * rows_at_once;
 }
 
+// What the sea of a sample shows of bodies. By the facets that were looked at: the light that those mirror which mirror a body, the sky's
+// that they would mirror without it, and the sky's of all of them. And what it shows through its surface more than without bodies.
+struct BodiesInSea {
+    glm::vec3 mirrored{0.0f}, hidden{0.0f}, sky{0.0f}, through{0.0f};
+    BodiesInSea& operator*=(float share) {
+        for (glm::vec3* of : {&mirrored, &hidden, &sky, &through}) *of *= share;
+        return *this;
+    }
+};
+
 // What a batch of samples holds, by sample of the batch or by sample that shows the sea.
 template <class T>
 struct Batch {
@@ -44,9 +55,16 @@ struct Batch {
     std::vector<double> glass_m;  // by sample: its height above the water at the camera's glass [m]; likewise
     std::vector<std::size_t> climbed;  // which samples look through what climbs the glass, rising
     std::vector<std::size_t> water;    // which samples show water without a surface, rising
+    // Of shots with objects, otherwise empty, by sample: the body that it shows, the light from there, and what the sea shows of bodies.
+    std::vector<RayHit> body;
+    std::vector<glm::vec3> object;
+    std::vector<BodiesInSea> in_sea;
     std::vector<std::size_t> sea;      // which samples show the sea, rising
     SeenSea<T> seen;                   // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;
+    std::vector<SeaRadiance> unlit;       // without the sun, where bodies hide it; likewise
+    std::vector<std::uint8_t> in_shadow;  // whether they do
+    std::vector<float> sun_share;         // how much of it they leave
 };
 
 }  // namespace pelagic

@@ -8,7 +8,13 @@ namespace pelagic {
 
 PictureLayerSet light_layers() {
     PictureLayerSet layers;
-    for (const PictureLayerRow& row : kPictureLayers) layers[index(row.layer)] = row.light != nullptr;
+    for (const PictureLayerRow& row : kPictureLayers) layers[index(row.layer)] = is_light(row);
+    return layers;
+}
+
+PictureLayerSet layers_of(bool has_objects, PictureLayerSet layers) {
+    for (const PictureLayerRow& row : kPictureLayers)
+        if (row.of_objects && !has_objects) layers.reset(index(row.layer));
     return layers;
 }
 
@@ -36,7 +42,7 @@ PictureLayerSet parse_picture_layers(const std::string& text) {
 std::size_t data_components(PictureLayerSet layers) {
     std::size_t components = 0;
     for (const PictureLayerRow& row : kPictureLayers)
-        if (!row.light && layers[index(row.layer)]) components += row.components;
+        if (!is_light(row) && layers[index(row.layer)]) components += row.components;
     return components;
 }
 

@@ -31,7 +31,12 @@ enum class PictureLayer {
     Coverage,
     Breaking,
     FoamAge,
-    SlopeVariance
+    SlopeVariance,
+    // Of shots with objects
+    Object,
+    Reflection,
+    Shadow,
+    Cryptomatte
 };
 
 struct PictureLayerRow {
@@ -40,9 +45,10 @@ struct PictureLayerRow {
     glm::vec3 SeaRadiance::*
         light;     // its share of R, G, B, averaged over the pixel; nullptr: not a layer of the light
     bool is_half;  // of those that aren't light: as half floats
-    std::size_t components;               // 1 … 4
-    std::array<const char*, 4> channels;  // in the file
-    const char* description;              // with its unit
+    std::size_t components;                // 1 … 12
+    std::array<const char*, 12> channels;  // in the file
+    const char* description;               // with its unit
+    bool of_objects = false;               // of shots with objects alone
 };
 
 // Where there is no sea: a finite depth that is behind everything, as Blender's own.
@@ -79,6 +85,17 @@ inline constexpr auto kPictureLayers = std::to_array<PictureLayerRow>({
     {PictureLayer::SlopeVariance, "slope_variance", nullptr, false, 3,
      {"slope_variance.X", "slope_variance.Y", "slope_variance.Z"},
      "of the waves that the pixel hides: xx, yy and xy of their slopes in the world"},
+    {PictureLayer::Object, "object", nullptr, false, 3, {"object.R", "object.G", "object.B"},
+     "light from objects", true},
+    {PictureLayer::Reflection, "reflection", nullptr, false, 3, {"reflection.R", "reflection.G", "reflection.B"},
+     "what the sea mirrors and shows of objects, less what it would have shown in their place: also below 0", true},
+    {PictureLayer::Shadow, "shadow", nullptr, true, 1, {"shadow.X"},
+     "the share of the sun that no object hides, 0 to 1; 1 in the sky", true},
+    {PictureLayer::Cryptomatte, "cryptomatte", nullptr, false, 12,
+     {"CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b", "CryptoObject00.a",
+      "CryptoObject01.r", "CryptoObject01.g", "CryptoObject01.b", "CryptoObject01.a",
+      "CryptoObject02.r", "CryptoObject02.g", "CryptoObject02.b", "CryptoObject02.a"},
+     "a Cryptomatte of the objects and the sea: six ranks of identifier and share of the pixel", true},
 });
 // clang-format on
 
@@ -96,13 +113,21 @@ static_assert([] {
     return true;
 }());
 
+// Whether R, G, B are the sum of this and others.
+constexpr bool is_light(const PictureLayerRow& row) {
+    return row.light || row.layer == PictureLayer::Object || row.layer == PictureLayer::Reflection;
+}
+
 // Those that files have unless others are asked for: the light's.
 PictureLayerSet light_layers();
+
+// Of these, those that a shot has, with objects or without.
+PictureLayerSet layers_of(bool has_objects, PictureLayerSet layers);
 
 // "sun,depth": these alone; "none"; "all". Throws std::invalid_argument, which says what is accepted.
 PictureLayerSet parse_picture_layers(const std::string& text);
 
-// What the renderer computes for these beside the light: floats a pixel.
+// What the renderer computes for these beside the light, of shots without objects or with them: floats a pixel.
 std::size_t data_components(PictureLayerSet layers);
 bool needs_motion(PictureLayerSet layers);
 

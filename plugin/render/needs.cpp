@@ -19,6 +19,7 @@
 #include "plugin/render/drawn_sea.h"
 #include "plugin/render/floor_light.h"
 #include "plugin/render/glare.h"
+#include "plugin/render/objects.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/render.h"
 #include "plugin/render/seen_drops.h"
@@ -86,13 +87,15 @@ namespace {
 
 // [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
 // encode_exr() and encode_png() hold beside them.
-std::size_t picture_bytes(const RenderOptions& options) {
-    return sizeof(SeaRadiance) + 1 +
-           sizeof(float) * (data_components(options.layers) + (options.alpha ? 1 : 0));
+std::size_t picture_bytes(const RenderOptions& options, bool has_objects) {
+    const PictureLayerSet layers = layers_of(has_objects, options.layers);
+    return sizeof(SeaRadiance) + 1 + (has_objects ? 2 * sizeof(glm::vec3) : 0) +
+           sizeof(float) * (data_components(layers) + (options.alpha ? 1 : 0));
 }
-std::size_t file_bytes(const RenderOptions& options) {
-    const std::size_t light = (options.layers & light_layers()).count() + 1;
-    return light * 3 * 2 / 2 + 2 + sizeof(float) * data_components(options.layers) + (options.alpha ? 3 : 0);
+std::size_t file_bytes(const RenderOptions& options, bool has_objects) {
+    const PictureLayerSet layers = layers_of(has_objects, options.layers);
+    const std::size_t light = (layers & light_layers()).count() + 1;
+    return light * 3 * 2 / 2 + 2 + sizeof(float) * data_components(layers) + (options.alpha ? 3 : 0);
 }
 constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 4;
 
@@ -143,6 +146,17 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");
+    const bool has_objects = !scene.objects.empty();
+    if (has_objects) {
+        const auto rows = static_cast<std::size_t>(std::min(
+            rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
+        constexpr std::size_t kSample = sizeof(RayHit) + 2 * sizeof(glm::vec3) + sizeof(SeaRadiance) +
+                                        sizeof(std::uint8_t) + sizeof(float);
+        need.add("the objects",
+                 LitObjects::bytes(scene) +
+                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
+                 "give meshes of fewer triangles");
+    }
     if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
                  "set effects.spray to false");
@@ -156,9 +170,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                         static_cast<std::size_t>(scene.camera.resolution.y);
     need.add("pictures",
              pixels * (in_flight ? static_cast<std::size_t>(*in_flight) *
-                                           (picture_bytes(options) + file_bytes(options)) +
+                                           (picture_bytes(options, has_objects) +
+                                            file_bytes(options, has_objects)) +
                                        kEncodingBytes
-                                 : picture_bytes(options)),
+                                 : picture_bytes(options, has_objects)),
              "ask for a smaller picture (--size)");
     return need;
 }

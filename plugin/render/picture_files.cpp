@@ -27,8 +27,10 @@
 #include "plugin/format/png/png.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
+#include "plugin/render/cryptomatte.h"
 #include "plugin/render/drawn_sea.h"
 #include "plugin/render/glare.h"
+#include "plugin/render/objects.h"
 #include "plugin/render/passes.h"
 #include "plugin/run/part.h"
 #include "plugin/run/seals.h"
@@ -67,6 +69,9 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
     };
     float most = largest(sky.sun_irradiance + sky.sky_irradiance);
     // Before the sun itself it is brighter than a white surface.
+    double glow_cd_m2 = 0.0;
+    for (const SceneObject& object : scene.objects) glow_cd_m2 = std::max(glow_cd_m2, object.glow_cd_m2);
+    most += static_cast<float>(1e-3 * glow_cd_m2);
     if (has_spray)
         most += (scene.effects.spray_law == SpraySource::Monahan1986 ? kMostOfSpray : kMostOfTornSpray) *
                 largest(sky.sun_radiance) * sky.sun_angular_radius * sky.sun_angular_radius;
@@ -90,11 +95,11 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-// The light's layers as they stand in a sentence.
-std::string light_names() {
+// The light's layers of a shot with objects or without as they stand in a sentence.
+std::string light_names(bool has_objects) {
     std::string names, last;
     for (const PictureLayerRow& row : kPictureLayers) {
-        if (!row.light) continue;
+        if (!is_light(row) || (row.of_objects && !has_objects)) continue;
         if (!last.empty()) names += (names.empty() ? "" : ", ") + last;
         last = row.name;
     }
@@ -130,7 +135,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
-        {"content", "radiance; the layers " + light_names() + " add up to R, G, B"},
+        {"content", "radiance; the layers " + light_names(!scene.objects.empty()) + " add up to R, G, B"},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},
@@ -153,9 +158,15 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
     for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg))
         attributes.push_back(std::move(attribute));
+    const PictureLayerSet layers = layers_of(!scene.objects.empty(), context.options.layers);
     for (const PictureLayerRow& row : kPictureLayers)
-        if (!row.light && context.options.layers[index(row.layer)])
+        if (!row.light && layers[index(row.layer)])
             attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
+    if (layers[index(PictureLayer::Cryptomatte)]) {
+        std::vector<std::string> names;
+        for (const SceneObject& object : scene.objects) names.push_back(object_name(object));
+        for (auto& [name, value] : matte_attributes(names)) attributes.push_back({name, value});
+    }
     for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
@@ -166,6 +177,14 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
             if (is_of_sea(number) && attribute.name == "pelagic." + number.path)
                 attribute.value = value_text(key_of(number.path), number.keys);
     return attributes;
+}
+
+// One digit a layer, those of objects where a shot has some: other shots' pictures stay whole.
+std::string layers_text(const Scene& scene, PictureLayerSet layers) {
+    const std::string all = layers.to_string();  // the last layer first
+    const auto of_objects = static_cast<std::size_t>(std::count_if(
+        kPictureLayers.begin(), kPictureLayers.end(), [](const PictureLayerRow& row) { return row.of_objects; }));
+    return scene.objects.empty() ? all.substr(of_objects) : all;
 }
 
 }  // namespace
@@ -194,7 +213,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add("exposure " + number_text(source.exposure_stops))
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
-             " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));
+             " layers " + layers_text(source.scene, options_.layers) + (lighting.spray ? " spray" : ""));
     if (plan.from->weather) {
         hash.add(weather_plan_text(plan, true));
         weather_ = plan;
@@ -228,12 +247,19 @@ std::string encode_exr(const PictureContext& context, const Picture& rendered, i
         for (SeaRadiance& layers : converted.layers)
             for (const PictureLayerRow& row : kPictureLayers)
                 if (row.light) layers.*row.light = to_acescg * (layers.*row.light);
+        for (const PictureLayer layer : {PictureLayer::Object, PictureLayer::Reflection}) {
+            std::vector<float>& of = converted.data[index(layer)];
+            for (std::size_t i = 0; i + 2 < of.size(); i += 3) {
+                const glm::vec3 light = to_acescg * glm::vec3(of[i], of[i + 1], of[i + 2]);
+                for (int c = 0; c < 3; ++c) of[i + c] = light[c];
+            }
+        }
     }
     const Picture& picture = context.colours.acescg ? converted : rendered;
     const auto width = static_cast<std::ptrdiff_t>(picture.resolution.x);
     const std::ptrdiff_t height = picture.resolution.y;
     std::vector<glm::vec3> sum(picture.layers.size());
-    std::transform(picture.layers.begin(), picture.layers.end(), sum.begin(), radiance_of);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = light_of(picture, i);
 
     const Ranges ranges = ranges_of(context.scene, context.sky, context.options.lighting.spray);
     exr::Image image{.width = picture.resolution.x, .height = picture.resolution.y, .channels = {}};
@@ -253,8 +279,9 @@ std::string encode_exr(const PictureContext& context, const Picture& rendered, i
     constexpr std::array kAlpha{"A"};
     add(kColours, sum.front().x, sizeof(glm::vec3), ranges.sun);
     if (!picture.alpha.empty()) add(kAlpha, picture.alpha.front(), sizeof(float), exr::PixelType::Half);
+    const PictureLayerSet layers = layers_of(!context.scene.objects.empty(), context.options.layers);
     for (const PictureLayerRow& row : kPictureLayers) {
-        if (!context.options.layers[index(row.layer)]) continue;
+        if (!layers[index(row.layer)]) continue;
         const std::span names(row.channels.data(), row.components);
         if (row.light) {
             // The sky's has the disc beside the sea.
@@ -264,7 +291,7 @@ std::string encode_exr(const PictureContext& context, const Picture& rendered, i
         } else {
             add(names, picture.data[index(row.layer)].front(),
                 static_cast<std::ptrdiff_t>(sizeof(float) * row.components),
-                row.is_half ? exr::PixelType::Half : exr::PixelType::Float);
+                is_light(row) ? ranges.sun : row.is_half ? exr::PixelType::Half : exr::PixelType::Float);
         }
     }
     const exr::Header header{.attributes = attributes_of(context, frame),
@@ -278,7 +305,7 @@ std::vector<glm::vec3> glaring_light(const Camera& camera, const Picture& pictur
     std::vector<glm::vec3> light;
     if (!(camera.glare > 0.0)) return light;
     light.resize(picture.layers.size());
-    std::transform(picture.layers.begin(), picture.layers.end(), light.begin(), radiance_of);
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] = light_of(picture, i);
     add_glare(light, picture.resolution,
               {.share = camera.glare,
                .pixel_tangent = 2.0 * view_at(camera, frame).tan_half_width / picture.resolution.x});
@@ -306,7 +333,7 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = width * row + x;
             const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
-            const glm::vec3 light = glaring.empty() ? radiance_of(picture.layers[i]) : glaring[i];
+            const glm::vec3 light = glaring.empty() ? light_of(picture, i) : glaring[i];
             lights[x] = balance * (light / (alpha > 0.0f ? alpha : 1.0f));
         }
         show(lights);
@@ -314,7 +341,7 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             std::lower_bound(picture.skyline.begin(), picture.skyline.end(), width * row,
                              [](const SkylinePixel& of, std::size_t i) { return of.pixel < i; });
         for (auto both = from; both != picture.skyline.end() && both->pixel < width * (row + 1); ++both) {
-            const glm::vec3 light = radiance_of(picture.layers[both->pixel]);
+            const glm::vec3 light = light_of(picture, both->pixel);
             std::array parts{(light - both->light) / (1.0f - both->sky), both->light / both->sky};
             // Each has its own light less what is scattered of it, and what is scattered of others.
             const float own = glaring.empty() ? 1.0f : 1.0f - static_cast<float>(camera.glare);

@@ -4,6 +4,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
@@ -15,6 +17,7 @@
 #include <utility>
 
 #include "core/base/precision.h"
+#include "core/base/random.h"
 #include "core/lighting/background.h"
 #include "core/lighting/meniscus.h"
 #include "core/surface/earth.h"
@@ -23,7 +26,9 @@
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/drawn_sea.h"
+#include "plugin/render/cryptomatte.h"
 #include "plugin/render/motion.h"
+#include "plugin/render/objects.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/sea_light.h"
@@ -62,7 +67,12 @@ class RendererOf final : public Impl {
         : scene_(plan.from->scene),
           options_(options),
           sea_(plan, options.lighting, std::move(sky), watch),
-          drawn_(*plan.from, plan.queries[kQuery].query.pixel_m.size() > 1) {}
+          drawn_(*plan.from, plan.queries[kQuery].query.pixel_m.size() > 1) {
+        options_.layers = layers_of(!scene_.objects.empty(), options_.layers);
+        if (scene_.objects.empty()) return;
+        objects_ = std::make_unique<LitObjects>(scene_);
+        for (const SceneObject& object : scene_.objects) mattes_.push_back(matte_id(object_name(object)));
+    }
 
     const Plan& plan() const override { return sea_.plan(); }
     const Sky& sky() const override { return sea_.sky(); }
@@ -70,6 +80,7 @@ class RendererOf final : public Impl {
     void render(int frame, Picture& picture, const BuildWatch& watch) override {
         const int n = options_.samples;
         clear(picture);
+        cancel_ = watch.cancel;
         if (sea_.light_frame(frame)) air_ = {};
         const auto [all, parts] = passes_of(scene_.camera, frame, options_);
         const auto passes = static_cast<int>(all.size());
@@ -113,8 +124,9 @@ class RendererOf final : public Impl {
                     find_places(row);
                     sea_.answer(batch_.seen);
                 }
-                if (is_lit) light_sea();
+                if (is_lit) light_sea(row);
                 if (is_lit) light_water(row);
+                if (is_lit && objects_) light_objects(row);
                 if (is_lit) light_meniscus(row);
                 if (is_lit && !drops_.empty()) draw_drops(row, rows);
                 if (is_lit) average(row, rows, picture);
@@ -124,6 +136,7 @@ class RendererOf final : public Impl {
             }
             ++ended;
         }
+        if (objects_) end_objects(picture);
     }
 
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
@@ -157,7 +170,13 @@ class RendererOf final : public Impl {
         picture.alpha.assign(options_.alpha ? pixels : 0, 0.0f);
         for (const PictureLayerRow& row : kPictureLayers)
             picture.data[index(row.layer)].resize(
-                !row.light && options_.layers[index(row.layer)] ? pixels * row.components : 0);
+                !is_light(row) && options_.layers[index(row.layer)] ? pixels * row.components : 0);
+        for (const PictureLayer layer :
+             {PictureLayer::Object, PictureLayer::Reflection, PictureLayer::Cryptomatte}) {
+            std::vector<float>& of = picture.data[index(layer)];
+            const bool is_there = layer == PictureLayer::Cryptomatte ? !of.empty() : objects_ != nullptr;
+            of.assign(is_there ? pixels * kPictureLayers[index(layer)].components : 0, 0.0f);
+        }
     }
 
     // Rows that are computed at once.
@@ -201,6 +220,14 @@ class RendererOf final : public Impl {
         air_height_m_ = height_m;
         stop_if(watch.cancel);
         lay_out_mesh(watch);
+        if (objects_) {
+            objects_->place(sea_.frame(), pass.frame,
+                            {.origin_m = mesh_.points.origin_m,
+                             .curvature_per_m = mesh_.points.curvature_per_m,
+                             .rest_m = drawn_.rest_m(),
+                             .has_motion = needs_motion(options_.layers)});
+            objects_->light(sea_);
+        }
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
             const SeaView middle{view_at(scene_.camera, pass.frame), frame_};
@@ -350,6 +377,7 @@ class RendererOf final : public Impl {
             raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size), places);
         });
         find_water(first_row);
+        find_objects(first_row);
         batch_.sea.clear();
         for (std::size_t i = 0; i < batch_.triangles.size(); ++i)
             if (batch_.triangles[i] != Rasteriser::kNone) batch_.sea.push_back(i);
@@ -377,6 +405,64 @@ class RendererOf final : public Impl {
             }
         }
     }
+    // Which samples show a body: one before the sea, or behind water that is drawn within a dry hull.
+    void find_objects(int first_row) {
+        batch_.body.assign(objects_ ? batch_.triangles.size() : 0, RayHit{});
+        in_parallel(batch_.body.size(), [&](std::size_t i) {
+            if (!batch_.places.empty() && !batch_.places[i].is_taken()) return;
+            if (is_under(i) && batch_.glass_m[i] >= 0.0) return;  // all of it looks through what climbs the glass
+            const Ray ray = ray_of(first_row, i);
+            RayHit hit = objects_->nearest(ray);
+            if (batch_.triangles[i] != Rasteriser::kNone) {
+                const glm::vec3 place = sea_place(first_row, i);
+                const float sea_m = glm::length(place - ray.from);
+                if (hit.is_hit() && hit.distance_m >= sea_m) {
+                    hit = {};
+                    if (!is_under(i) && objects_->is_dry(place)) {
+                        hit = objects_->nearest({.from = place, .towards = ray.towards});
+                        hit.distance_m += sea_m;
+                    }
+                }
+            }
+            if (!hit.is_hit()) return;
+            batch_.body[i] = hit;
+            batch_.triangles[i] = Rasteriser::kNone;
+        });
+        if (objects_) std::erase_if(batch_.water, [&](std::size_t sample) { return is_object(sample); });
+    }
+    bool is_object(std::size_t sample) const { return !batch_.body.empty() && batch_.body[sample].is_hit(); }
+
+    // Places before the view's eye as LitObjects has them.
+    glm::dvec3 eye_place() const { return view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0); }
+    Ray ray_of(int first_row, std::size_t sample) const {
+        return {.from = glm::vec3(eye_place()),
+                .towards = glm::vec3(view_.direction(seen_at(first_row, sample)))};
+    }
+    glm::vec3 sea_place(int first_row, std::size_t sample) const {
+        const std::uint32_t triangle = batch_.triangles[sample];
+        const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
+        glm::dvec3 place(0.0);
+        for (int corner = 0; corner < 3; ++corner)
+            place += weights[corner] *
+                     glm::dvec3(position_[mesh_.triangles[3 * std::size_t{triangle} + corner]]);
+        return glm::vec3(place);
+    }
+    SampleNumbers numbers_of(int first_row, std::size_t sample) const {
+        const auto width = static_cast<std::size_t>(raster_size().x);
+        const auto x = static_cast<std::uint32_t>(sample % width),
+                   y = static_cast<std::uint32_t>(sample / width) + static_cast<std::uint32_t>(first_row);
+        const auto n = static_cast<std::uint32_t>(options_.samples);
+        SampleNumbers numbers{.x = x, .y = y, .frame = static_cast<std::uint32_t>(frame_), .all = n * n};
+        if (sampling_.stride == 1) {
+            numbers.x = x / n;
+            numbers.y = y / n;
+            numbers.index = y % n * n + x % n;
+        } else if (sampling_.is_by_pixel) {
+            numbers.index = static_cast<std::uint32_t>(pass_.stratum);
+        }
+        return numbers;
+    }
+
     bool is_under(std::size_t sample) const { return !batch_.under.empty() && batch_.under[sample] != 0; }
     bool is_sea(std::size_t sample) const {
         return batch_.triangles[sample] != Rasteriser::kNone || is_under(sample);
@@ -396,10 +482,12 @@ class RendererOf final : public Impl {
                0.5;
     }
 
+    // Leaves work out once a run is cancelled.
     template <class Work>
-    static void in_parallel(std::size_t count, const Work& work) {
+    void in_parallel(std::size_t count, const Work& work) const {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
                           [&](const tbb::blocked_range<std::size_t>& range) {
+                              if (cancel_ && *cancel_) return;
                               for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
                           });
     }
@@ -411,7 +499,7 @@ class RendererOf final : public Impl {
         batch_.veil.assign(has_veil ? batch_.triangles.size() : 0, 0.0f);
         if (!has_sky && !has_spray) return;
         in_parallel(batch_.triangles.size(), [&](std::size_t i) {
-            if (is_sea(i)) return;
+            if (is_sea(i) || is_object(i)) return;
             if (!batch_.places.empty() && !batch_.places[i].is_taken()) return;
             const glm::dvec3 direction = view_.direction(seen_at(first_row, i));
             const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
@@ -425,11 +513,192 @@ class RendererOf final : public Impl {
         });
     }
 
-    void light_sea() {
+    void light_sea(int first_row) {
+        batch_.in_sea.assign(objects_ ? batch_.triangles.size() : 0, BodiesInSea{});
         if (batch_.sea.empty()) return;
         batch_.lit.resize(batch_.sea.size());
         sea_.light(batch_.seen, sea_.sky(), air_, spray_, batch_.lit);
+        if (objects_) {
+            shadow_sea(first_row);
+            mirror_objects(first_row);
+            see_into_water(first_row);
+        }
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
+    }
+
+    // Where bodies hide the sun from the sea.
+    void shadow_sea(int first_row) {
+        const std::size_t count = batch_.sea.size();
+        batch_.sun_share.resize(count);
+        batch_.in_shadow.assign(count, 0);
+        in_parallel(count, [&](std::size_t i) {
+            batch_.sun_share[i] = objects_->sun_share(sea_place(first_row, batch_.sea[i]), batch_.seen.up[i],
+                                                      numbers_of(first_row, batch_.sea[i]));
+            batch_.in_shadow[i] = batch_.sun_share[i] < 1.0f;
+        });
+        if (std::find(batch_.in_shadow.begin(), batch_.in_shadow.end(), 1) == batch_.in_shadow.end()) return;
+        Sky unlit = sea_.sky();
+        unlit.sun_radiance = unlit.sun_irradiance = glm::vec3(0.0f);
+        // From high up each place has its own sun, which the air's table holds: there the sky of the eye's nadir has to do.
+        Air air = air_;
+        air.by_place = 0.0f;
+        batch_.unlit.resize(count);
+        sea_.light(batch_.seen, unlit, air, spray_, batch_.unlit, batch_.in_shadow);
+        in_parallel(count, [&](std::size_t i) {
+            if (!batch_.in_shadow[i]) return;
+            const float share = batch_.sun_share[i];
+            SeaRadiance& lit = batch_.lit[i];
+            lit.sun *= share;
+            // Of what the water between a place and an eye below it scatters, little goes through the place.
+            if (!batch_.seen.from_below.empty() && batch_.seen.from_below[i] != 0) return;
+            lit.sea = glm::mix(batch_.unlit[i].sea, lit.sea, share);
+            lit.foam = glm::mix(batch_.unlit[i].foam, lit.foam, share);
+        });
+    }
+
+    // What facets of the sea mirror of bodies, in place of the sky behind them.
+    void mirror_objects(int first_row) {
+        const std::vector<glm::vec3>&normal = sea_.answers().vectors(Product::Normal),
+              &variance = sea_.answers().vectors(Product::SlopeVariance);
+        in_parallel(batch_.sea.size(), [&](std::size_t i) {
+            if (!batch_.seen.from_below.empty() && batch_.seen.from_below[i] != 0) return;
+            const std::size_t sample = batch_.sea[i];
+            const glm::vec3 place = sea_place(first_row, sample);
+            const glm::vec3 upright(from_level(glm::dvec3(normal[i]), glm::dvec3(batch_.seen.up[i])));
+            if (!objects_->may_be_mirrored(
+                    place, batch_.seen.to_eye[i], upright,
+                    variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
+                return;
+            constexpr std::uint32_t kFacets = 16, kUse = 100;  // of a pixel
+            const SampleNumbers numbers = numbers_of(first_row, sample);
+            const std::uint32_t count = numbers.rays(kFacets);
+            std::array<glm::vec2, kFacets> places;
+            std::array<MirroredLight, kFacets> mirrored;
+            // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell
+            // at even steps hardly depends on where they begin.
+            const auto n = static_cast<std::uint32_t>(options_.samples);
+            const auto drawn = philox({numbers.x, numbers.y, numbers.frame, kUse}, kUse);
+            const float begin = static_cast<float>(drawn[0] >> 8) * 0x1p-24f;
+            const std::uint32_t turn = (numbers.index * (n + 1) + drawn[1] % numbers.all) % numbers.all;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                places[k] = numbers.place(kUse, k, count);
+                places[k].x = (static_cast<float>(k * numbers.all + turn) + begin) /
+                              static_cast<float>(count * numbers.all);
+            }
+            sea_.mirror(batch_.seen, i, std::span(places).first(count), std::span(mirrored).first(count));
+            const glm::vec3 left = left_before(i);
+            BodiesInSea& shown = batch_.in_sea[sample];
+            for (std::uint32_t k = 0; k < count; ++k) {
+                if (!(mirrored[k].weight > 0.0f)) continue;
+                const Ray ray{.from = place + 1e-3f * batch_.seen.up[i], .towards = mirrored[k].from};
+                const glm::vec3 weight = mirrored[k].weight * left, sky = weight * objects_->sky(ray.towards);
+                shown.sky += sky;
+                const RayHit hit = objects_->nearest(ray);
+                if (!hit.is_hit()) continue;
+                shown.mirrored += weight * objects_->estimate(ray, hit);
+                shown.hidden += sky;
+            }
+        });
+    }
+
+    // Bodies in the water, through its surface as one mean facet, and in front of what the water behind them sends.
+    void see_into_water(int first_row) {
+        if (!options_.lighting.water || !sea_.water().has_body) return;
+        const std::vector<glm::vec3>& normal = sea_.answers().vectors(Product::Normal);
+        const std::vector<float>& coverage = sea_.answers().numbers(Product::Coverage);
+        const float clear_m = objects_->sight_in_water_m();
+        in_parallel(batch_.sea.size(), [&](std::size_t i) {
+            if (!batch_.seen.from_below.empty() && batch_.seen.from_below[i] != 0) return;
+            const glm::vec3 place = sea_place(first_row, batch_.sea[i]);
+            if (!objects_->is_near(place, clear_m)) return;
+            const glm::vec3 upright(from_level(glm::dvec3(normal[i]), glm::dvec3(batch_.seen.up[i])));
+            const glm::vec3 to_eye = batch_.seen.to_eye[i];
+            const float cosine = glm::dot(upright, to_eye);
+            if (!(cosine > 0.02f)) return;
+            const Ray ray{.from = place,
+                          .towards = glm::refract(-to_eye, upright, 1.0f / kWaterIndex),
+                          .farthest_m = clear_m};
+            const RayHit hit = objects_->nearest(ray);
+            if (!hit.is_hit() || hit.distance_m > clear_m) return;
+            const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);
+            const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
+            const glm::vec3 body = (clear * (1.0f - LitObjects::mirrored_by_water(cosine)) * kBehindGlass) * left *
+                                   objects_->radiance_in_water(ray, hit);
+            batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
+        });
+    }
+
+    // The part of the light of a place of the sea that comes through the air and the spray before it.
+    glm::vec3 left_before(std::size_t i) const {
+        SeaRadiance white{.sea = glm::vec3(1.0f)};
+        const std::span to_eye(&batch_.seen.to_eye[i], 1);
+        const std::span distance_m(&batch_.seen.distance_m[i], 1);
+        if (options_.lighting.air) see_through(air_, to_eye, distance_m, {&white, 1});
+        see_through_spray(spray_, to_eye, distance_m, {&white, 1});
+        return white.sea;
+    }
+
+    // The bodies that samples show, through what is before them.
+    void light_objects(int first_row) {
+        batch_.object.assign(batch_.triangles.size(), glm::vec3(0.0f));
+        in_parallel(batch_.triangles.size(), [&](std::size_t i) {
+            if (!is_object(i)) return;
+            const Ray ray = ray_of(first_row, i);
+            const RayHit& hit = batch_.body[i];
+            const bool is_out = objects_->is_holdout(hit);
+            SeaRadiance& seen = batch_.radiance[i];
+            seen = {};
+            if (is_under(i)) {
+                if (is_out) return;
+                // The water sends what it would without an end, less what of that comes from behind the body.
+                std::array<SeaRadiance, 2> water;
+                sea_.light_water(eye(), {&ray.towards, 1}, std::span(water).first(1));
+                FloorEye there = eye();
+                there.position_m += static_cast<double>(hit.distance_m) * glm::dvec3(ray.towards);
+                there.position_m.z = std::min(there.position_m.z, -1e-3);
+                sea_.light_water(there, {&ray.towards, 1}, std::span(water).last(1));
+                const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
+                seen.sea = glm::max(water[0].sea - left * water[1].sea, glm::vec3(0.0f));
+                batch_.object[i] = kBehindGlass * left * objects_->radiance_in_water(ray, hit);
+                return;
+            }
+            SeaRadiance light;
+            if (!is_out) {
+                light.sea = objects_->radiance(ray, hit, numbers_of(first_row, i));
+                const glm::vec3 to_eye = -ray.towards;
+                if (options_.lighting.air)
+                    see_through(air_, {&to_eye, 1}, {&hit.distance_m, 1}, {&light, 1});
+            }
+            const float left =
+                spray_.empty() ? 1.0f : see_through_spray(spray_, ray.towards, hit.distance_m, light);
+            if (is_out && !batch_.veil.empty()) batch_.veil[i] = 1.0f - left;
+            batch_.object[i] = light.sea;
+            seen.air = light.air;
+        });
+    }
+    // Whether alpha is 1 for it.
+    bool is_covered(std::size_t sample) const {
+        return is_sea(sample) || (is_object(sample) && !objects_->is_holdout(batch_.body[sample]));
+    }
+
+    // A Cryptomatte has its largest share first.
+    void end_objects(Picture& picture) const {
+        if (std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)]; !mattes.empty())
+            in_parallel(picture.layers.size(), [&](std::size_t pixel) {
+                sort_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>());
+            });
+    }
+
+    // What a pixel's samples of the sea show of bodies, more than without them, in all. Of the sky that they mirror, `sky`, bodies take the
+    // share that they do among the facets: so no chance takes more than there is.
+    static glm::vec3 shown_in_sea(const BodiesInSea& all, const glm::vec3& sky) {
+        glm::vec3 shown = all.through;
+        for (int c = 0; c < 3; ++c) {
+            constexpr float kMost = 4.0f;  // facets tell more or less of a bright spot of the sky
+            const float scale = all.sky[c] > 0.0f ? sky[c] / all.sky[c] : 1.0f;
+            shown[c] += std::clamp(scale, 1.0f / kMost, kMost) * all.mirrored[c] - scale * all.hidden[c];
+        }
+        return shown;
     }
 
     FloorEye eye() const {
@@ -461,7 +730,11 @@ class RendererOf final : public Impl {
             const std::size_t sample = batch_.climbed[i];
             const float share = meniscus_share(batch_.glass_m[sample]);
             batch_.radiance[sample] = mixed(batch_.radiance[sample], batch_.lit[i], share);
-            if (!batch_.veil.empty() && !is_sea(sample))
+            if (objects_) {
+                batch_.object[sample] *= 1.0f - share;
+                batch_.in_sea[sample] *= 1.0f - share;
+            }
+            if (!batch_.veil.empty() && !is_covered(sample))
                 batch_.veil[sample] += share * (1.0f - batch_.veil[sample]);
         }
     }
@@ -472,6 +745,8 @@ class RendererOf final : public Impl {
         batch_.sea_m.assign(batch_.triangles.size(), kSprayEndless_m);
         for (std::size_t i = 0; i < batch_.sea.size(); ++i)
             batch_.sea_m[batch_.sea[i]] = batch_.seen.distance_m[i];
+        for (std::size_t i = 0; i < batch_.body.size(); ++i)
+            if (is_object(i)) batch_.sea_m[i] = batch_.body[i].distance_m;
         // Of the view's pixels to the rasteriser's, whose middles passes look beside.
         const double beside = batch_.places.empty() ? 0.0 : 0.5;
         const auto raster_of = [&](double at_px, double first) {
@@ -504,8 +779,12 @@ class RendererOf final : public Impl {
         SeaRadiance& seen = batch_.radiance[sample];
         for (glm::vec3* layer : {&seen.sun, &seen.sky, &seen.sea, &seen.foam, &seen.air})
             *layer *= 1.0f - hidden;
+        if (objects_) {
+            batch_.object[sample] *= 1.0f - hidden;
+            batch_.in_sea[sample] *= 1.0f - hidden;
+        }
         seen.air += hidden * drop.radiance;
-        if (!batch_.veil.empty() && batch_.triangles[sample] == Rasteriser::kNone)
+        if (!batch_.veil.empty() && batch_.triangles[sample] == Rasteriser::kNone && !is_covered(sample))
             batch_.veil[sample] += hidden * (1.0f - batch_.veil[sample]);
     }
 
@@ -594,7 +873,7 @@ class RendererOf final : public Impl {
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
                 glm::vec3 of_sky(0.0f);
-                int of_sea = 0;
+                int of_sea = 0, covered = 0;  // with bodies; without holdouts
                 float of_veil = 0.0f;  // before the sky
                 for (int y = 0; y < n; ++y)
                     for (int i = 0; i < n; ++i) {
@@ -605,10 +884,11 @@ class RendererOf final : public Impl {
                         sum.sea += sample.sea;
                         sum.foam += sample.foam;
                         sum.air += sample.air;
-                        if (is_sea(at))
+                        if (is_sea(at) || is_object(at))
                             ++of_sea;
                         else
                             of_sky += radiance_of(sample);
+                        if (is_covered(at)) ++covered;
                         if (!batch_.veil.empty()) of_veil += batch_.veil[at];
                     }
                 SeaRadiance& pixel = picture.layers[to + x];
@@ -617,7 +897,8 @@ class RendererOf final : public Impl {
                 pixel.sea += sum.sea * share;
                 pixel.foam += sum.foam * share;
                 pixel.air += sum.air * share;
-                if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(of_sea) + of_veil) * share;
+                if (objects_) add_objects(row, x, n, share, picture, to + x);
+                if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(covered) + of_veil) * share;
                 if (has_skyline && of_sea > 0 && of_sea < n * n)
                     skyline[row].push_back({.pixel = to + x,
                                             .sky = 1.0f - static_cast<float>(of_sea) * share,
@@ -626,6 +907,34 @@ class RendererOf final : public Impl {
         });
         for (const std::vector<SkylinePixel>& of_row : skyline)
             picture.skyline.insert(picture.skyline.end(), of_row.begin(), of_row.end());
+    }
+
+    // A pixel's light of bodies, and what it shows of which.
+    void add_objects(int row, std::size_t x, int n, float share, Picture& picture, std::size_t pixel) const {
+        std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
+        const auto sample_width = static_cast<std::size_t>(raster_size().x);
+        glm::vec3 object(0.0f), sky(0.0f);
+        BodiesInSea shown;
+        for (int y = 0; y < n; ++y)
+            for (int i = 0; i < n; ++i) {
+                const std::size_t at = sample_width * (row * n + y) + x * n + i;
+                object += batch_.object[at];
+                const BodiesInSea& in_sea = batch_.in_sea[at];
+                shown.mirrored += in_sea.mirrored;
+                shown.hidden += in_sea.hidden;
+                shown.sky += in_sea.sky;
+                shown.through += in_sea.through;
+                if (in_sea.sky != glm::vec3(0.0f)) sky += batch_.radiance[at].sky;
+                if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
+                add_to_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>(),
+                             is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte,
+                             share);
+            }
+        const glm::vec3 reflection = shown_in_sea(shown, sky);
+        for (int c = 0; c < 3; ++c) {
+            picture.data[index(PictureLayer::Object)][3 * pixel + c] += share * object[c];
+            picture.data[index(PictureLayer::Reflection)][3 * pixel + c] += share * reflection[c];
+        }
     }
 
     // What the middle of each pixel shows, beside its light.
@@ -660,11 +969,26 @@ class RendererOf final : public Impl {
         };
         const std::uint32_t triangle = batch_.triangles[sample];
         const glm::dvec3 origin(mesh_.points.origin_m, 0.0);
+        set(PictureLayer::Shadow, glm::vec1(1.0f));
         if (triangle == Rasteriser::kNone) {
             set(PictureLayer::SlopeVariance, glm::vec3(0.0f));
             for (const PictureLayer layer :
                  {PictureLayer::Coverage, PictureLayer::Breaking, PictureLayer::FoamAge})
                 set(layer, glm::vec1(0.0f));
+            if (is_object(sample)) {
+                const Ray ray = ray_of(first_row, sample);
+                const RayHit& hit = batch_.body[sample];
+                const auto places = objects_->places(ray, hit);
+                const glm::vec3 normal = objects_->normal(ray, hit);
+                set(PictureLayer::Depth,
+                    glm::dvec1(glm::dot(view_.forward, places[1] + origin - view_.position_m)));
+                set(PictureLayer::Position, places[1] + origin);
+                set(PictureLayer::Normal, normal);
+                set(PictureLayer::Shadow, glm::vec1(objects_->sun_share(glm::vec3(places[1]), normal,
+                                                                        numbers_of(first_row, sample))));
+                if (needs_motion(options_.layers)) set_motion(motion.of(places));
+                return;
+            }
             const glm::dvec3 direction = view_.direction(seen_at(first_row, sample));
             // The floor under water; what has none, and the sky, is endlessly far.
             const bool has_floor = is_under(sample) && direction.z < 0.0 && sea_.water().floor_m < 1e6f;
@@ -697,6 +1021,9 @@ class RendererOf final : public Impl {
         // Samples that show the sea stand in rising order.
         const std::size_t i =
             std::lower_bound(batch_.sea.begin(), batch_.sea.end(), sample) - batch_.sea.begin();
+        if (objects_)
+            set(PictureLayer::Shadow, glm::vec1(objects_->sun_share(glm::vec3(position), batch_.seen.up[i],
+                                                                    numbers_of(first_row, sample))));
         const std::vector<float>& coverage = sea_.answers().numbers(Product::Coverage);
         set(PictureLayer::Normal, from_level(glm::dvec3(sea_.answers().vectors(Product::Normal)[i]),
                                              glm::dvec3(batch_.seen.up[i])));
@@ -741,6 +1068,9 @@ class RendererOf final : public Impl {
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;
     Batch<T> batch_;
+    std::unique_ptr<LitObjects> objects_;  // of scenes with some
+    std::vector<float> mattes_;            // by object
+    const std::atomic<bool>* cancel_ = nullptr;
 };
 
 }  // namespace

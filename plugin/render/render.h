@@ -44,16 +44,17 @@ struct SkylinePixel {
     glm::vec3 light{0.0f};  // of that part, and of the sea's: both add up to the picture's
 };
 
-// One frame, HDR, rows from the top, x fastest; in the sky's units. The layers add up to the picture:
+// One frame, HDR, rows from the top, x fastest; in the sky's units. The layers, with those of objects, add up to the picture:
 // `sky` is the sky that the sea reflects and, beside the sea, the sky itself with the sun's disc.
 struct Picture {
     glm::ivec2 resolution{0};
     std::vector<SeaRadiance> layers;
     std::vector<std::uint8_t> sea;  // 1: sea in the middle of the pixel, 0: sky
-    // What RenderOptions ask for, otherwise empty. Alpha is the sea's share of the pixel, and what spray before the sky hides of that. Layers that aren't light
+    // What RenderOptions ask for, otherwise empty. Alpha is the sea's and the objects' share of the pixel, and what spray before the sky hides of that. Layers that aren't light
     // (kPictureLayers) hold their row's components side by side; they are those of the sample in the middle of the
     // pixel at the frame's own time, since a mean of depths or of normals is none that is there.
     std::vector<float> alpha{};
+    // Of shots with objects the light from these, Object and Reflection, is there always.
     std::array<std::vector<float>, kPictureLayerCount> data{};
     // In rising order, of pictures that aren't blurred and have their sky.
     std::vector<SkylinePixel> skyline{};
@@ -64,6 +65,15 @@ inline glm::vec3 radiance_of(const SeaRadiance& layers) {
     return layers.sun + layers.sky + layers.sea + layers.foam + layers.air;
 }
 
+// All that a pixel shows.
+inline glm::vec3 light_of(const Picture& picture, std::size_t pixel) {
+    glm::vec3 light = radiance_of(picture.layers[pixel]);
+    for (const PictureLayer layer : {PictureLayer::Object, PictureLayer::Reflection})
+        if (const std::vector<float>& of = picture.data[index(layer)]; !of.empty())
+            light += glm::vec3(of[3 * pixel], of[3 * pixel + 1], of[3 * pixel + 2]);
+    return light;
+}
+
 struct RenderOptions {
     LightingChoice lighting;
     int samples = 1;  // N × N a pixel, averaged before any tone mapping: 1 … 16
@@ -72,7 +82,7 @@ struct RenderOptions {
     // are then; one sample a pixel is sharp.
     double shutter_frames = 0.0;
     bool alpha =
-        false;  // transparent where there is no sea, nor spray; the light is then multiplied by alpha
+        false;  // transparent where there is no sea, nor spray, nor object; the light is then multiplied by alpha
     PictureLayerSet layers = light_layers();
     // Of the waves' sums, without as the quality level has them; and of footprints. To measure what others would cost.
     std::optional<Knobs> knobs{};

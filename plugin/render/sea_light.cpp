@@ -137,7 +137,7 @@ void SeaLight<T>::answer(const SeenSea<T>& seen) {
 
 template <class T>
 void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, const Spray& spray,
-                        std::span<SeaRadiance> lit) {
+                        std::span<SeaRadiance> lit, std::span<const std::uint8_t> wanted) {
     const std::vector<glm::vec3>& normal = answers_.vectors(Product::Normal);
     const std::vector<glm::vec3>& slope_variance = answers_.vectors(Product::SlopeVariance);
     const std::vector<glm::vec3>& at_rest = answers_.vectors(Product::SlopeVarianceAtRest);
@@ -170,9 +170,13 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
             const auto is_below = [&](std::size_t i) {
                 return !seen.from_below.empty() && seen.from_below[i] != 0;
             };
+            const auto is_wanted = [&](std::size_t i) { return wanted.empty() || wanted[i] != 0; };
             // Places after one another that are seen from the same side.
             for (std::size_t first = range.begin(), last = first; first < range.end(); first = last) {
-                while (last < range.end() && is_below(last) == is_below(first)) ++last;
+                while (last < range.end() && is_below(last) == is_below(first) &&
+                       is_wanted(last) == is_wanted(first))
+                    ++last;
+                if (!is_wanted(first)) continue;
                 const auto part = [&](auto& of) { return std::span(of).subspan(first, last - first); };
                 if (is_below(first)) {
                     shade_sea_from_below(choice_, sky, water_, static_cast<float>(seen.eye->position_m.z),
@@ -185,6 +189,35 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                 see_through_spray(spray, part(seen.to_eye), part(seen.distance_m), part(lit));
             }
         });
+}
+
+template <class T>
+void SeaLight<T>::mirror(const SeenSea<T>& seen, std::size_t place, std::span<const glm::vec2> places,
+                         std::span<MirroredLight> mirrored) const {
+    mirrored_light(choice_, sky_, points_[place], places, mirrored, foam_pattern(foam_, seen.origin_m));
+}
+
+template <class T>
+void SeaLight<T>::light_from_afar(std::span<const glm::vec3> to_eye, bool lit,
+                                  std::span<SeaRadiance> light) const {
+    Sky sky = sky_;
+    if (!lit) sky.sun_radiance = sky.sun_irradiance = glm::vec3(0.0f);
+    const Scene& scene = plan().from->scene;
+    // Of water without a body nobody has asked for the waves' slopes: Cox and Munk 1954.
+    const auto slopes = static_cast<float>(0.003 + 0.00512 * scene.sea.wind_speed_mps);
+    glm::vec3 variance = water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
+    // A calm sea's glitter would be a point that tables of directions miss, or see as a wide one.
+    constexpr float kLeast = 0.01f;
+    variance.x = std::max(variance.x, kLeast);
+    variance.y = std::max(variance.y, kLeast);
+    const float coverage = choice_.whitecaps ? static_cast<float>(law_coverage(scene)) : 0.0f;
+    std::vector<SeaPoint> points(to_eye.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] = {.to_eye = to_eye[i],
+                     .slope_variance = variance,
+                     .slope_variance_at_rest = variance,
+                     .coverage = coverage};
+    shade_sea(choice_, sky, water_, points, light);
 }
 
 template <class T>

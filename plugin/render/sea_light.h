@@ -83,6 +83,7 @@ class SeaLight {
     const Plan& plan() const { return sea_->plan(); }
     const Sky& sky() const { return sky_; }
     const WaterBody& water() const { return water_; }
+    const LightingChoice& choice() const { return choice_; }
     const Frame<T>& frame() const { return state_.frame(); }
 
     // From now on the light is that of a frame, where some of it has keys; whether the sky is another then.
@@ -128,9 +129,16 @@ class SeaLight {
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
-    // The light of the places that were answered last, under a sky, through the air and the spray before the eye.
+    // The light of the places that were answered last, under a sky, through the air and the spray before the eye. wanted: by place,
+    // whether it is asked for; empty: all are.
     void light(const SeenSea<T>& seen, const Sky& sky, const Air& air, const Spray& spray,
-               std::span<SeaRadiance> lit);
+               std::span<SeaRadiance> lit, std::span<const std::uint8_t> wanted = {});
+    // Facets of such a place that light() has lit (mirrored_light()); any thread.
+    void mirror(const SeenSea<T>& seen, std::size_t place, std::span<const glm::vec2> places,
+                std::span<MirroredLight> mirrored) const;
+    // What comes from the sea in directions to an eye (unit) over all its waves, hidden as they are from far away, without air; `lit`:
+    // with the sun.
+    void light_from_afar(std::span<const glm::vec3> to_eye, bool lit, std::span<SeaRadiance> light) const;
 
     const Values& answers() const { return answers_; }
     bool foam_lives() const { return state_.has_past(kQuery); }

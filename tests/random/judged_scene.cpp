@@ -311,7 +311,8 @@ void judge_picture(const Picture& picture) {
         const std::string what = "picture " + std::string(row.name);
         if (row.layer == PictureLayer::SlopeVariance)
             judge_variances(values, what);
-        else if (row.layer == PictureLayer::Coverage || row.layer == PictureLayer::Breaking)
+        else if (row.layer == PictureLayer::Coverage || row.layer == PictureLayer::Breaking ||
+                 row.layer == PictureLayer::Shadow)
             judge_numbers(values, Is::Share, what);
         else
             judge_numbers(values, row.layer == PictureLayer::FoamAge ? Is::NotNegative : Is::Any, what);

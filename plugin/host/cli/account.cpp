@@ -38,8 +38,9 @@ FrameAccount picture_account(const Scene& scene, const RenderOptions& options, i
     const std::vector<int> frames = representative_frames(scene, kFrames);
     const Plan plan = picture_plan(of_samples(scene, options.samples), frames, options);
     std::size_t channels = options.alpha ? 4 : 3;  // of the light
+    const PictureLayerSet layers = layers_of(!scene.objects.empty(), options.layers);
     for (const PictureLayerRow& row : kPictureLayers)
-        if (options.layers[index(row.layer)]) channels += row.components;
+        if (layers[index(row.layer)]) channels += row.components;
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);
     return {.seconds = 1e-3 * cost_ms(picture_work(plan, frames, options), rates),

@@ -164,6 +164,11 @@ const char* const kRenderFooter =
     "  slope_variance  slope_variance.X .Y .Z        xx, yy, xy of the slopes that the pixel hides\n"
     "  foam_active     foam_active.X  the share that breaks now\n"
     "  foam_age        foam_age.X     how old the foam is, in seconds; what breaks counts as 0\n"
+    "Of shots with objects:\n"
+    "  object, reflection  .R .G .B   their light, and what the sea mirrors and shows of them, less\n"
+    "                                 what it would show without: parts of the sum, also below 0\n"
+    "  shadow          shadow.X       the share of the sun that no object hides\n"
+    "  cryptomatte     CryptoObject00 … 02.r .g .b .a   mattes of the objects, and of \"sea\"\n"
     "Light is a mean over the pixel and the shutter's time. The others are those of the sample in\n"
     "the pixel's middle at the frame's own time: a mean of depths is a depth that isn't there.";
 const char* const kSize =
@@ -190,11 +195,11 @@ const char* const kShutter =
     "chance: few leave grain, so take more --samples for fast cameras; one a pixel is sharp. 0 to 4.\n"
     "Default: 0, no motion blur";
 const char* const kAlpha =
-    "Transparent where there is no sea: no sky behind it, and A, by which the light is multiplied\n"
+    "Transparent where there is neither sea nor object: no sky behind it, and A, by which the light is multiplied\n"
     "(in the PNG it isn't, as that format wants)";
 const char* const kLayers =
     "The layers of the EXR beside R, G, B, separated by commas; or all, or none. See below.\n"
-    "Default: sun,sky,sea,foam,air";
+    "Default: sun,sky,sea,foam,air,object,reflection";
 
 const char* const kOcio =
     "The OpenColorIO configuration by which the PNG shows the light, in place of our own curve: the\n"

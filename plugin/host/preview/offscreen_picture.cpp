@@ -217,6 +217,7 @@ namespace {
 void take_below(const Waterline& waterline, const View& view, const LightingChoice& lighting, const Sky& sky,
                 const WaterBody& water, const FloorSeen& floor, const Picture& below, Picture& picture) {
     const auto width = static_cast<std::size_t>(picture.resolution.x);
+    std::vector<float>& object = picture.data[index(PictureLayer::Object)];  // empty without objects
     std::vector<std::size_t> climbed;
     std::vector<MeniscusSight> sights;
     for (std::size_t at = 0; at < picture.layers.size(); ++at) {
@@ -225,6 +226,7 @@ void take_below(const Waterline& waterline, const View& view, const LightingChoi
         if (height_m < 0.0) {
             picture.layers[at] = below.layers[at];
             picture.sea[at] = below.sea[at];
+            if (!object.empty()) object[3 * at] = object[3 * at + 1] = object[3 * at + 2] = 0.0f;
         } else if (meniscus_share(height_m) > 0.0f) {
             climbed.push_back(at);
             sights.push_back({glm::vec3(view.direction(pixel)), static_cast<float>(height_m)});
@@ -236,6 +238,8 @@ void take_below(const Waterline& waterline, const View& view, const LightingChoi
     for (std::size_t i = 0; i < climbed.size(); ++i) {
         const float share = meniscus_share(static_cast<double>(sights[i].height_m));
         picture.layers[climbed[i]] = mixed(picture.layers[climbed[i]], lit[i], share);
+        if (!object.empty())
+            for (std::size_t c = 0; c < 3; ++c) object[3 * climbed[i] + c] *= 1.0f - share;
         if (share == 1.0f) picture.sea[climbed[i]] = 1;
     }
 }

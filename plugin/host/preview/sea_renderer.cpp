@@ -142,7 +142,7 @@ struct SeaRenderer::Implementation {
     std::array<GlTexture, kPointNames.size()> points;  // what each pixel of the sea shows, before its light
     GlTexture depth;
     glm::ivec2 picture_size{0};
-    bool picture_layers = false, picture_plain = false;
+    bool picture_layers = false, picture_plain = false, picture_objects = false;
     double near_m = kNear_m;  // of the picture that is drawn
 
     std::map<std::string, ShaderProgram> programs;  // by ShaderVariant::key()
@@ -682,6 +682,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     of.near_m = options.behind_glass ? kFrontGlass_m : kNear_m;
     of.curvature_per_m = mesh.points.curvature_per_m;
     of.begin_picture(view.resolution, options.layers);
+    of.picture_objects = of.objects.has_value();
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
@@ -741,6 +742,7 @@ Picture SeaRenderer::read_layers() const {
     constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{
         &SeaRadiance::sea, &SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::foam, &SeaRadiance::air};
     std::vector<glm::vec4> texels(width * height);
+    std::vector<bool> is_object(of.picture_objects ? width * height : 0);
     for (int i = 0; i < (of.picture_layers ? kTerms : 1); ++i) {
         glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
         glPixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -750,11 +752,21 @@ Picture SeaRenderer::read_layers() const {
                 const glm::vec4& texel = texels[(height - 1 - y) * width + x];
                 const std::size_t at = y * width + x;
                 if (i == 0) picture.sea[at] = texel.w > 0.5f;
+                if (i == 0 && of.picture_objects) is_object[at] = texel.w < 0.0f;
                 const auto term = of.picture_layers || picture.sea[at] ? kTerm[i] : &SeaRadiance::sky;
                 picture.layers[at].*term = glm::vec3(texel);
             }
     }
     glReadBuffer(GL_COLOR_ATTACHMENT0);
+    if (!of.picture_objects) return picture;
+    std::vector<float>& object = picture.data[index(PictureLayer::Object)];
+    object.assign(3 * is_object.size(), 0.0f);
+    picture.data[index(PictureLayer::Reflection)] = object;
+    for (std::size_t at = 0; at < is_object.size(); ++at)
+        if (is_object[at]) {
+            const glm::vec3 light = std::exchange(picture.layers[at].sky, glm::vec3(0.0f));
+            for (int c = 0; c < 3; ++c) object[3 * at + static_cast<std::size_t>(c)] = light[c];
+        }
     return picture;
 }
 

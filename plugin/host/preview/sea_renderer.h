@@ -101,7 +101,8 @@ class SeaRenderer {
     void show(float exposure, const glm::mat3& white_balance);
 
     // Reads the last picture back, and waits for it. The terms are separate with options.layers. Otherwise
-    // `sea` has the whole radiance (and `sky` has it where there is no sea).
+    // `sea` has the whole radiance (and `sky` has it where there is no sea). Of pictures with objects their light is the layer Object;
+    // what the sea mirrors of them is in `sky`, and Reflection is 0.
     Picture read_layers() const;
 
     StageTimes times() const;

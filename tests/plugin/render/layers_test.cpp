@@ -77,7 +77,7 @@ TEST(PictureLayers, EachIsAskedForByItsName) {
     }
     EXPECT_EQ(parse_picture_layers("all"), all);
     EXPECT_TRUE(parse_picture_layers("none").none());
-    EXPECT_EQ(parse_picture_layers("sun,sky,sea,foam,air"), light_layers());
+    EXPECT_EQ(parse_picture_layers("sun,sky,sea,foam,air,object,reflection"), light_layers());
     for (const char* wrong : {"", "Depth", "depth,", "depth,,sun", "all,depth", "z"})
         EXPECT_THROW(parse_picture_layers(wrong), std::invalid_argument) << wrong;
 }
@@ -92,7 +92,7 @@ TEST(PictureLayers, ChangeNoLight) {
     EXPECT_TRUE(plain.alpha.empty());
     for (const PictureLayerRow& row : kPictureLayers) {
         EXPECT_TRUE(plain.data[index(row.layer)].empty()) << row.name;
-        const std::size_t values = row.light ? 0 : row.components * full.layers.size();
+        const std::size_t values = row.light || row.of_objects ? 0 : row.components * full.layers.size();
         ASSERT_EQ(full.data[index(row.layer)].size(), values) << row.name;
         for (const float value : full.data[index(row.layer)]) ASSERT_TRUE(std::isfinite(value)) << row.name;
     }

@@ -200,7 +200,7 @@ TEST(PictureFiles, SayWhichLayersAddUp) {
     const std::string content =
         Imf::InputFile(stream).header().typedAttribute<Imf::StringAttribute>("content").value();
     for (const PictureLayerRow& row : kPictureLayers)
-        EXPECT_EQ(content.find(std::string(row.name)) != std::string::npos, row.light != nullptr)
+        EXPECT_EQ(content.find(std::string(row.name)) != std::string::npos, is_light(row) && !row.of_objects)
             << row.name << ": " << content;
 }
 
@@ -470,6 +470,7 @@ TEST(PictureFiles, HoldTheLayersThatAreAskedFor) {
     for (const PictureLayerRow& asked : kPictureLayers) {
         RenderOptions options;
         options.layers.reset().set(index(asked.layer));
+        scene.objects.resize(asked.of_objects ? 1 : 0);
         const std::string bytes = encode_exr({scene, options, sky, "", 1.0f}, picture, 1);
         const Read file = read(bytes, resolution);
         EXPECT_EQ(file.channels.size(), 4 + asked.components) << asked.name;  // with R, G, B and A
@@ -484,6 +485,7 @@ TEST(PictureFiles, HoldTheLayersThatAreAskedFor) {
             }
         }
     }
+    scene.objects.clear();
     for (const char* light : {"daylight", "skies/noon.exr"}) {
         scene.light.sky = light;
         const RenderOptions options;
@@ -514,8 +516,13 @@ TEST(PictureFiles, AreOfTheirShutterAlphaAndLayers) {
     std::vector<std::string> all{
         of([](RenderOptions&) {}), of([](RenderOptions& o) { o.shutter_frames = 0.5; }),
         of([](RenderOptions& o) { o.shutter_frames = 0.25; }), of([](RenderOptions& o) { o.alpha = true; })};
-    for (const PictureLayerRow& row : kPictureLayers)
-        all.push_back(of([&](RenderOptions& o) { o.layers.flip(index(row.layer)); }));
+    for (const PictureLayerRow& row : kPictureLayers) {
+        const std::string flipped = of([&](RenderOptions& o) { o.layers.flip(index(row.layer)); });
+        if (row.of_objects)
+            EXPECT_EQ(flipped, all.front());  // there are none
+        else
+            all.push_back(flipped);
+    }
     std::sort(all.begin(), all.end());
     EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
 }

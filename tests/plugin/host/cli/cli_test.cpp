@@ -117,7 +117,7 @@ TEST_F(Cli, HelpOfRenderNamesEachLayer) {
     std::string by_default;
     for (const PictureLayerRow& row : kPictureLayers) {
         EXPECT_TRUE(named.contains(std::string(row.name))) << row.name << "\n" << help;
-        if (row.light) by_default += (by_default.empty() ? "" : ",") + std::string(row.name);
+        if (is_light(row)) by_default += (by_default.empty() ? "" : ",") + std::string(row.name);
     }
     EXPECT_TRUE(has(help, "Default: " + by_default)) << help;
 }

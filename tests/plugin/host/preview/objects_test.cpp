@@ -164,6 +164,8 @@ TEST(PreviewsObjects, AreWhereTheyStandInTheWater) {
         const bool is_box = box_ahead(stage.view().position_m, way).value_or(1.0) < 1.0;
         seen += is_box;
         wrong += is_box != (without.sea[i] == 1 && with.sea[i] == 0);
+        const float light = with.data[index(PictureLayer::Object)][3 * i + 1];
+        EXPECT_EQ(light > 0.0f, without.sea[i] == 1 && with.sea[i] == 0);
     }
     std::printf("    %d pixels show the box, %d differ\n", seen, wrong);
     EXPECT_GT(seen, 2000);
@@ -222,6 +224,51 @@ TEST(PreviewsObjects, AreMirroredByCalmWater) {
     EXPECT_GT(mirrored, 2000);
     EXPECT_LE(wrong, mirrored / 12);  // small waves blur its edge
     EXPECT_NEAR(median, 1.0, 0.05);
+}
+
+// What waves show of a lamp above them, against the rays of pelagic render, in squares of pixels where either shows some.
+void compare_images(const char* name, double wind_mps) {
+    constexpr int kSide = 10;
+    Scene scene = with_box(object_scene(wind_mps, 35.0), {.name = "lamp", .colour = glm::vec3(0.0f), .roughness = 1.0f, .glow = glm::vec3(1.0f)});
+    scene.objects.front().glow_cd_m2 = 50e3;
+    scene.objects.front().up_m = 5.5;  // all of it above the crests: the preview shows nothing through the surface
+    ObjectStage stage(scene);
+    const Picture with = stage.with_objects(), without = stage.without();
+    RenderOptions options = render_options(scene);
+    options.samples = 1;
+    Picture rays;
+    Renderer(scene, options, stage.sky(), std::array{1}).render(1, rays);
+    const std::vector<float>& mirrored = rays.data[index(PictureLayer::Reflection)];
+    ASSERT_FALSE(mirrored.empty());
+    const glm::ivec2 squares = with.resolution / kSide;
+    std::vector<double> ours(static_cast<std::size_t>(squares.x * squares.y)), theirs(ours.size());
+    for (int y = 0; y < squares.y * kSide; ++y)
+        for (int x = 0; x < squares.x * kSide; ++x) {
+            const auto at = static_cast<std::size_t>(y * with.resolution.x + x);
+            if (with.sea[at] == 0 || rays.sea[at] == 0) continue;
+            const auto square = static_cast<std::size_t>(y / kSide * squares.x + x / kSide);
+            ours[square] += static_cast<double>(with.layers[at].sky.y - without.layers[at].sky.y);
+            theirs[square] += static_cast<double>(mirrored[3 * at + 1]);
+        }
+    const double most = *std::ranges::max_element(theirs);
+    std::vector<double> ratios;
+    double all_ours = 0.0, all_theirs = 0.0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+        all_ours += ours[i];
+        all_theirs += theirs[i];
+        if (std::max(ours[i], theirs[i]) > 0.1 * most) ratios.push_back(ours[i] / theirs[i]);
+    }
+    ASSERT_GT(ratios.size(), 20u);
+    std::ranges::sort(ratios);
+    const auto part = [&](std::size_t tenths) { return ratios[ratios.size() * tenths / 10]; };
+    std::printf("    %s: %zu squares, median %.3f of the rays', 80 %% between %.3f and %.3f; in all %.3f\n", name, ratios.size(),
+                part(5), part(1), part(9), all_ours / all_theirs);
+    EXPECT_NEAR(part(5), 1.0, 0.1);
+    EXPECT_NEAR(all_ours / all_theirs, 1.0, 0.1);
+}
+TEST(PreviewsObjects, AreMirroredByWavesAsRaysSay) {
+    compare_images("trade wind", 8.0);
+    compare_images("storm", 18.0);
 }
 
 TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {

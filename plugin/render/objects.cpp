@@ -1,0 +1,448 @@
+#include "plugin/render/objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <numbers>
+
+#include "core/base/random.h"
+#include "core/surface/earth.h"
+#include "plugin/render/object_place.h"
+
+namespace pelagic {
+namespace {
+
+constexpr float kPi_f = std::numbers::pi_v<float>;
+constexpr float kF0 = 0.04f;  // of a dielectric of index 1.5, straight on
+
+// Rays of a pixel, over all its samples.
+constexpr std::uint32_t kSunRays = 16, kSkyRays = 32;
+enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss };
+
+// A coordinate system round a unit direction (Duff et al. 2017).
+glm::mat3 axes_round(const glm::vec3& z) {
+    const float sign = std::copysign(1.0f, z.z), a = -1.0f / (sign + z.z), b = z.x * z.y * a;
+    return {glm::vec3(1.0f + sign * z.x * z.x * a, sign * b, -sign * z.x),
+            glm::vec3(b, sign + z.y * z.y * a, -z.y), z};
+}
+
+glm::vec2 on_disc(glm::vec2 square) {
+    const float radius = std::sqrt(square.x), angle = 2.0f * kPi_f * square.y;
+    return radius * glm::vec2(std::cos(angle), std::sin(angle));
+}
+
+float schlick(float cosine) {
+    const float x = 1.0f - std::clamp(cosine, 0.0f, 1.0f);
+    return kF0 + (1.0f - kF0) * x * x * x * x * x;
+}
+
+// Of Smith's masking for GGX, one direction.
+float ggx_visible(float cosine, float alpha) {
+    const float a2 = alpha * alpha;
+    return 2.0f * cosine / (cosine + std::sqrt(a2 + (1.0f - a2) * cosine * cosine));
+}
+
+// Off a surface, by what single precision knows of the place.
+float off_surface_m(const glm::vec3& place) {
+    return 5e-4f + 4e-6f * glm::length(place);
+}
+
+}  // namespace
+
+std::string object_name(const SceneObject& object) {
+    return object.name.empty() ? std::filesystem::path(object.file).stem().string() : object.name;
+}
+
+glm::vec2 SampleNumbers::place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const {
+    constexpr std::uint64_t kKey = 0x6f626a65637473;  // "objects": no other use of philox() shares its numbers
+    const auto shift = philox({x, y, frame, what}, kKey);
+    const std::uint32_t at = index * rays + n;
+    const auto unit = [](std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
+    // R2's two numbers, times 2³².
+    return {unit(shift[0] + at * 3242174889u), unit(shift[1] + at * 2447445413u)};
+}
+
+LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
+    std::vector<const ObjectMesh*> meshes;
+    for (const SceneObject& object : scene.objects) {
+        meshes.push_back(object.mesh.get());
+        // Radiance 1 is a thousand cd/m² by daylight; a sky's picture counts as if it were so.
+        bodies_.push_back({.mesh = object.mesh.get(),
+                           .colour = glm::vec3(object.colour),
+                           .glow = static_cast<float>(1e-3 * object.glow_cd_m2),
+                           .holdout = object.holdout,
+                           .placed = {}});
+    }
+    rays_ = make_ray_scene(meshes);
+}
+
+std::size_t LitObjects::bytes(const Scene& scene) {
+    std::vector<const ObjectMesh*> meshes;
+    for (const SceneObject& object : scene.objects) meshes.push_back(object.mesh.get());
+    return meshes.empty() ? 0 : ray_scene_bytes(meshes);
+}
+
+template <class T>
+void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
+    const double step_s = scene_.shot.time_scale / scene_.shot.fps;
+    std::vector<glm::mat4x3> transforms;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        Body& body = bodies_[i];
+        const SceneObject& object = scene_.objects[i];
+        const glm::dvec3 least = body.mesh->least_m(), most = body.mesh->most_m();
+        for (const int beside : {-1, 1, 0}) {
+            if (beside != 0 && !sea.has_motion) continue;
+            const auto [pose, water_m] = place_object(state, scene_, object,
+                                                      {.query = SeaLight<T>::kQuery,
+                                                       .frame = frame + beside,
+                                                       .rest_m = sea.rest_m,
+                                                       .late_s = beside * step_s});
+            Placed& placed = body.placed[beside + 1];
+            const glm::dvec3 flat_m = pose.place_m - glm::dvec3(sea.origin_m, 0.0);
+            const glm::dvec3 vertical = earth_up(glm::dvec2(flat_m), sea.curvature_per_m);
+            placed.place_m = on_earth(flat_m, sea.curvature_per_m);
+            for (int axis = 0; axis < 3; ++axis)
+                placed.axes[axis] = pose.scale * from_level(pose.turn[axis], vertical);
+            if (beside == 0)
+                body.water_m = static_cast<float>(
+                    on_earth(glm::dvec3(glm::dvec2(flat_m), water_m), sea.curvature_per_m).z);
+        }
+        const Placed& now = body.placed[1];
+        if (!sea.has_motion) body.placed[0] = body.placed[2] = now;
+        body.axes = glm::mat3(now.axes);
+        body.into = glm::mat3(glm::inverse(now.axes));
+        body.place = glm::vec3(now.place_m);
+        body.centre = glm::vec3(now.place_m + now.axes * (0.5 * (least + most)));
+        // A little more, for what single precision makes of it.
+        body.radius = 1.001f * static_cast<float>(glm::length(now.axes[0]) * 0.5 * glm::length(most - least)) +
+                      1e-5f * glm::length(body.centre);
+        transforms.push_back({body.axes[0], body.axes[1], body.axes[2], body.place});
+    }
+    rays_->place(transforms);
+}
+template void LitObjects::place(const Frame<float>&, double, const Sea&);
+template void LitObjects::place(const Frame<double>&, double, const Sea&);
+
+template <class T>
+void LitObjects::light(const SeaLight<T>& sea) {
+    sky_ = &sea.sky();
+    water_ = &sea.water();
+    choice_ = sea.choice();
+    const float radius = sky_->sun_angular_radius;
+    beam_ = choice_.sun ? kPi_f * radius * radius * sky_->sun_radiance : glm::vec3(0.0f);
+    to_sun_ = sky_->sun_direction;
+    const glm::mat3 round = axes_round(to_sun_);
+    sun_side_ = radius * round[0];
+    sun_rise_ = radius * round[1];
+    std::vector<glm::vec3> to_eye;
+    for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+            const float root = std::max(static_cast<float>(row) / (kRows - 1), 0.02f), z = root * root;
+            const float azimuth = 2.0f * kPi_f * static_cast<float>(column) / kColumns;
+            const float level = std::sqrt(1.0f - z * z);
+            to_eye.emplace_back(level * std::cos(azimuth), level * std::sin(azimuth), z);
+        }
+    std::vector<SeaRadiance> light(to_eye.size());
+    for (const bool lit : {false, true}) {
+        sea.light_from_afar(to_eye, lit, light);
+        sea_[lit].resize(light.size());
+        std::transform(light.begin(), light.end(), sea_[lit].begin(), radiance_of);
+    }
+    // Over a hemisphere, by the cosine: rows are even in z's root.
+    mean_sea_ = glm::vec3(0.0f);
+    float all = 0.0f;
+    for (int row = 0; row < kRows; ++row) {
+        const float root = static_cast<float>(row) / (kRows - 1), part = root * root * root;  // z dz
+        for (int column = 0; column < kColumns; ++column) mean_sea_ += part * sea_[1][row * kColumns + column];
+        all += part * kColumns;
+    }
+    mean_sea_ /= all;
+    constexpr float kStep_m = 0.5f, kFarthest_m = 64.0f, kLeast = 0.01f;
+    sight_in_water_m_ = kStep_m;
+    const auto most = [](const glm::vec3& of) { return std::max({of.x, of.y, of.z}); };
+    while (sight_in_water_m_ < kFarthest_m && most(water_lets_through(*water_, sight_in_water_m_)) > kLeast)
+        sight_in_water_m_ *= 1.25f;
+}
+template void LitObjects::light(const SeaLight<float>&);
+template void LitObjects::light(const SeaLight<double>&);
+
+bool LitObjects::may_meet(const Ray& ray) const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+        const glm::vec3 way = body.centre - ray.from;
+        const float along = glm::dot(way, ray.towards), away2 = glm::dot(way, way),
+                    radius2 = body.radius * body.radius;
+        return away2 <= radius2 || (along > 0.0f && away2 - along * along <= radius2 &&
+                                    along - body.radius <= ray.farthest_m);
+    });
+}
+
+RayHit LitObjects::nearest(const Ray& ray) const {
+    return may_meet(ray) ? rays_->nearest(ray) : RayHit{};
+}
+
+bool LitObjects::is_blocked(const Ray& ray) const {
+    return may_meet(ray) && rays_->is_blocked(ray);
+}
+
+// A boat's hull, open above or closed: what is over its bottom and, on most sides, within its bulwark. Of eight level rays two may
+// find a gap.
+bool LitObjects::is_dry(const glm::vec3& place) const {
+    constexpr int kSides = 8, kEnough = 6;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Body& body = bodies_[i];
+        const glm::vec3 within = body.into * (place - body.place);
+        const glm::vec3 least(body.mesh->least_m()), most(body.mesh->most_m());
+        if (glm::any(glm::lessThan(within, least)) || glm::any(glm::greaterThan(within, most))) continue;
+        const auto meets = [&](const glm::vec3& towards) {
+            return rays_->nearest({.from = place, .towards = towards}).body == static_cast<int>(i);
+        };
+        if (!meets(glm::normalize(-body.axes[2]))) continue;
+        int met = 0;
+        for (int side = 0; side < kSides; ++side) {
+            const float angle = 2.0f * kPi_f * (static_cast<float>(side) + 0.5f) / kSides;
+            met += meets(glm::normalize(std::cos(angle) * body.axes[0] + std::sin(angle) * body.axes[1]));
+        }
+        if (met >= kEnough) return true;
+    }
+    return false;
+}
+
+float LitObjects::sun_share(const glm::vec3& place, const glm::vec3& normal,
+                            const SampleNumbers& numbers) const {
+    if (beam_ == glm::vec3(0.0f)) return 1.0f;
+    const glm::vec3 from = place + off_surface_m(place) * normal;
+    const float spread = sky_->sun_angular_radius;
+    const bool is_possible = std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+        const glm::vec3 way = body.centre - from;
+        const float along = glm::dot(way, to_sun_);
+        if (along < -body.radius) return false;
+        const float most = body.radius + 1.01f * spread * std::max(along + body.radius, 0.0f);
+        return glm::dot(way, way) - along * along <= most * most;
+    });
+    if (!is_possible) return 1.0f;
+    const std::uint32_t count = numbers.rays(kSunRays);
+    std::uint32_t seen = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const glm::vec2 at = on_disc(numbers.place(kOfSun, k, count));
+        seen += !rays_->is_blocked(
+            {.from = from, .towards = glm::normalize(to_sun_ + at.x * sun_side_ + at.y * sun_rise_)});
+    }
+    return static_cast<float>(seen) / static_cast<float>(count);
+}
+
+LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const {
+    const Body& body = bodies_[hit.body];
+    const ObjectMeshData& mesh = body.mesh->data();
+    const std::size_t first = 3 * std::size_t{hit.triangle};
+    std::array<glm::vec3, 3> corner{};
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = mesh.points_m[mesh.triangles[first + i]];
+    Surface at{.place = ray.from + hit.distance_m * ray.towards, .body = hit.body};
+    const glm::vec3 weights(1.0f - hit.weights.x - hit.weights.y, hit.weights.x, hit.weights.y);
+    at.geometric = body.axes * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    at.geometric = glm::normalize(at.geometric);
+    at.normal = body.axes * (weights.x * mesh.normals[first] + weights.y * mesh.normals[first + 1] +
+                             weights.z * mesh.normals[first + 2]);
+    const float size = glm::length(at.normal);
+    at.normal = size > 0.0f ? at.normal / size : at.geometric;
+    // Both face the ray, whichever way the triangle was wound.
+    if (glm::dot(at.geometric, ray.towards) > 0.0f) at.geometric = -at.geometric;
+    if (glm::dot(at.normal, at.geometric) < 0.0f) at.normal = -at.normal;
+    constexpr float kLeastFacing = 0.02f;
+    if (const float facing = -glm::dot(at.normal, ray.towards); facing < kLeastFacing)
+        at.normal = glm::normalize(at.normal - (kLeastFacing - facing) * ray.towards);
+    const ObjectMaterial& material = mesh.materials[mesh.material[hit.triangle]];
+    at.colour = body.colour * material.colour;
+    at.glow = body.glow * material.glow;
+    at.roughness = material.roughness;
+    return at;
+}
+
+glm::vec3 LitObjects::normal(const Ray& ray, const RayHit& hit) const {
+    return surface(ray, hit).normal;
+}
+
+std::array<glm::dvec3, 3> LitObjects::places(const Ray& ray, const RayHit& hit) const {
+    const Body& body = bodies_[hit.body];
+    const glm::dvec3 now = glm::dvec3(ray.from) + static_cast<double>(hit.distance_m) * glm::dvec3(ray.towards);
+    const glm::dvec3 local = glm::inverse(body.placed[1].axes) * (now - body.placed[1].place_m);
+    std::array<glm::dvec3, 3> places{};
+    for (std::size_t i = 0; i < places.size(); ++i)
+        places[i] = i == 1 ? now : body.placed[i].place_m + body.placed[i].axes * local;
+    return places;
+}
+
+glm::vec3 LitObjects::sky(const glm::vec3& direction, float blur_rad) const {
+    if (!choice_.sky) return glm::vec3(0.0f);
+    // A direction changes by up to as much in the map; a texel's side.
+    const float texel = 2.0f * kSkyMapExtent / static_cast<float>(sky_->map.size());
+    return sky_->map.radiance(sky_map_place(direction), std::max(std::log2(0.5f * blur_rad / texel), 0.0f));
+}
+glm::vec3 LitObjects::sky(const glm::vec3& direction) const {
+    return sky(direction, 0.01f);
+}
+
+// The sea as a direction from it to an eye shows it.
+glm::vec3 LitObjects::sea(const glm::vec3& to_eye, bool in_sun) const {
+    const std::vector<glm::vec3>& table = sea_[in_sun];
+    const float row = std::sqrt(std::clamp(to_eye.z, 0.0f, 1.0f)) * (kRows - 1);
+    float column = std::atan2(to_eye.y, to_eye.x) / (2.0f * kPi_f) * kColumns;
+    if (!(column >= 0.0f)) column += kColumns;
+    const int low = std::clamp(static_cast<int>(row), 0, kRows - 2), left = static_cast<int>(column);
+    const auto at = [&](int r, int c) { return table[r * kColumns + c % kColumns]; };
+    const float up = row - static_cast<float>(low), right = column - static_cast<float>(left);
+    return glm::mix(glm::mix(at(low, left), at(low, left + 1), right),
+                    glm::mix(at(low + 1, left), at(low + 1, left + 1), right), up);
+}
+
+// Irradiance of sky and sea that nothing hides.
+glm::vec3 LitObjects::ambient(const glm::vec3& normal) const {
+    const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
+    return (0.5f + 0.5f * normal.z) * above + ((0.5f - 0.5f * normal.z) * kPi_f) * mean_sea_;
+}
+
+glm::vec3 LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad) const {
+    const glm::vec3 begin = at.place + off_surface_m(at.place) * at.geometric;
+    Ray ray{.from = begin, .towards = from};
+    // What lies below the water doesn't count: the ray ends there.
+    if (from.z < 0.0f)
+        ray.farthest_m = std::max(begin.z - bodies_[at.body].water_m, 0.0f) / std::max(-from.z, 1e-6f);
+    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m)
+        return estimate(ray, hit);
+    if (from.z >= 0.0f) return sky(from, blur_rad);
+    const glm::vec3 there = begin + ray.farthest_m * from;
+    const bool in_sun =
+        beam_ != glm::vec3(0.0f) &&
+        !is_blocked({.from = there + glm::vec3(0.0f, 0.0f, off_surface_m(there)), .towards = to_sun_});
+    return sea(-from, in_sun);
+}
+
+glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit) const {
+    const Surface at = surface(ray, hit);
+    glm::vec3 light = ambient(at.normal);
+    const float facing = glm::dot(at.normal, to_sun_);
+    if (facing > 0.0f && glm::dot(at.geometric, to_sun_) > 0.0f && beam_ != glm::vec3(0.0f) &&
+        !is_blocked({.from = at.place + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
+        light += facing * beam_;
+    return at.colour * light / kPi_f + at.glow;
+}
+
+glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const {
+    const Surface at = surface(ray, hit);
+    const glm::vec3 to_eye = -ray.towards;
+    const float seen = std::max(glm::dot(at.normal, to_eye), 1e-3f);
+    // A perfect mirror would show the sun's disc as a point.
+    const float alpha = std::max(at.roughness * at.roughness, 0.02f);
+    const float diffuse = 1.0f - schlick(seen);
+    glm::vec3 light = at.glow;
+
+    const float facing = glm::dot(at.normal, to_sun_);
+    if (facing > 0.0f && glm::dot(at.geometric, to_sun_) > 0.0f && beam_ != glm::vec3(0.0f)) {
+        const glm::vec3 half = glm::normalize(to_sun_ + to_eye);
+        const float upright = glm::dot(half, at.normal);
+        const float shape = 1.0f + upright * upright * (alpha * alpha - 1.0f);
+        const float density = alpha * alpha / (kPi_f * std::max(shape * shape, 1e-9f));  // GGX, Walter et al. 2007
+        const float gloss = density * schlick(glm::dot(half, to_eye)) * ggx_visible(facing, alpha) *
+                            ggx_visible(seen, alpha) / (4.0f * facing * seen);
+        // No more than the sun's own radiance: where the eye looks along the surface the lobe has no bound.
+        const glm::vec3 mirrored = glm::min(gloss * facing * beam_, sky_->sun_radiance);
+        light += sun_share(at.place, at.geometric, numbers) *
+                 (at.colour * (diffuse * facing / kPi_f) * beam_ + mirrored);
+    }
+
+    const auto above = [&](glm::vec3 direction) {
+        const float below = glm::dot(direction, at.geometric);
+        return below < 0.0f ? direction - 2.0f * below * at.geometric : direction;
+    };
+    const glm::mat3 axes = axes_round(at.normal);
+    const std::uint32_t count = numbers.rays(kSkyRays);
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        constexpr float kBlur = 0.15f;
+        const glm::vec2 place = numbers.place(kOfSky, k, count), disc = on_disc(place);
+        sum += incoming(at, above(axes * glm::vec3(disc, std::sqrt(1.0f - place.x))), kBlur);
+    }
+    light += (diffuse / static_cast<float>(count)) * at.colour * sum;
+
+    // A facet by the distribution of those that the eye sees (Heitz 2018).
+    const glm::vec3 v = glm::transpose(axes) * to_eye;
+    const glm::vec3 stretched = glm::normalize(glm::vec3(alpha * v.x, alpha * v.y, v.z));
+    const glm::mat3 round = axes_round(stretched);
+    glm::vec2 disc = on_disc(numbers.place(kOfGloss, 0, 1));
+    const float part = 0.5f * (1.0f + stretched.z);
+    // The disc's axis that the facets' hemisphere cuts is upright.
+    const glm::vec3 side = std::abs(stretched.z) < 0.9999f
+                               ? glm::normalize(glm::vec3(-stretched.y, stretched.x, 0.0f))
+                               : round[0];
+    const glm::vec3 rise = glm::cross(stretched, side);
+    disc.y = glm::mix(std::sqrt(std::max(1.0f - disc.x * disc.x, 0.0f)), disc.y, part);
+    const glm::vec3 found = disc.x * side + disc.y * rise +
+                            std::sqrt(std::max(1.0f - glm::dot(disc, disc), 0.0f)) * stretched;
+    const glm::vec3 facet =
+        axes * glm::normalize(glm::vec3(alpha * found.x, alpha * found.y, std::max(found.z, 1e-4f)));
+    const glm::vec3 from = above(glm::normalize(2.0f * glm::dot(to_eye, facet) * facet - to_eye));
+    const float weight = schlick(glm::dot(to_eye, facet)) *
+                         ggx_visible(std::max(glm::dot(from, at.normal), 1e-3f), alpha);
+    light += weight * incoming(at, from, alpha);
+    return light;
+}
+
+glm::vec3 LitObjects::left_at_depth(float way_m) const {
+    return water_lets_through(*water_, std::max(way_m, 0.0f));
+}
+
+// The sun's ray is refracted by level water; the sky's light comes from a cone, the mean way through it is 1.17 of the depth (water.glsl).
+glm::vec3 LitObjects::radiance_in_water(const Ray& ray, const RayHit& hit) const {
+    constexpr float kSkySlant = 1.17f, kOfSky = 0.93f;  // the part of the sky's that enters
+    const Surface at = surface(ray, hit);
+    const float depth_m = bodies_[at.body].water_m - at.place.z;
+    const glm::vec3 to_sun =
+        glm::normalize(glm::vec3(glm::vec2(to_sun_) / kWaterIndex,
+                                 std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kWaterIndex * kWaterIndex))));
+    const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
+    glm::vec3 light = (0.6f + 0.4f * at.normal.z) * kOfSky * above * left_at_depth(kSkySlant * depth_m);
+    const float facing = glm::dot(at.normal, to_sun);
+    if (facing > 0.0f && glm::dot(at.geometric, to_sun) > 0.0f && beam_ != glm::vec3(0.0f) && to_sun_.z > 0.0f) {
+        const bool is_dark = is_blocked(
+            {.from = at.place + off_surface_m(at.place) * at.geometric, .towards = to_sun});
+        if (!is_dark)
+            light += (facing / to_sun.z * water_entering(*water_, to_sun_)) * sky_->sun_irradiance *
+                     left_at_depth(depth_m / to_sun.z);
+    }
+    return at.colour * light / kPi_f + at.glow;
+}
+
+bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,
+                                 float slope_variance) const {
+    const float farthest = 4.0f * std::sqrt(std::max(slope_variance, 0.0f)) + 0.02f;
+    const glm::vec2 mean = -glm::vec2(normal) / std::max(normal.z, 0.1f);
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+        const glm::vec3 way = body.centre - place;
+        const float distance = glm::length(way);
+        if (distance < 2.0f * body.radius) return true;
+        const glm::vec3 half = to_eye + way / distance;
+        if (half.z < 0.05f) return true;  // so low that no first order says anything
+        // By how much the slope is another for the body's rim, half as much again for what isn't first order.
+        const glm::vec2 slope = -glm::vec2(half) / half.z;
+        const float size = 1.5f * body.radius / distance * (1.0f + glm::length(slope)) / half.z;
+        return glm::length(slope - mean) <= farthest + size;
+    });
+}
+
+float LitObjects::mirrored_by_water(float cosine) {
+    const float g = std::sqrt(kWaterIndex * kWaterIndex + cosine * cosine - 1.0f);
+    const float across = (g - cosine) / (g + cosine),
+                along = (cosine * (g + cosine) - 1.0f) / (cosine * (g - cosine) + 1.0f);
+    return 0.5f * across * across * (1.0f + along * along);
+}
+
+bool LitObjects::is_near(const glm::vec3& place, float distance_m) const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+        return glm::length(body.centre - place) <= body.radius + distance_m;
+    });
+}
+
+}  // namespace pelagic

@@ -1,0 +1,144 @@
+// The bodies of a scene ([[objects]]) before a camera: where they are, what rays meet of them, and their light.
+//
+// Rays know the bodies alone. The sea is what pictures draw (render.h): where a ray goes down, it meets the plane of the water at the body.
+// Its light is that of all its waves, seen from afar.
+//
+// Coordinates: relative to the origin that place() is given [m], in its axes, on the earth where the sea is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/lighting/lighting.h"
+#include "core/lighting/sky.h"
+#include "core/lighting/water.h"
+#include "core/waves/frame.h"
+#include "pelagic/scene.h"
+#include "plugin/render/ray_scene.h"
+#include "plugin/render/sea_light.h"
+
+namespace pelagic {
+
+inline constexpr float kWaterIndex = 1.34f;  // as core/lighting/special.glsl has it
+
+// As mattes and messages call it.
+std::string object_name(const SceneObject& object);
+
+// Numbers for the rays of a sample: the same whatever is computed before. Those of a pixel's samples together are spread evenly
+// (Roberts 2018, R2), each pixel's and frame's in their own way (Cranley and Patterson 1976).
+struct SampleNumbers {
+    std::uint32_t x = 0, y = 0, frame = 0;  // of the pixel
+    std::uint32_t index = 0, all = 1;       // of the sample in it
+    // As many rays for the sample that a pixel's samples have at least so many together.
+    std::uint32_t rays(std::uint32_t of_pixel) const { return (of_pixel + all - 1) / all; }
+    // The n-th of `rays` in the unit square; what: each use has its own.
+    glm::vec2 place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const;
+};
+
+class LitObjects {
+  public:
+    // The scene, with objects whose meshes are there, must outlive it. Throws as make_ray_scene().
+    explicit LitObjects(const Scene& scene);
+
+    struct Sea {
+        glm::dvec2 origin_m{0.0};
+        double curvature_per_m = 0.0, rest_m = 0.0;  // rest_m: where it rests
+        bool has_motion = false;                     // frames beside this one are asked for, the query has Product::Velocity
+    };
+    // At a frame, also between two, of a sea that is set to its time. Query 0 is asked for what floats. On all threads.
+    template <class T>
+    void place(const Frame<T>& state, double frame, const Sea& sea);
+    // From now on their light is that of this sea and its sky, which must outlive the next calls.
+    template <class T>
+    void light(const SeaLight<T>& sea);
+
+    // The nearest body that a ray meets.
+    RayHit nearest(const Ray& ray) const;
+    // Whether a place of the sea is in a hull that keeps the water out.
+    bool is_dry(const glm::vec3& place) const;
+    // The share of the sun's disc that no body hides from a place, off whose surface `normal` points.
+    float sun_share(const glm::vec3& place, const glm::vec3& normal, const SampleNumbers& numbers) const;
+    // What a body sends back along a ray, to an eye in the air, or in the water before a body in it.
+    glm::vec3 radiance(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const;
+    glm::vec3 radiance_in_water(const Ray& ray, const RayHit& hit) const;
+    // The same for rays that the sea has mirrored: nothing hides the sky from it.
+    glm::vec3 estimate(const Ray& ray, const RayHit& hit) const;
+    // Whether facets of a sea with these hidden slopes (their variances' sum) mirror some body to the eye, 4 deviations far.
+    bool may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,
+                         float slope_variance) const;
+    // Whether a body may be nearer than this.
+    bool is_near(const glm::vec3& place, float distance_m) const;
+    // From how far a hundredth of a body's light comes through the water [m].
+    float sight_in_water_m() const { return sight_in_water_m_; }
+    // Of a level facet, Fresnel's term.
+    static float mirrored_by_water(float cosine);
+    // The sky's light that the sea mirrors where no body is.
+    glm::vec3 sky(const glm::vec3& direction) const;
+
+    bool is_holdout(const RayHit& hit) const { return bodies_[hit.body].holdout; }
+    // Unit, to the side from which the ray comes.
+    glm::vec3 normal(const Ray& ray, const RayHit& hit) const;
+    // Where the place of a hit is in the frame before, this one, and the next [m]; without has_motion all are this one.
+    std::array<glm::dvec3, 3> places(const Ray& ray, const RayHit& hit) const;
+
+    // What rays and meshes hold [bytes].
+    static std::size_t bytes(const Scene& scene);
+    std::size_t ray_bytes() const { return rays_->bytes(); }
+
+  private:
+    struct Placed {
+        glm::dmat3 axes{1.0};  // turn times scale
+        glm::dvec3 place_m{0.0};
+    };
+    struct Body {
+        const ObjectMesh* mesh = nullptr;
+        glm::vec3 colour{1.0f};
+        float glow = 0.0f;  // radiance of a material that glows wholly
+        bool holdout = false;
+        std::array<Placed, 3> placed;  // in the frame before, this one, and the next
+        glm::mat3 axes{1.0f}, into{1.0f};
+        glm::vec3 place{0.0f}, centre{0.0f};
+        float radius = 0.0f, water_m = 0.0f;
+    };
+    struct Surface {
+        glm::vec3 place{0.0f}, geometric{0.0f}, normal{0.0f};  // both to the ray's side
+        glm::vec3 colour{0.0f}, glow{0.0f};
+        float roughness = 0.5f;
+        int body = 0;
+    };
+
+    Surface surface(const Ray& ray, const RayHit& hit) const;
+    bool may_meet(const Ray& ray) const;
+    bool is_blocked(const Ray& ray) const;
+    glm::vec3 incoming(const Surface& at, const glm::vec3& from, float blur_rad) const;
+    glm::vec3 sea(const glm::vec3& to_eye, bool in_sun) const;
+    glm::vec3 sky(const glm::vec3& direction, float blur_rad) const;
+    glm::vec3 ambient(const glm::vec3& normal) const;
+    // Before a place so deep, of what falls on level water.
+    glm::vec3 left_at_depth(float way_m) const;
+
+    const Scene& scene_;
+    std::vector<Body> bodies_;
+    std::unique_ptr<RayScene> rays_;
+
+    const Sky* sky_ = nullptr;
+    const WaterBody* water_ = nullptr;
+    LightingChoice choice_;
+    glm::vec3 beam_{0.0f};  // irradiance across the sun's beam
+    glm::vec3 to_sun_{0.0f, 0.0f, 1.0f}, sun_side_{0.0f}, sun_rise_{0.0f};
+    static constexpr int kRows = 12, kColumns = 24;
+    std::array<std::vector<glm::vec3>, 2> sea_;  // by whether the sun shines on it: rows by the root of to_eye.z, columns by azimuth
+    glm::vec3 mean_sea_{0.0f};
+    float sight_in_water_m_ = 0.0f;
+};
+
+}  // namespace pelagic

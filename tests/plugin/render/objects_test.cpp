@@ -1,0 +1,506 @@
+// Bodies before the camera: where their light, their shadow and their mirror image are, of seas for which that is known.
+#include "plugin/render/objects.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/surface/view.h"
+#include "plugin/light/light.h"
+#include "plugin/render/cryptomatte.h"
+#include "plugin/render/render.h"
+#include "tests/plugin/render/uniform_sky.h"
+
+namespace pelagic {
+namespace {
+
+// Boxes by their corners, outwards; of a hull one lacks its top, of a dome its bottom.
+constexpr std::uint32_t kAll = 6, kTop = 5, kBottom = 4;
+struct Box {
+    glm::vec3 least, most;
+    std::uint32_t lacks = kAll;
+};
+std::shared_ptr<const ObjectMesh> boxes(const std::vector<Box>& of, const ObjectMaterial& material) {
+    ObjectMeshData mesh;
+    mesh.materials = {material};
+    for (const Box& box : of) {
+        const auto first = static_cast<std::uint32_t>(mesh.points_m.size());
+        for (int i = 0; i < 8; ++i)
+            mesh.points_m.emplace_back(i & 1 ? box.most.x : box.least.x, i & 2 ? box.most.y : box.least.y,
+                                       i & 4 ? box.most.z : box.least.z);
+        struct Face {
+            std::array<std::uint32_t, 4> corners;
+            glm::vec3 normal;
+        };
+        const std::array<Face, 6> faces{{{{0, 4, 6, 2}, {-1, 0, 0}},
+                                         {{1, 3, 7, 5}, {1, 0, 0}},
+                                         {{0, 1, 5, 4}, {0, -1, 0}},
+                                         {{2, 6, 7, 3}, {0, 1, 0}},
+                                         {{0, 2, 3, 1}, {0, 0, -1}},
+                                         {{4, 5, 7, 6}, {0, 0, 1}}}};
+        for (std::uint32_t f = 0; f < faces.size(); ++f) {
+            if (f == box.lacks) continue;
+            for (const auto& corners : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+                for (const int corner : corners) {
+                    mesh.triangles.push_back(first + faces[f].corners[corner]);
+                    mesh.normals.push_back(faces[f].normal);
+                }
+                mesh.material.push_back(0);
+            }
+        }
+    }
+    return std::make_shared<const ObjectMesh>(std::move(mesh));
+}
+std::shared_ptr<const ObjectMesh> box(glm::vec3 least, glm::vec3 most, const ObjectMaterial& material = {}) {
+    return boxes({{least, most}}, material);
+}
+
+// Black but for a radiance of 1 times the object's glow over a thousand.
+const ObjectMaterial kGlows{.name = "lamp", .colour = glm::vec3(0.0f), .roughness = 1.0f, .glow = glm::vec3(1.0f)};
+
+SceneObject object(std::shared_ptr<const ObjectMesh> mesh, const std::string& name = "box") {
+    SceneObject object;
+    object.name = name;
+    object.mesh = std::move(mesh);
+    return object;
+}
+
+Scene calm_scene() {
+    Scene scene;
+    scene.camera.resolution = {96, 64};
+    scene.quality.level = QualityLevel::Draft;
+    scene.waves.cascades = {{250.0, 64}, {30.0, 64}};
+    scene.sea.wind_speed_mps = 0.0;
+    scene.surface.earth_curvature = false;
+    scene.water.body = false;
+    return scene;
+}
+
+// A uniform sky, and the sun in it.
+Sky sunny_sky(double elevation_deg, double azimuth_deg, float angular_radius = 0.00465f) {
+    Sky sky = uniform_sky();
+    const double e = elevation_deg * kPi / 180.0, a = azimuth_deg * kPi / 180.0;
+    sky.sun_direction =
+        glm::vec3(glm::dvec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)));
+    sky.sun_angular_radius = angular_radius;
+    sky.sun_radiance = glm::vec3(20.0f / (static_cast<float>(kPi) * angular_radius * angular_radius));
+    sky.sun_irradiance = glm::vec3(20.0f * sky.sun_direction.z);
+    return sky;
+}
+
+RenderOptions options_of(const Scene& scene, const std::string& layers = "all", int samples = 1) {
+    RenderOptions options = render_options(scene);
+    options.layers = parse_picture_layers(layers);
+    options.samples = samples;
+    // A draft's sky has another fit of Fresnel's term.
+    options.lighting.sky_quality = SkyQuality::Nine;
+    options.lighting.fresnel = FresnelFit::Exact;
+    return options;
+}
+
+Picture picture_of(const Scene& scene, const RenderOptions& options, const Sky& sky = uniform_sky(),
+                   int frame = 1) {
+    Renderer renderer(scene, options, sky, std::array{frame});
+    Picture picture;
+    renderer.render(frame, picture);
+    return picture;
+}
+
+glm::vec3 vector_of(const Picture& picture, PictureLayer layer, std::size_t pixel) {
+    const std::vector<float>& of = picture.data[index(layer)];
+    return {of[3 * pixel], of[3 * pixel + 1], of[3 * pixel + 2]};
+}
+float number_of(const Picture& picture, PictureLayer layer, std::size_t pixel) {
+    return picture.data[index(layer)][pixel];
+}
+bool shows_object(const Picture& picture, std::size_t pixel) {
+    return !picture.sea[pixel] && number_of(picture, PictureLayer::Depth, pixel) < 1e9f;
+}
+std::size_t count_of(const Picture& picture, const auto& is) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) count += is(i);
+    return count;
+}
+glm::dvec2 middle_of(const Picture& picture, std::size_t pixel) {
+    const auto width = static_cast<std::size_t>(picture.resolution.x);
+    return {static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5};
+}
+
+double fresnel(double cosine) {
+    constexpr double n = 1.34;
+    const double t = std::sqrt(1.0 - (1.0 - cosine * cosine) / (n * n));
+    const double s = (cosine - n * t) / (cosine + n * t), p = (n * cosine - t) / (n * cosine + t);
+    return 0.5 * (s * s + p * p);
+}
+
+// Where a ray meets a box, by its slabs: infinite if nowhere.
+double distance_to_box(glm::dvec3 from, glm::dvec3 towards, glm::dvec3 least, glm::dvec3 most) {
+    double near = 0.0, far = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+        const double a = (least[i] - from[i]) / towards[i], b = (most[i] - from[i]) / towards[i];
+        near = std::max(near, std::min(a, b));
+        far = std::min(far, std::max(a, b));
+    }
+    return near <= far ? near : std::numeric_limits<double>::infinity();
+}
+
+// A glowing box on calm water shows where its slabs are, and upside down where those of its mirror image are. There Fresnel's part of
+// its light has taken the place of the sky's.
+TEST(Objects, StandAndAreMirroredWhereGeometrySays) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {1.0, -40.0, 6.0};
+    scene.objects = {object(box({-4, -3, -1}, {5, 3, 5}, kGlows))};
+    scene.objects[0].glow_cd_m2 = 12000.0;
+    const Picture picture = picture_of(scene, options_of(scene, "all", 2));
+    Scene without = scene;
+    without.objects.clear();
+    const Picture sea = picture_of(without, options_of(without, "all", 2));
+    const View view = view_at(scene.camera, 1);
+    int seen = 0, mirrored = 0, apart = 0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        const glm::dvec3 towards = view.direction(middle_of(picture, i));
+        const auto meets = [&](glm::dvec3 ray, double z) {
+            const glm::dvec3 from(view.position_m.x, view.position_m.y, z * view.position_m.z);
+            return distance_to_box(from, ray, {-4, -3, 0}, {5, 3, 5});
+        };
+        // The eye's own mirror image looks up.
+        const bool is_seen = meets(towards, 1.0) < 1e9;
+        const bool is_mirrored =
+            !is_seen && towards.z < 0.0 && meets({towards.x, towards.y, -towards.z}, -1.0) < 1e9;
+        const glm::vec3 object = vector_of(picture, PictureLayer::Object, i),
+                        reflection = vector_of(picture, PictureLayer::Reflection, i);
+        const glm::vec3 left = light_of(picture, i);
+        if (shows_object(picture, i) != is_seen) ++apart;
+        if (is_seen && shows_object(picture, i) && object.y > 11.999f) {
+            ++seen;
+            EXPECT_GE(left.y, 11.999f);
+            EXPECT_LE(left.y, 14.0f);  // what is mirrored by a rough skin
+        }
+        if (!is_mirrored || !picture.sea[i]) continue;
+        const double expected = fresnel(-towards.z) * (12.0 - static_cast<double>(kSkyRadiance));
+        if (std::abs(static_cast<double>(reflection.y) - expected) > 0.02 * expected + 0.02) {
+            ++apart;  // on an edge
+            continue;
+        }
+        ++mirrored;
+        EXPECT_EQ(picture.layers[i].sky, sea.layers[i].sky);
+    }
+    EXPECT_GT(seen, 250);
+    EXPECT_GT(mirrored, 150);
+    EXPECT_LT(apart, 90);  // what the edges of both are
+}
+
+// A body as bright as the sky behind it changes nothing where the sea mirrors it, however rough the sea is.
+TEST(Objects, AsBrightAsTheSkyAreNotSeenInTheWater) {
+    Scene scene = calm_scene();
+    scene.sea.wind_speed_mps = 9.0;
+    scene.camera.position_m = {0.0, -40.0, 5.0};
+    scene.objects = {object(box({-6, -3, -2}, {6, 3, 9}, kGlows))};
+    for (const double times : {1.0, 2.0}) {
+        scene.objects[0].glow_cd_m2 = times * 1000.0 * static_cast<double>(kSkyRadiance);
+        const Picture picture = picture_of(scene, options_of(scene));
+        double most = 0.0;
+        for (std::size_t i = 0; i < picture.layers.size(); ++i)
+            most = std::max(most, std::abs(static_cast<double>(vector_of(picture, PictureLayer::Reflection, i).y)));
+        EXPECT_EQ(most < 2e-5, times == 1.0) << most;
+        EXPECT_EQ(most > 0.2, times == 2.0) << most;
+    }
+}
+
+// The mean of what is mirrored on a rough sea: under a uniform sky a body that is all of the sky's other side takes as much as the sea
+// shows of it. A wall as long and as high as half the sky, as bright as nothing.
+TEST(Objects, TakeFromTheSeaWhatItShowsOfTheSkyBehindThem) {
+    Scene scene = calm_scene();
+    scene.sea.wind_speed_mps = 7.0;
+    scene.effects.whitecaps = false;
+    scene.camera.position_m = {0.0, -30.0, 8.0};
+    scene.camera.look_at_m = {0.0, 10.0, 0.0};
+    ObjectMaterial black;
+    black.colour = glm::vec3(0.0f);
+    // Round the whole sea and over it, but the eye is within.
+    scene.objects = {object(boxes({{{-4000, -4000, -3000}, {4000, 4000, 3000}, kBottom}}, black))};
+    RenderOptions options = options_of(scene, "all", 2);
+    options.lighting.second_reflection = false;
+    options.lighting.sky_quality = SkyQuality::Integral;
+    const Picture picture = picture_of(scene, options);
+    double taken = 0.0, sky = 0.0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        if (!picture.sea[i]) continue;
+        taken -= static_cast<double>(vector_of(picture, PictureLayer::Reflection, i).y);
+        sky += static_cast<double>(picture.layers[i].sky.y);
+    }
+    EXPECT_GT(sky, 100.0);
+    EXPECT_NEAR(taken / sky, 1.0, 0.02);
+}
+
+// A pole's shadow on calm water ends where the sun's ray over its top comes down, and is as blurred there as the sun's disc is wide.
+TEST(Objects, ShadowTheSeaBySunsDisc) {
+    Scene scene = calm_scene();
+    scene.camera.resolution = {128, 128};
+    scene.camera.position_m = {6.0, 0.0, 60.0};
+    scene.camera.look_at_m = {6.0, 0.0, 0.0};
+    scene.camera.fov_deg = 30.0;
+    scene.objects = {object(box({-60, -40, 8}, {0, 40, 10}))};
+    constexpr double kElevation = 40.0;
+    constexpr float kRadius = 0.05f;
+    const Sky sky = sunny_sky(kElevation, 180.0, kRadius);  // the shadow falls to +x
+    const Picture picture = picture_of(scene, options_of(scene, "all", 3), sky);
+    // Along +x the upper edge casts it: x = height / tan of the elevation of the disc's place.
+    const double e = kElevation * kPi / 180.0, end = 10.0 / std::tan(e);
+    const auto row = static_cast<std::size_t>(picture.resolution.y / 2);
+    double width = 0.0;
+    const double step = 2.0 * 60.0 * std::tan(15.0 * kPi / 180.0) / picture.resolution.x;
+    double crossing = 0.0, before = 0.0;
+    for (int x = 0; x < picture.resolution.x; ++x) {
+        const std::size_t i = row * static_cast<std::size_t>(picture.resolution.x) + static_cast<std::size_t>(x);
+        const double at = vector_of(picture, PictureLayer::Position, i).x;
+        if (!picture.sea[i] || at < 4.0) continue;
+        double share = 0.0;  // over rows, of chance
+        for (int r = -20; r < 20; ++r)
+            share += static_cast<double>(number_of(
+                         picture, PictureLayer::Shadow,
+                         i + static_cast<std::size_t>(r * picture.resolution.x))) / 40.0;
+        if (before < 0.5 && share >= 0.5) crossing = at;
+        if (share > 0.02 && share < 0.98) width += step;
+        before = share;
+    }
+    EXPECT_NEAR(crossing, end, 1.5 * step);
+    // From the disc's lowest place to its highest; the outer fiftieth of light is a tenth of that on each side.
+    const double penumbra = 10.0 / std::tan(e - kRadius) - 10.0 / std::tan(e + kRadius);
+    EXPECT_NEAR(width, 0.84 * penumbra, 0.2 * penumbra);
+}
+
+// In the full shadow all that the sea shows of the sun is gone, and nothing of the sky's light.
+TEST(Objects, LeaveTheSkysLightInTheirShadow) {
+    Scene scene = calm_scene();
+    scene.sea.wind_speed_mps = 8.0;
+    scene.water.body = true;
+    scene.camera.position_m = {20.0, 0.0, 25.0};
+    scene.camera.look_at_m = {10.0, 0.0, 0.0};
+    scene.objects = {object(box({-400, -200, 30}, {-1, 200, 500}))};
+    const Sky sky = sunny_sky(60.0, 180.0);
+    Sky dark = sky;
+    dark.sun_radiance = dark.sun_irradiance = glm::vec3(0.0f);
+    const Picture shadowed = picture_of(scene, options_of(scene), sky);
+    scene.objects.clear();
+    const Picture unlit = picture_of(scene, options_of(scene), dark), lit = picture_of(scene, options_of(scene), sky);
+    std::size_t in_shadow = 0;
+    for (std::size_t i = 0; i < lit.layers.size(); ++i) {
+        if (!lit.sea[i] || number_of(shadowed, PictureLayer::Shadow, i) > 0.0f) continue;
+        ++in_shadow;
+        ASSERT_EQ(shadowed.layers[i].sun, glm::vec3(0.0f));
+        ASSERT_EQ(shadowed.layers[i].sea, unlit.layers[i].sea);
+        ASSERT_EQ(shadowed.layers[i].sky, lit.layers[i].sky);
+        ASSERT_GT(lit.layers[i].sea.y, shadowed.layers[i].sea.y);
+    }
+    EXPECT_GT(in_shadow, 300u);
+}
+
+// An open hull that lies 1 m deep in the water: inside one sees its bottom.
+TEST(Objects, KeepTheWaterOutOfTheirHulls) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, -6.0, 12.0};
+    scene.camera.look_at_m = {0.0, 0.0, 0.0};
+    scene.camera.fov_deg = 40.0;
+    const auto hull = boxes({{{-3, -2, -1}, {3, 2, 1}, kTop}}, {});
+    // A raft on piles keeps none out.
+    const auto piles = boxes({{{-3, -2, -1}, {-2.8f, -1.8f, 1}},
+                              {{2.8f, -2, -1}, {3, -1.8f, 1}},
+                              {{-3, 1.8f, -1}, {-2.8f, 2, 1}},
+                              {{2.8f, 1.8f, -1}, {3, 2, 1}},
+                              {{-3, -2, -1.2f}, {3, 2, -1}}},
+                             {});
+    const std::size_t middle =
+        static_cast<std::size_t>(scene.camera.resolution.y / 2 * scene.camera.resolution.x + scene.camera.resolution.x / 2);
+    scene.objects = {object(hull)};
+    const Picture dry = picture_of(scene, options_of(scene));
+    EXPECT_FALSE(dry.sea[middle]);
+    EXPECT_NEAR(vector_of(dry, PictureLayer::Position, middle).z, -1.0f, 1e-3f);
+    EXPECT_EQ(count_of(dry, [&](std::size_t i) {
+                  const glm::vec3 at = vector_of(dry, PictureLayer::Position, i);
+                  return dry.sea[i] && std::abs(at.x) < 2.99f && std::abs(at.y) < 1.99f;
+              }),
+              0u);
+    scene.objects = {object(piles)};
+    EXPECT_TRUE(picture_of(scene, options_of(scene)).sea[middle]);
+}
+
+// A holdout is black, with alpha 0, but the sea has its shadow and its mirror image.
+TEST(Objects, AsHoldoutsAreLeftOut) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, -40.0, 6.0};
+    scene.objects = {object(box({-5, -3, -1}, {5, 3, 5}))};
+    const Sky sky = sunny_sky(50.0, 90.0);
+    RenderOptions options = options_of(scene);
+    options.alpha = true;
+    const Picture body = picture_of(scene, options, sky);
+    scene.objects[0].holdout = true;
+    const Picture held = picture_of(scene, options, sky);
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < body.layers.size(); ++i) {
+        if (shows_object(body, i)) {
+            ++out;
+            ASSERT_EQ(body.alpha[i], 1.0f);
+            ASSERT_GT(light_of(body, i).y, 0.0f);
+            ASSERT_EQ(held.alpha[i], 0.0f);
+            ASSERT_EQ(light_of(held, i), glm::vec3(0.0f));
+        } else {
+            ASSERT_EQ(held.alpha[i], body.alpha[i]);
+            ASSERT_EQ(light_of(held, i), light_of(body, i));
+        }
+    }
+    EXPECT_GT(out, 200u);
+    EXPECT_GT(count_of(held, [&](std::size_t i) { return vector_of(held, PictureLayer::Reflection, i).y != 0.0f; }), 50u);
+    EXPECT_GT(count_of(held, [&](std::size_t i) { return number_of(held, PictureLayer::Shadow, i) == 0.0f && held.sea[i]; }), 20u);
+}
+
+// The earth hides what stands low and far; and waves what they are higher than.
+TEST(Objects, AreHiddenByTheSea) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, 0.0, 2.0};
+    scene.camera.look_at_m = {0.0, 1000.0, 2.0};
+    scene.camera.fov_deg = 2.0;
+    scene.objects = {object(box({-200, 0, -2}, {200, 20, 8}))};
+    scene.objects[0].north_m = 20000.0;
+    const auto seen = [&] {
+        const Picture picture = picture_of(scene, options_of(scene));
+        return count_of(picture, [&](std::size_t i) { return shows_object(picture, i); });
+    };
+    const std::size_t flat = seen();
+    EXPECT_GT(flat, 40u);
+    scene.surface.earth_curvature = true;  // over the horizon, at 5 km, 20 km are another 17 m lower
+    EXPECT_EQ(seen(), 0u);
+    scene.objects[0].up_m = 17.0;
+    EXPECT_GT(seen(), flat / 4);
+
+    Scene storm = calm_scene();
+    storm.sea.wind_speed_mps = 20.0;
+    storm.camera.position_m = {0.0, -60.0, 8.0};
+    storm.objects = {object(box({-3, -3, -30}, {3, 3, -20}))};
+    const Picture below = picture_of(storm, options_of(storm));
+    EXPECT_EQ(count_of(below, [&](std::size_t i) { return shows_object(below, i); }), 0u);
+}
+
+// All layers of light add up, nothing is nowhere, and threads are no matter.
+TEST(Objects, AddUpOnAnyNumberOfThreads) {
+    Scene scene = calm_scene();
+    scene.sea.wind_speed_mps = 12.0;
+    scene.water.body = true;
+    scene.effects.spray = true;
+    scene.camera.position_m = {0.0, -14.0, 2.5};
+    scene.camera.look_at_m = {0.0, 0.0, 1.5};
+    ObjectMaterial varnish{.name = "varnish", .colour = glm::vec3(0.6f, 0.2f, 0.1f), .roughness = 0.1f};
+    scene.objects = {object(box({-4, -2, -1}, {4, 2, 2}, varnish), "hull"), object(box({2, -1, 1}, {3, 1, 6}), "mast"),
+                     object(box({-9, -1, -1}, {-6, 1, 2}), "raft")};
+    scene.objects[0].floats = scene.objects[2].floats = true;
+    const Sky sky = daylight_sky({.sun_elevation_deg = 3.0, .sun_azimuth_deg = 80.0}, 64);
+    std::vector<Picture> pictures;
+    for (const int threads : {1, 2}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+        pictures.push_back(picture_of(scene, options_of(scene, "all", 2), sky));
+    }
+    for (std::size_t layer = 0; layer < kPictureLayerCount; ++layer)
+        EXPECT_EQ(pictures[0].data[layer].size(), pictures[1].data[layer].size());
+    std::size_t reflected = 0;
+    for (std::size_t i = 0; i < pictures[0].layers.size(); ++i) {
+        const Picture& picture = pictures[0];
+        ASSERT_EQ(std::memcmp(&picture.layers[i], &pictures[1].layers[i], sizeof(SeaRadiance)), 0);
+        const glm::vec3 sum = light_of(picture, i), reflection = vector_of(picture, PictureLayer::Reflection, i);
+        const glm::vec3 parts =
+            radiance_of(picture.layers[i]) + vector_of(picture, PictureLayer::Object, i) + reflection;
+        reflected += reflection.y != 0.0f;
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_TRUE(std::isfinite(sum[c]) && sum[c] >= 0.0f) << i;
+            ASSERT_NEAR(parts[c], sum[c], 1e-5f * (1.0f + sum[c]));
+        }
+    }
+    EXPECT_GT(reflected, 100u);
+    for (std::size_t layer = 0; layer < kPictureLayerCount; ++layer) {
+        const std::vector<float>&one = pictures[0].data[layer], &two = pictures[1].data[layer];
+        ASSERT_FALSE(kPictureLayers[layer].of_objects && one.empty());
+        if (one.empty()) continue;
+        EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(float)), 0) << layer;
+    }
+}
+
+// A body that floats follows long waves: where it lies on the water it shows as much above it as in a calm.
+TEST(Objects, FloatOnTheWaves) {
+    Scene scene = calm_scene();
+    scene.sea.wind_speed_mps = 14.0;
+    scene.camera.resolution = {32, 24};
+    scene.camera.position_m = {0.0, -30.0, 30.0};
+    scene.objects = {object(box({-1, -1, -1}, {1, 1, 1}))};
+    scene.objects[0].floats = true;
+    const RenderOptions options = options_of(scene);
+    std::vector<int> frames;
+    for (int frame = 1; frame <= 241; frame += 24) frames.push_back(frame);
+    Renderer renderer(scene, options, uniform_sky(), frames);
+    float lowest = 1e9f, highest = -1e9f;
+    for (const int frame : frames) {
+        Picture picture;
+        renderer.render(frame, picture);
+        float top = -1e9f, water = 0.0f, near = 1e9f;
+        for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+            const glm::vec3 at = vector_of(picture, PictureLayer::Position, i);
+            if (shows_object(picture, i)) top = std::max(top, at.z);
+            if (const float away = glm::length(glm::vec2(at)); picture.sea[i] && away < near) {
+                near = away;
+                water = at.z;
+            }
+        }
+        ASSERT_LT(near, 3.0f);
+        EXPECT_NEAR(top, water + 1.0f, 0.6f) << frame;
+        lowest = std::min(lowest, top);
+        highest = std::max(highest, top);
+    }
+    EXPECT_GT(highest - lowest, 1.0f);
+}
+
+// The names' identifiers as the specification's own examples have them, and shares that are what the samples show.
+TEST(Objects, HaveMattesByTheirNames) {
+    EXPECT_EQ(murmur_hash(""), 0u);
+    EXPECT_EQ(murmur_hash("hello"), 0x248bfa47u);
+    EXPECT_EQ(murmur_hash("hello, world"), 0x149bbb7fu);
+    EXPECT_EQ(murmur_hash("The quick brown fox jumps over the lazy dog"), 0x2e4ff723u);
+    for (int i = 0; i < 4096; ++i) {
+        const auto bits = std::bit_cast<std::uint32_t>(matte_id("object" + std::to_string(i)));
+        const std::uint32_t exponent = bits >> 23 & 0xff;
+        ASSERT_TRUE(exponent > 0 && exponent < 255);
+    }
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, -20.0, 4.0};
+    scene.objects = {object(box({-3, -1, -1}, {0, 1, 3}), "port"), object(box({0, -1, -1}, {3, 1, 3}), "starboard")};
+    const Picture picture = picture_of(scene, options_of(scene, "all", 4));
+    std::map<float, double> shares;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        const float* const of = picture.data[index(PictureLayer::Cryptomatte)].data() + kMatteFloats * i;
+        float sum = 0.0f;
+        for (std::size_t rank = 0; rank < kMatteRanks; ++rank) {
+            const float id = of[2 * rank], share = of[2 * rank + 1];
+            sum += share;
+            if (share > 0.0f) shares[id] += static_cast<double>(share);
+            ASSERT_TRUE(rank == 0 || share <= of[2 * rank - 1]);
+            ASSERT_TRUE(share > 0.0f || id == 0.0f);
+        }
+        ASSERT_LE(sum, 1.00001f);
+    }
+    EXPECT_EQ(shares.size(), 3u);
+    EXPECT_GT(shares[matte_id("port")], 100.0);
+    EXPECT_NEAR(shares[matte_id("port")], shares[matte_id("starboard")], 0.03 * shares[matte_id("port")]);
+    EXPECT_GT(shares[matte_id("sea")], 1000.0);
+}
+
+}  // namespace
+}  // namespace pelagic

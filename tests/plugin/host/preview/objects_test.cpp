@@ -228,9 +228,10 @@ TEST(PreviewsObjects, AreMirroredByCalmWater) {
 
 // What waves show of a lamp above them, against the rays of pelagic render, in squares of pixels where either shows some.
 void compare_images(const char* name, double wind_mps) {
-    constexpr int kSide = 10;
+    constexpr int kSide = 6;
     Scene scene = with_box(object_scene(wind_mps, 35.0), {.name = "lamp", .colour = glm::vec3(0.0f), .roughness = 1.0f, .glow = glm::vec3(1.0f)});
     scene.objects.front().glow_cd_m2 = 50e3;
+    scene.camera.resolution = {160, 90};
     scene.objects.front().up_m = 5.5;  // all of it above the crests: the preview shows nothing through the surface
     ObjectStage stage(scene);
     const Picture with = stage.with_objects(), without = stage.without();
@@ -266,9 +267,37 @@ void compare_images(const char* name, double wind_mps) {
     EXPECT_NEAR(part(5), 1.0, 0.1);
     EXPECT_NEAR(all_ours / all_theirs, 1.0, 0.1);
 }
+// Ten seconds: no other test sees where rays go that waves have mirrored, and how wide.
 TEST(PreviewsObjects, AreMirroredByWavesAsRaysSay) {
     compare_images("trade wind", 8.0);
     compare_images("storm", 18.0);
+}
+
+// In the sun and in the shade, with the water's light from below. The preview doesn't know that water in an object's shadow sends it less
+// light: what the shade shows is a tenth brighter.
+TEST(PreviewsObjects, AreLitAsRaysSay) {
+    Scene scene = with_box(object_scene(8.0, 35.0));
+    scene.camera.resolution = {160, 90};
+    for (const double azimuth_deg : {30.0, 250.0}) {
+        scene.light.sun_azimuth_deg = azimuth_deg;
+        ObjectStage stage(scene);
+        const Picture with = stage.with_objects();
+        RenderOptions options = render_options(scene);
+        options.samples = 1;
+        Picture rays;
+        Renderer(scene, options, stage.sky(), std::array{1}).render(1, rays);
+        const std::vector<float>&ours = with.data[index(PictureLayer::Object)],
+                                &theirs = rays.data[index(PictureLayer::Object)];
+        std::vector<double> ratios;
+        for (std::size_t i = 1; i < ours.size(); i += 3)
+            if (ours[i] > 0.0f && theirs[i] > 0.0f) ratios.push_back(static_cast<double>(ours[i] / theirs[i]));
+        ASSERT_GT(ratios.size(), 500u);
+        std::ranges::sort(ratios);
+        const double median = ratios[ratios.size() / 2];
+        std::printf("    sun at %.0f: median %.3f of the rays', 80 %% between %.3f and %.3f\n", azimuth_deg, median,
+                    ratios[ratios.size() / 10], ratios[ratios.size() * 9 / 10]);
+        EXPECT_NEAR(median, 1.0, 0.15);
+    }
 }
 
 TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {

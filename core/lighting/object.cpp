@@ -68,14 +68,12 @@ ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& 
             if (glm::dot(u, u) > 1.0f) continue;
             const glm::vec3 d = sky_map_direction(u);
             const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
-            const glm::vec3 light =
-                choice.sky ? solid_angle * sky.map.open_radiance(u) : glm::vec3(0.0f);
+            const glm::vec3 light = choice.sky ? solid_angle * sky.map.open_radiance(u) : glm::vec3(0.0f);
             add(made, d, light);
             add(made, mirrored(d), reflected(d.z) * light + solid_angle * made.water);
         }
     if (choice.sun && sky.sun_direction.z > 0.0f)
-        add(made, mirrored(sky.sun_direction),
-            reflected(sky.sun_direction.z) * beam_of(sky));
+        add(made, mirrored(sky.sun_direction), reflected(sky.sun_direction.z) * beam_of(sky));
     return made;
 }
 
@@ -85,7 +83,8 @@ glm::vec3 object_irradiance(const ObjectSurroundings& light, glm::vec3 normal) {
 }
 
 glm::vec3 object_of_sun(const ObjectLook& look, const Sky& sky, glm::vec3 to_eye, glm::vec3 normal) {
-    return shading::object_of_sun(to_eye, sky.sun_direction, normal, glsl(look), sky.sun_radiance, beam_of(sky));
+    return shading::object_of_sun(to_eye, sky.sun_direction, normal, glsl(look), sky.sun_radiance,
+                                  beam_of(sky));
 }
 
 glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3 irradiance,

@@ -66,26 +66,25 @@ PlacedObject place_object(const Frame<T>& state, const Scene& scene, const Scene
     Results<T> results;
     results.set(Product::Position, {position.data()});
     if (at.late_s != 0.0) results.set(Product::Velocity, {velocity.data()});
-    evaluate(state, at.query,
-             Points<T>{.origin_m = origin_m,
-                       .count = rest.size(),
-                       .rest_m = {rest.data()},
-                       .cell_m = {cell_m.data()}},
-             results);
+    evaluate(
+        state, at.query,
+        Points<T>{
+            .origin_m = origin_m, .count = rest.size(), .rest_m = {rest.data()}, .cell_m = {cell_m.data()}},
+        results);
     std::array<glm::dvec3, kAlong * kAcross> points;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const glm::dvec3 there = glm::dvec3(position[k]) + at.late_s * glm::dvec3(velocity[k]);
         points[k] = {glm::dot(glm::dvec2(there), ahead), glm::dot(glm::dvec2(there), port), there.z};
     }
     const WaterPlane plane = plane_through(points);
-    const glm::dvec3 up =
-        glm::normalize(glm::dvec3(-(plane.slope.x * ahead + plane.slope.y * port), 1.0));
+    const glm::dvec3 up = glm::normalize(glm::dvec3(-(plane.slope.x * ahead + plane.slope.y * port), 1.0));
     placed.water_m = plane.height_m + at.rest_m;
     for (int axis = 0; axis < 3; ++axis) pose.turn[axis] = from_level(pose.turn[axis], up);
     pose.place_m = glm::dvec3(origin_m, placed.water_m) + pose.place_m.z * up;
     return placed;
 }
-template PlacedObject place_object(const Frame<float>&, const Scene&, const SceneObject&, const ObjectMoment&);
+template PlacedObject place_object(const Frame<float>&, const Scene&, const SceneObject&,
+                                   const ObjectMoment&);
 template PlacedObject place_object(const Frame<double>&, const Scene&, const SceneObject&,
                                    const ObjectMoment&);
 

@@ -58,7 +58,8 @@ std::string object_name(const SceneObject& object) {
 }
 
 glm::vec2 SampleNumbers::place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const {
-    constexpr std::uint64_t kKey = 0x6f626a65637473;  // "objects": no other use of philox() shares its numbers
+    constexpr std::uint64_t kKey =
+        0x6f626a65637473;  // "objects": no other use of philox() shares its numbers
     const auto shift = philox({x, y, frame, what}, kKey);
     const std::uint32_t at = index * rays + n;
     const auto unit = [](std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
@@ -118,8 +119,9 @@ void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
         body.place = glm::vec3(now.place_m);
         body.centre = glm::vec3(now.place_m + now.axes * (0.5 * (least + most)));
         // A little more, for what single precision makes of it.
-        body.radius = 1.001f * static_cast<float>(glm::length(now.axes[0]) * 0.5 * glm::length(most - least)) +
-                      1e-5f * glm::length(body.centre);
+        body.radius =
+            1.001f * static_cast<float>(glm::length(now.axes[0]) * 0.5 * glm::length(most - least)) +
+            1e-5f * glm::length(body.centre);
         transforms.push_back({body.axes[0], body.axes[1], body.axes[2], body.place});
     }
     rays_->place(transforms);
@@ -157,7 +159,8 @@ void LitObjects::light(const SeaLight<T>& sea) {
     float all = 0.0f;
     for (int row = 0; row < kRows; ++row) {
         const float root = static_cast<float>(row) / (kRows - 1), part = root * root * root;  // z dz
-        for (int column = 0; column < kColumns; ++column) mean_sea_ += part * sea_[1][row * kColumns + column];
+        for (int column = 0; column < kColumns; ++column)
+            mean_sea_ += part * sea_[1][row * kColumns + column];
         all += part * kColumns;
     }
     mean_sea_ /= all;
@@ -175,8 +178,8 @@ bool LitObjects::may_meet(const Ray& ray) const {
         const glm::vec3 way = body.centre - ray.from;
         const float along = glm::dot(way, ray.towards), away2 = glm::dot(way, way),
                     radius2 = body.radius * body.radius;
-        return away2 <= radius2 || (along > 0.0f && away2 - along * along <= radius2 &&
-                                    along - body.radius <= ray.farthest_m);
+        return away2 <= radius2 ||
+               (along > 0.0f && away2 - along * along <= radius2 && along - body.radius <= ray.farthest_m);
     });
 }
 
@@ -267,7 +270,8 @@ glm::vec3 LitObjects::normal(const Ray& ray, const RayHit& hit) const {
 
 std::array<glm::dvec3, 3> LitObjects::places(const Ray& ray, const RayHit& hit) const {
     const Body& body = bodies_[hit.body];
-    const glm::dvec3 now = glm::dvec3(ray.from) + static_cast<double>(hit.distance_m) * glm::dvec3(ray.towards);
+    const glm::dvec3 now =
+        glm::dvec3(ray.from) + static_cast<double>(hit.distance_m) * glm::dvec3(ray.towards);
     const glm::dvec3 local = glm::inverse(body.placed[1].axes) * (now - body.placed[1].place_m);
     std::array<glm::dvec3, 3> places{};
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -344,7 +348,8 @@ glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNu
         const glm::vec3 half = glm::normalize(to_sun_ + to_eye);
         const float upright = glm::dot(half, at.normal);
         const float shape = 1.0f + upright * upright * (alpha * alpha - 1.0f);
-        const float density = alpha * alpha / (kPi_f * std::max(shape * shape, 1e-9f));  // GGX, Walter et al. 2007
+        const float density =
+            alpha * alpha / (kPi_f * std::max(shape * shape, 1e-9f));  // GGX, Walter et al. 2007
         const float gloss = density * schlick(glm::dot(half, to_eye)) * ggx_visible(facing, alpha) *
                             ggx_visible(seen, alpha) / (4.0f * facing * seen);
         // No more than the sun's own radiance: where the eye looks along the surface the lobe has no bound.
@@ -379,13 +384,13 @@ glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNu
                                : round[0];
     const glm::vec3 rise = glm::cross(stretched, side);
     disc.y = glm::mix(std::sqrt(std::max(1.0f - disc.x * disc.x, 0.0f)), disc.y, part);
-    const glm::vec3 found = disc.x * side + disc.y * rise +
-                            std::sqrt(std::max(1.0f - glm::dot(disc, disc), 0.0f)) * stretched;
+    const glm::vec3 found =
+        disc.x * side + disc.y * rise + std::sqrt(std::max(1.0f - glm::dot(disc, disc), 0.0f)) * stretched;
     const glm::vec3 facet =
         axes * glm::normalize(glm::vec3(alpha * found.x, alpha * found.y, std::max(found.z, 1e-4f)));
     const glm::vec3 from = above(glm::normalize(2.0f * glm::dot(to_eye, facet) * facet - to_eye));
-    const float weight = schlick(glm::dot(to_eye, facet)) *
-                         ggx_visible(std::max(glm::dot(from, at.normal), 1e-3f), alpha);
+    const float weight =
+        schlick(glm::dot(to_eye, facet)) * ggx_visible(std::max(glm::dot(from, at.normal), 1e-3f), alpha);
     light += weight * incoming(at, from, alpha);
     return light;
 }
@@ -399,15 +404,16 @@ glm::vec3 LitObjects::radiance_in_water(const Ray& ray, const RayHit& hit) const
     constexpr float kSkySlant = 1.17f, kOfSky = 0.93f;  // the part of the sky's that enters
     const Surface at = surface(ray, hit);
     const float depth_m = bodies_[at.body].water_m - at.place.z;
-    const glm::vec3 to_sun =
-        glm::normalize(glm::vec3(glm::vec2(to_sun_) / kWaterIndex,
-                                 std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kWaterIndex * kWaterIndex))));
+    const glm::vec3 to_sun = glm::normalize(
+        glm::vec3(glm::vec2(to_sun_) / kWaterIndex,
+                  std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kWaterIndex * kWaterIndex))));
     const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
     glm::vec3 light = (0.6f + 0.4f * at.normal.z) * kOfSky * above * left_at_depth(kSkySlant * depth_m);
     const float facing = glm::dot(at.normal, to_sun);
-    if (facing > 0.0f && glm::dot(at.geometric, to_sun) > 0.0f && beam_ != glm::vec3(0.0f) && to_sun_.z > 0.0f) {
-        const bool is_dark = is_blocked(
-            {.from = at.place + off_surface_m(at.place) * at.geometric, .towards = to_sun});
+    if (facing > 0.0f && glm::dot(at.geometric, to_sun) > 0.0f && beam_ != glm::vec3(0.0f) &&
+        to_sun_.z > 0.0f) {
+        const bool is_dark =
+            is_blocked({.from = at.place + off_surface_m(at.place) * at.geometric, .towards = to_sun});
         if (!is_dark)
             light += (facing / to_sun.z * water_entering(*water_, to_sun_)) * sky_->sun_irradiance *
                      left_at_depth(depth_m / to_sun.z);

@@ -254,7 +254,8 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
 }
 
 ShaderVariant ShaderVariant::of_object_shadow() {
-    return {{}, {"plugin/host/gpu/object_shadow_vertex.glsl"}, {"plugin/host/gpu/object_shadow_fragment.glsl"}};
+    return {
+        {}, {"plugin/host/gpu/object_shadow_vertex.glsl"}, {"plugin/host/gpu/object_shadow_fragment.glsl"}};
 }
 
 ShaderVariant ShaderVariant::of_drops(bool layers) {

@@ -98,11 +98,16 @@ std::vector<Uniform> air_uniforms(const Air& air) {
 }
 
 std::vector<Uniform> surroundings_uniforms(const ObjectSurroundings& light) {
-    return {vector("object_flat_part", light.flat_part), vector("object_x", light.x),
-            vector("object_y", light.y),                 vector("object_z", light.z),
-            vector("object_xy", light.xy),               vector("object_yz", light.yz),
-            vector("object_zz", light.zz),               vector("object_xz", light.xz),
-            vector("object_xx_yy", light.xx_yy),         vector("object_water", light.water)};
+    return {vector("object_flat_part", light.flat_part),
+            vector("object_x", light.x),
+            vector("object_y", light.y),
+            vector("object_z", light.z),
+            vector("object_xy", light.xy),
+            vector("object_yz", light.yz),
+            vector("object_zz", light.zz),
+            vector("object_xz", light.xz),
+            vector("object_xx_yy", light.xx_yy),
+            vector("object_water", light.water)};
 }
 
 std::vector<Uniform> spray_uniforms(const Spray& spray) {

@@ -48,14 +48,15 @@ std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& s
     std::vector<DrawnObject> drawn;
     for (const SceneObject& object : scene.objects) {
         const auto [pose, water_m] = place_object(state, scene, object, at);
-        drawn.push_back({.mesh = object.mesh,
-                         .place_m = pose.place_m,
-                         .axes = pose.scale * pose.turn,
-                         .water_m = water_m,
-                         .colour = glm::vec3(object.colour),
-                         // Radiance 1 is a thousand cd/m² by daylight; a sky's picture counts as if it were so.
-                         .glow = static_cast<float>(1e-3 * object.glow_cd_m2),
-                         .holdout = object.holdout});
+        drawn.push_back(
+            {.mesh = object.mesh,
+             .place_m = pose.place_m,
+             .axes = pose.scale * pose.turn,
+             .water_m = water_m,
+             .colour = glm::vec3(object.colour),
+             // Radiance 1 is a thousand cd/m² by daylight; a sky's picture counts as if it were so.
+             .glow = static_cast<float>(1e-3 * object.glow_cd_m2),
+             .holdout = object.holdout});
     }
     return drawn;
 }
@@ -64,7 +65,8 @@ void DrawnObjects::set(std::vector<DrawnObject> objects, const ObjectSurrounding
     objects_ = std::move(objects);
     surroundings_ = surroundings_uniforms(surroundings);
     std::erase_if(meshes_, [&](const Mesh& mesh) {
-        return std::ranges::none_of(objects_, [&](const DrawnObject& object) { return object.mesh == mesh.of; });
+        return std::ranges::none_of(objects_,
+                                    [&](const DrawnObject& object) { return object.mesh == mesh.of; });
     });
     for (const DrawnObject& object : objects_) {
         if (std::ranges::any_of(meshes_, [&](const Mesh& mesh) { return mesh.of == object.mesh; })) continue;
@@ -128,8 +130,7 @@ void DrawnObjects::place(const Eye& eye) {
         for (int axis = 0; axis < 3; ++axis)
             placed.grid_from[axis] = glm::dvec4(from_level(object.axes[axis], vertical), 0.0);
         placed.grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
-        placed.water_m =
-            on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z;
+        placed.water_m = on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z;
     }
     fit_shadow();
     fit_mirror();
@@ -157,8 +158,7 @@ void DrawnObjects::fit_shadow() {
     most += room;
     shadow_reach_m_ = most - least;
     glm::dmat4 turn(1.0);
-    for (int axis = 0; axis < 3; ++axis)
-        turn[axis] = glm::dvec4(side[axis], up[axis], ahead[axis], 0.0);
+    for (int axis = 0; axis < 3; ++axis) turn[axis] = glm::dvec4(side[axis], up[axis], ahead[axis], 0.0);
     glm::dmat4 size(1.0);
     for (int axis = 0; axis < 3; ++axis) size[axis][axis] = 1.0 / shadow_reach_m_[axis];
     shadow_from_grid_ = size * translation(-least) * turn;
@@ -201,7 +201,8 @@ void DrawnObjects::fit_mirror() {
     const int largest = std::min(kMirroredSide, eye_.largest_texture);
     const glm::dvec2 span = glm::max(most - least, glm::dvec2(1e-4));
     glm::ivec2 size;
-    for (int axis = 0; axis < 2; ++axis) {  // sides of powers of two, so that a moving camera seldom needs others
+    for (int axis = 0; axis < 2;
+         ++axis) {  // sides of powers of two, so that a moving camera seldom needs others
         size[axis] = 16;
         while (size[axis] < largest && size[axis] * pixel < span[axis]) size[axis] *= 2;
     }

@@ -185,9 +185,8 @@ void LiveSea::compute_frames() {
         return floor;
     };
     const auto objects_in = [&](double at) {
-        return std::make_shared<const std::vector<DrawnObject>>(
-            drawn_objects(*frame, tried->scene,
-                          {.query = tried->query, .frame = at, .rest_m = tried->drawn->rest_m()}));
+        return std::make_shared<const std::vector<DrawnObject>>(drawn_objects(
+            *frame, tried->scene, {.query = tried->query, .frame = at, .rest_m = tried->drawn->rest_m()}));
     };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {

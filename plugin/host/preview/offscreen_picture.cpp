@@ -296,10 +296,10 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     }
     renderer.set_sky(sky, water);
     if (!planned.scene.objects.empty())
-        renderer.set_objects(drawn_objects(state, planned.scene,
-                                           {.frame = static_cast<double>(planned.frame),
-                                            .rest_m = planned.drawn->rest_m()}),
-                             object_surroundings(lighting, sky, water, law_coverage(planned.scene)));
+        renderer.set_objects(
+            drawn_objects(state, planned.scene,
+                          {.frame = static_cast<double>(planned.frame), .rest_m = planned.drawn->rest_m()}),
+            object_surroundings(lighting, sky, water, law_coverage(planned.scene)));
     if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);

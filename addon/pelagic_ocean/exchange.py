@@ -165,6 +165,9 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
         keyed.keyframe(obj, shot)
         if ocean.changing(shot, BY_PATH):
             self.report({"WARNING"}, ocean.changing(shot, BY_PATH))
+        if shot.objects:
+            self.report({"WARNING"}, f"The shot's objects stay outside ({len(shot.objects)}): import their files as OBJ, forward Y and "
+                        "up Z. A shot that is exported from here has none")
         ocean.select_only(context, obj)
         simulation = self.show(context, obj)
         if simulation.problem:

@@ -141,6 +141,8 @@ def _field(key):
 def _has_property(key):
     if key["choices"] and len(key["choices"]) < 2:
         return False  # nothing to choose
+    if "." not in key["path"]:
+        return False  # bodies: Blender has its own
     return key["path"] in OF_CAMERA or key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
 
 

@@ -260,8 +260,8 @@ float normal_below(float share) {
 
 // Eq. 20 as sky_integral() has it, by chance: x along the line of sight from the steepest visible facet, evenly; y across it by its own
 // distribution. That visible slopes have a density with the integral 1 (Eq. 11) makes the weights.
-void mirror(const LightingChoice& choice, const Sky& sky, const SeaPoint& p, std::span<const glm::vec2> places,
-            std::span<MirroredLight> mirrored, const FoamPattern& foam) {
+void mirror(const LightingChoice& choice, const Sky& sky, const SeaPoint& p,
+            std::span<const glm::vec2> places, std::span<MirroredLight> mirrored, const FoamPattern& foam) {
     using Variant = Shading<FresnelFit::Exact, SkyQuality::Nine>;
     constexpr float kFarthest = 4.0f;  // deviations
     Variant shading(sky.map, nullptr, choice, foam.picture);

@@ -956,7 +956,7 @@ void add_effects_and_quality(Built& out) {
 }
 
 void add_objects(Built& out) {
-    const Row<SceneObject, 2> file{
+    Row<SceneObject, 2> file{
         key_of_member<std::string>(
             {.name = "file",
              .help =
@@ -967,6 +967,7 @@ void add_objects(Built& out) {
         [](SceneObject& object, const KeyValue& value) {
             return MemberValue<std::string>::take(value, object.file);
         }};
+    file.key.is_required = true;
     auto made = entries<&Scene::objects>(
         {.name = "objects",
          .help =
@@ -974,13 +975,13 @@ void add_objects(Built& out) {
          .key_parts = key_parts(KeyPart::Objects),
          .most_entries = limits::kObjects,
          .are_entries_independent = false,
-         .entry_name = "Object"},
+         .entry_name = "SceneObject"},
+        file,
         row<&SceneObject::name>(
             {.name = "name",
              .help =
                  "as mattes and messages call it, each another; \"\": as its file, without folder and ending",
              .accepted = "a string, at most 100 bytes of UTF-8"}),
-        file,
         row<&SceneObject::path>(
             {.name = "path",
              .help =

@@ -59,8 +59,8 @@ struct Batch {
     std::vector<RayHit> body;
     std::vector<glm::vec3> object;
     std::vector<BodiesInSea> in_sea;
-    std::vector<std::size_t> sea;      // which samples show the sea, rising
-    SeenSea<T> seen;                   // from here on by entry of `sea`
+    std::vector<std::size_t> sea;  // which samples show the sea, rising
+    SeenSea<T> seen;               // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;
     std::vector<SeaRadiance> unlit;       // without the sun, where bodies hide it; likewise
     std::vector<std::uint8_t> in_shadow;  // whether they do

@@ -23,7 +23,8 @@ inline constexpr std::string_view kSeaMatteName = "sea";
 inline const float kSeaMatte = matte_id(kSeaMatteName);
 
 inline constexpr std::string_view kMatteLayer = "CryptoObject";
-inline constexpr std::size_t kMatteRanks = 6, kMatteFloats = 2 * kMatteRanks;  // identifier, share; no share: none
+inline constexpr std::size_t kMatteRanks = 6,
+                             kMatteFloats = 2 * kMatteRanks;  // identifier, share; no share: none
 // Adds to what a pixel has; of more than six the smallest is lost.
 void add_to_ranks(std::span<float, kMatteFloats> ranks, float id, float share);
 // The largest share first, of equal ones the lower identifier.

@@ -15,8 +15,8 @@ Motion::Motion(const Scene& scene, int frame, glm::dvec3 origin_m)
 
 glm::dvec4 Motion::of(glm::dvec4 point_m, glm::dvec3 velocity_mps) const {
     const glm::dvec4 step_m(point_m.w * step_s_ * velocity_mps, 0.0);
-    return between({clip_from_[0] * (point_m - step_m), clip_from_[1] * point_m,
-                    clip_from_[2] * (point_m + step_m)});
+    return between(
+        {clip_from_[0] * (point_m - step_m), clip_from_[1] * point_m, clip_from_[2] * (point_m + step_m)});
 }
 
 glm::dvec4 Motion::of(const std::array<glm::dvec3, 3>& places_m) const {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -146,16 +147,21 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");
+    std::size_t meshes = 0;
+    std::set<const ObjectMesh*> counted;  // bodies of one file share its mesh
+    for (const SceneObject& object : scene.objects)
+        if (counted.insert(object.mesh.get()).second) meshes += object.mesh->bytes();
+    if (meshes > 0) need.add("the objects' meshes", meshes, "give coarser ones");
     const bool has_objects = !scene.objects.empty();
     if (has_objects) {
         const auto rows = static_cast<std::size_t>(std::min(
             rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
-        constexpr std::size_t kSample = sizeof(RayHit) + 2 * sizeof(glm::vec3) + sizeof(SeaRadiance) +
-                                        sizeof(std::uint8_t) + sizeof(float);
-        need.add("the objects",
-                 LitObjects::bytes(scene) +
-                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
-                 "give meshes of fewer triangles");
+        constexpr std::size_t kSample = sizeof(RayHit) + sizeof(glm::vec3) + sizeof(BodiesInSea) +
+                                        sizeof(SeaRadiance) + sizeof(std::uint8_t) + sizeof(float);
+        need.add(
+            "the objects",
+            LitObjects::bytes(scene) + rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
+            "give meshes of fewer triangles");
     }
     if (options.lighting.spray) {
         need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
@@ -168,13 +174,13 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                  "set camera.glare to 0");
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);
-    need.add("pictures",
-             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) *
-                                           (picture_bytes(options, has_objects) +
-                                            file_bytes(options, has_objects)) +
-                                       kEncodingBytes
-                                 : picture_bytes(options, has_objects)),
-             "ask for a smaller picture (--size)");
+    need.add(
+        "pictures",
+        pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (picture_bytes(options, has_objects) +
+                                                                      file_bytes(options, has_objects)) +
+                                  kEncodingBytes
+                            : picture_bytes(options, has_objects)),
+        "ask for a smaller picture (--size)");
     return need;
 }
 

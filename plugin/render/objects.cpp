@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
@@ -52,10 +51,6 @@ float off_surface_m(const glm::vec3& place) {
 }
 
 }  // namespace
-
-std::string object_name(const SceneObject& object) {
-    return object.name.empty() ? std::filesystem::path(object.file).stem().string() : object.name;
-}
 
 glm::vec2 SampleNumbers::place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const {
     constexpr std::uint64_t kKey =

@@ -30,9 +30,6 @@ namespace pelagic {
 
 inline constexpr float kWaterIndex = 1.34f;  // as core/lighting/special.glsl has it
 
-// As mattes and messages call it.
-std::string object_name(const SceneObject& object);
-
 // Numbers for the rays of a sample: the same whatever is computed before. Those of a pixel's samples together are spread evenly
 // (Roberts 2018, R2), each pixel's and frame's in their own way (Cranley and Patterson 1976).
 struct SampleNumbers {
@@ -52,7 +49,7 @@ class LitObjects {
     struct Sea {
         glm::dvec2 origin_m{0.0};
         double curvature_per_m = 0.0, rest_m = 0.0;  // rest_m: where it rests
-        bool has_motion = false;                     // frames beside this one are asked for, the query has Product::Velocity
+        bool has_motion = false;  // frames beside this one are asked for, the query has Product::Velocity
     };
     // At a frame, also between two, of a sea that is set to its time. Query 0 is asked for what floats. On all threads.
     template <class T>
@@ -136,7 +133,8 @@ class LitObjects {
     glm::vec3 beam_{0.0f};  // irradiance across the sun's beam
     glm::vec3 to_sun_{0.0f, 0.0f, 1.0f}, sun_side_{0.0f}, sun_rise_{0.0f};
     static constexpr int kRows = 12, kColumns = 24;
-    std::array<std::vector<glm::vec3>, 2> sea_;  // by whether the sun shines on it: rows by the root of to_eye.z, columns by azimuth
+    std::array<std::vector<glm::vec3>, 2>
+        sea_;  // by whether the sun shines on it: rows by the root of to_eye.z, columns by azimuth
     glm::vec3 mean_sea_{0.0f};
     float sight_in_water_m_ = 0.0f;
 };

@@ -30,7 +30,6 @@
 #include "plugin/render/cryptomatte.h"
 #include "plugin/render/drawn_sea.h"
 #include "plugin/render/glare.h"
-#include "plugin/render/objects.h"
 #include "plugin/render/passes.h"
 #include "plugin/run/part.h"
 #include "plugin/run/seals.h"
@@ -164,7 +163,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
             attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
     if (layers[index(PictureLayer::Cryptomatte)]) {
         std::vector<std::string> names;
-        for (const SceneObject& object : scene.objects) names.push_back(object_name(object));
+        for (const SceneObject& object : scene.objects) names.push_back(object.called());
         for (auto& [name, value] : matte_attributes(names)) attributes.push_back({name, value});
     }
     for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
@@ -182,8 +181,9 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
 // One digit a layer, those of objects where a shot has some: other shots' pictures stay whole.
 std::string layers_text(const Scene& scene, PictureLayerSet layers) {
     const std::string all = layers.to_string();  // the last layer first
-    const auto of_objects = static_cast<std::size_t>(std::count_if(
-        kPictureLayers.begin(), kPictureLayers.end(), [](const PictureLayerRow& row) { return row.of_objects; }));
+    const auto of_objects =
+        static_cast<std::size_t>(std::count_if(kPictureLayers.begin(), kPictureLayers.end(),
+                                               [](const PictureLayerRow& row) { return row.of_objects; }));
     return scene.objects.empty() ? all.substr(of_objects) : all;
 }
 
@@ -291,7 +291,9 @@ std::string encode_exr(const PictureContext& context, const Picture& rendered, i
         } else {
             add(names, picture.data[index(row.layer)].front(),
                 static_cast<std::ptrdiff_t>(sizeof(float) * row.components),
-                is_light(row) ? ranges.sun : row.is_half ? exr::PixelType::Half : exr::PixelType::Float);
+                is_light(row) ? ranges.sun
+                : row.is_half ? exr::PixelType::Half
+                              : exr::PixelType::Float);
         }
     }
     const exr::Header header{.attributes = attributes_of(context, frame),

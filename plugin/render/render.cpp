@@ -25,8 +25,8 @@
 #include "core/surface/pixel_footprint.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
-#include "plugin/render/drawn_sea.h"
 #include "plugin/render/cryptomatte.h"
+#include "plugin/render/drawn_sea.h"
 #include "plugin/render/motion.h"
 #include "plugin/render/objects.h"
 #include "plugin/render/passes.h"
@@ -71,7 +71,7 @@ class RendererOf final : public Impl {
         options_.layers = layers_of(!scene_.objects.empty(), options_.layers);
         if (scene_.objects.empty()) return;
         objects_ = std::make_unique<LitObjects>(scene_);
-        for (const SceneObject& object : scene_.objects) mattes_.push_back(matte_id(object_name(object)));
+        for (const SceneObject& object : scene_.objects) mattes_.push_back(matte_id(object.called()));
     }
 
     const Plan& plan() const override { return sea_.plan(); }
@@ -410,7 +410,8 @@ class RendererOf final : public Impl {
         batch_.body.assign(objects_ ? batch_.triangles.size() : 0, RayHit{});
         in_parallel(batch_.body.size(), [&](std::size_t i) {
             if (!batch_.places.empty() && !batch_.places[i].is_taken()) return;
-            if (is_under(i) && batch_.glass_m[i] >= 0.0) return;  // all of it looks through what climbs the glass
+            if (is_under(i) && batch_.glass_m[i] >= 0.0)
+                return;  // all of it looks through what climbs the glass
             const Ray ray = ray_of(first_row, i);
             RayHit hit = objects_->nearest(ray);
             if (batch_.triangles[i] != Rasteriser::kNone) {
@@ -443,8 +444,8 @@ class RendererOf final : public Impl {
         const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
         glm::dvec3 place(0.0);
         for (int corner = 0; corner < 3; ++corner)
-            place += weights[corner] *
-                     glm::dvec3(position_[mesh_.triangles[3 * std::size_t{triangle} + corner]]);
+            place +=
+                weights[corner] * glm::dvec3(position_[mesh_.triangles[3 * std::size_t{triangle} + corner]]);
         return glm::vec3(place);
     }
     SampleNumbers numbers_of(int first_row, std::size_t sample) const {
@@ -565,9 +566,8 @@ class RendererOf final : public Impl {
             const std::size_t sample = batch_.sea[i];
             const glm::vec3 place = sea_place(first_row, sample);
             const glm::vec3 upright(from_level(glm::dvec3(normal[i]), glm::dvec3(batch_.seen.up[i])));
-            if (!objects_->may_be_mirrored(
-                    place, batch_.seen.to_eye[i], upright,
-                    variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
+            if (!objects_->may_be_mirrored(place, batch_.seen.to_eye[i], upright,
+                                           variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
                 return;
             constexpr std::uint32_t kFacets = 16, kUse = 100;  // of a pixel
             const SampleNumbers numbers = numbers_of(first_row, sample);
@@ -622,8 +622,8 @@ class RendererOf final : public Impl {
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);
             const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
-            const glm::vec3 body = (clear * (1.0f - LitObjects::mirrored_by_water(cosine)) * kBehindGlass) * left *
-                                   objects_->radiance_in_water(ray, hit);
+            const glm::vec3 body = (clear * (1.0f - LitObjects::mirrored_by_water(cosine)) * kBehindGlass) *
+                                   left * objects_->radiance_in_water(ray, hit);
             batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
         });
     }
@@ -666,8 +666,7 @@ class RendererOf final : public Impl {
             if (!is_out) {
                 light.sea = objects_->radiance(ray, hit, numbers_of(first_row, i));
                 const glm::vec3 to_eye = -ray.towards;
-                if (options_.lighting.air)
-                    see_through(air_, {&to_eye, 1}, {&hit.distance_m, 1}, {&light, 1});
+                if (options_.lighting.air) see_through(air_, {&to_eye, 1}, {&hit.distance_m, 1}, {&light, 1});
             }
             const float left =
                 spray_.empty() ? 1.0f : see_through_spray(spray_, ray.towards, hit.distance_m, light);
@@ -874,7 +873,7 @@ class RendererOf final : public Impl {
                 SeaRadiance sum;
                 glm::vec3 of_sky(0.0f);
                 int of_sea = 0, covered = 0;  // with bodies; without holdouts
-                float of_veil = 0.0f;  // before the sky
+                float of_veil = 0.0f;         // before the sky
                 for (int y = 0; y < n; ++y)
                     for (int i = 0; i < n; ++i) {
                         const std::size_t at = sample_width * (row * n + y) + x * n + i;
@@ -926,9 +925,10 @@ class RendererOf final : public Impl {
                 shown.through += in_sea.through;
                 if (in_sea.sky != glm::vec3(0.0f)) sky += batch_.radiance[at].sky;
                 if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
-                add_to_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>(),
-                             is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte,
-                             share);
+                add_to_ranks(
+                    std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>(),
+                    is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte,
+                    share);
             }
         const glm::vec3 reflection = shown_in_sea(shown, sky);
         for (int c = 0; c < 3; ++c) {

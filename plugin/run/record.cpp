@@ -68,10 +68,11 @@ struct ToJson {
     }
 };
 
-// Every key's value, by its path.
+// Every key's value, by its path. Bodies are of pictures alone, which have no record.
 Json settings(const Scene& scene) {
     Json json = Json::object();
-    for (const Key& key : keys()) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
+    for (const Key& key : keys())
+        if (key.path != kObjectsKey) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
     // A cascade that says nothing of its choppiness has the record that it had before it could.
     for (Json& cascade : json["waves.cascades"])
         if (cascade["choppiness"].is_null()) cascade.erase("choppiness");

@@ -39,7 +39,7 @@ def learn(pelagic):
     """The table of keys: before anything is drawn. The rows of tables, without those of lists' entries."""
     for row in pelagic.keys():
         _rows[row["path"]] = row
-    return [row for row in _rows.values() if "[]" not in row["path"]]
+    return [row for row in _rows.values() if "[]" not in row["path"] and "." in row["path"]]
 
 
 def _words(path):
@@ -220,7 +220,7 @@ def shot(draw, folder, each=0.35):
     """Keys of a random shot, each key drawn with this probability: {path: value}."""
     keys = {}
     for row in _rows.values():
-        if "[]" in row["path"]:
+        if "[]" in row["path"] or "." not in row["path"]:
             continue
         if draw.random() < each:
             drawn = value(draw, row)

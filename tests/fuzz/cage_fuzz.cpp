@@ -1,4 +1,4 @@
-// Cages as OBJ: one with a limit surface that can be meshed, or a refusal.
+// Cages and bodies as OBJ: a cage with a limit surface that can be meshed, a body whose mesh is whole, or a refusal.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -6,7 +6,7 @@
 
 #include "core/scene/limits.h"
 #include "core/surface/cage_limit.h"
-#include "plugin/format/obj/obj.h"
+#include "plugin/format/obj/object_obj.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace pelagic;
@@ -59,7 +59,19 @@ void expect_meshed(const Cage& cage, const CageLimit& limit, int segments) {
 
 }  // namespace
 
+// ObjectMesh itself refuses what isn't whole, in no words of a file's. The bytes are its materials, too.
+void expect_body(std::string_view text) {
+    try {
+        const ObjectMesh body =
+            parse_object_obj(text, "fuzz.obj", [&](const std::string&) { return std::string(text); });
+        hold(body.data().triangles.size() >= 3, "a body has a triangle");
+    } catch (const ObjError& error) {
+        hold(!error.problem().empty() && !error.accepted().empty(), "a refusal says why", error.what());
+    }
+}
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    expect_body({reinterpret_cast<const char*>(data), size});
     constexpr std::size_t kMostFaces = 100;  // for time
     try {
         const Cage cage = parse_obj({reinterpret_cast<const char*>(data), size}, "fuzz.obj");

@@ -376,7 +376,7 @@ bool judge_pictures(const Scene& scene, std::uint64_t variant) {
 // A line of a refusal names the file and the key.
 void judge_refusal(const fs::path& shot, const std::string& message) {
     const bool has_key = std::any_of(key_tables().begin(), key_tables().end(), [&](const KeyTable& table) {
-        return message.find(table.name + '.') != std::string::npos;
+        return message.find(table.name + (table.is_list() ? '[' : '.')) != std::string::npos;
     });
     if (!has_key || !message.starts_with(shot.string()) || message.find("; accepted: ") == std::string::npos)
         throw Failed("a refusal that doesn't say what is wrong", message);

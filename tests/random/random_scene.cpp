@@ -19,7 +19,7 @@
 #include "core/spectrum/possible.h"
 #include "plugin/budget/budget.h"
 #include "plugin/format/exr/exr.h"
-#include "plugin/format/obj/obj.h"
+#include "plugin/format/obj/object_obj.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::test {
@@ -38,6 +38,7 @@ constexpr Cap kCaps[] = {
     {"waves.cascades[].resolution", {16, 64}, "transforms grow with the square"},
     {"waves.trains", {1, 100}, "each point sums all trains"},
     {"surface.resolution", {1, 10}, "vertices grow with the square, and near to far has many parts of it"},
+    {"objects[].vessel", {0, 0}, "without so many vessels it is refused"},
     {"surface.cell_px", {6, 256}, "points of projected grids grow with the inverse square"},
     {"surface.cage_level", {0, 2}, "each level has four times the faces"},
     {"camera.resolution", {1, 24}, "each pixel is lit"},
@@ -61,9 +62,12 @@ constexpr std::uint64_t kScenesALight = 10;
 constexpr double kPictureOfSky = 0.8;
 
 constexpr const char* kCageName = "cage.obj";
+constexpr const char* kBodyName = "body.obj";
 constexpr const char* kSkyName = "sky.exr";
 constexpr const char* kFoamName = "foam.exr";
 constexpr const char* kBuoyName = "99001w2024.txt";
+constexpr const char* kBody =
+    "v -3 -1 -1\nv 3 0 0\nv -3 1 -1\nv -2 0 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n";
 constexpr const char* kBuoyTime = "2024-10-03T06:00:00Z";
 
 class Draw {
@@ -133,7 +137,9 @@ class Draw {
         for (KeyEntry& entry : all)
             for (const Key& inner : key.entry_keys)
                 entry.values.emplace_back(inner.name,
-                                          inner.is_required || chance(0.6) ? value(inner) : inner.fallback);
+                                          inner.is_required || inner.path == "objects[].name" || chance(0.6)
+                                              ? value(inner)
+                                              : inner.fallback);
         return all;
     }
 
@@ -179,7 +185,14 @@ class Draw {
             for (char& letter : name) letter = kLetters[index(kLetters.size())];
             return name;
         }
-        if (key.path == "waves.vessels[].path") {  // up to 50 m between keys
+        if (key.path == "objects[].file") return kBodyName;
+        if (key.path == "objects[].name") {
+            std::string name(16, 'a');
+            for (char& letter : name) letter = static_cast<char>('a' + index(26));
+            return name;
+        }
+        if (key.path == "objects[].path" && chance(0.5)) return {};
+        if (key.name == "path") {  // up to 50 m between keys
             std::string path;
             double frame = integer(-60, 20), east_m = uniform(-60.0, 60.0), north_m = uniform(-60.0, 60.0);
             for (int keys = integer(2, 5); keys > 0; --keys) {
@@ -361,6 +374,7 @@ class Drawing {
         if (!afford() && is_fit) mend();
         if (made_.value(kSpectrumFile))
             for (auto& [name, bytes] : random_buoy(draw_)) made_.files[name] = std::move(bytes);
+        if (made_.value(kObjectsKey)) made_.files[kBodyName] = kBody;
         if (is("light.sky", std::string(kSkyName))) made_.files[kSkyName] = random_sky(light_);
         for (const char* key : {"effects.foam_pattern", "sea.depth_file", "water.floor_pattern"})
             if (is(key, std::string(kFoamName))) made_.files[kFoamName] = random_foam(light_);
@@ -674,7 +688,10 @@ std::string RandomScene::text() const {
             if (given.key >= table.keys.data() && given.key < table.keys.data() + table.keys.size())
                 if (const std::string value = value_text(*given.key, given.value); !value.empty())
                     inside += given.key->name + " = " + value + '\n';
-        if (!inside.empty()) out += '[' + table.name + "]\n" + inside;
+        if (table.is_list())
+            out = inside + out;  // before all tables
+        else if (!inside.empty())
+            out += '[' + table.name + "]\n" + inside;
     }
     return out;
 }
@@ -718,6 +735,10 @@ std::optional<Scene> RandomScene::scene() const {
             if (const std::optional<Problem> problem = set_value(scene, *key, value))
                 throw std::logic_error("a random scene's " + text_of(*problem));
         }
+    }
+    for (SceneObject& object : scene.objects) {
+        object.mesh = std::make_shared<const ObjectMesh>(parse_object_obj(
+            files.at(kBodyName), kBodyName, [](const std::string&) { return std::nullopt; }));
     }
     return scene;
 }

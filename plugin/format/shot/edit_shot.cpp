@@ -53,6 +53,11 @@ std::string edited_shot(std::string_view text, const Scene& scene, const Scene& 
         for (const EditionChange& change : edition_changes())
             if (const Key& key = key_of(change.path); root.at_path(change.path).node() == nullptr)
                 set_value(read, key, fallback_in(scene.shot.edition, key));
+    // The preview, which edits shots, has no lists of the scene's own to change.
+    for (const KeyTable& each : key_tables())
+        if (const Key& key = each.keys.front(); each.is_list() && value_of(scene, key) != value_of(base, key))
+            throw ShotError("[[" + each.name +
+                            "]] can't be changed in a text; accepted: those that are there");
     std::istringstream changes(shot_text(scene, read));
     std::string table;
     try {

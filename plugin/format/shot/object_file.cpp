@@ -10,8 +10,7 @@ std::shared_ptr<const ObjectMesh> load_object(const std::filesystem::path& file)
     constexpr const char* kAccepted = "a Wavefront OBJ of at most 1 GiB";
     const std::string name = file.filename().string();
     if (!has_ending(name, ".obj"))
-        throw ObjError("is no Wavefront OBJ by its name",
-                       "a file that ends with .obj: whoever made this can export one");
+        throw ObjError("is no Wavefront OBJ", "a mesh exported as OBJ, z up and in metres");
     std::string text;
     try {
         text = read_text_file(file, kMostObjectBytes);

@@ -152,6 +152,14 @@ void print_keyed(const Scene& scene) {
         std::cout << "A bake refuses " << problem.key << ": it " << problem.problem << ".\n";
 }
 
+void print_objects(const Scene& scene) {
+    for (const SceneObject& object : scene.objects)
+        std::cout << "The object " << quoted_text(object.called()) << " has "
+                  << count_text(static_cast<long>(object.mesh->data().triangles.size() / 3), "triangle",
+                                "triangles")
+                  << ", " << bytes_text(object.mesh->bytes()) << ".\n";
+}
+
 // --json: what a frame takes here, by what was measured of this machine where that is known.
 void tell_accounts(const Settled& pictures, const Plan& plan) {
     const int threads = tbb::this_task_arena::max_concurrency();
@@ -184,6 +192,7 @@ void print_memory(const Scene& scene, const RenderOptions& options, const Plan& 
         std::cout << "The camera of the bake's stage takes " << bytes_text(camera_layer_bytes(scene))
                   << ", for all frames of the shot together.\n";
     print_keyed(scene);
+    print_objects(scene);
     const WaterBody water = make_water(scene_at(scene, scene.shot.first_frame), plan.from->spectrum);
     if (const WaterText text = water_text(water); !text.wavelengths_nm.empty())
         std::cout << "The water at " << text.wavelengths_nm << " nm absorbs " << text.absorption_per_m

@@ -1,4 +1,4 @@
-// What a user should know of a sea that is built all the same.
+// What a user should know of a sea that is built all the same, and of meshes that are read.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace pelagic::cli {
 
-// "storm.toml: note: the surface folds over itself …", a line for each of sea_warnings(), to standard error.
+// "storm.toml: note: the surface folds over itself …", a line for each of sea_warnings() and of the notes of objects' meshes, to
+// standard error.
 void print_warnings(const std::string& shot, const Scene& scene);
 
 }  // namespace pelagic::cli

@@ -121,7 +121,7 @@ void add_picture(py::module_& module) {
         py::arg("max_memory_bytes") = py::none(),
         "A frame through the scene's camera, as `pelagic render` draws it: a dict of float32 (height, width, 3), "
         "rows from the top, in the sky's units, whose sum is the picture: \"sun\", \"sky\", \"sea\", \"foam\", \"air\", by "
-        "the source of the light (beside the sea \"sky\" is the sky itself with the sun's disc); and "
+        "the source of the light (beside the sea \"sky\" is the sky itself with the sun's disc), with objects \"object\" and \"reflection\" as well; and "
         "\"is_sea\", bool (height, width).\n\n"
         "size: (width, height), by default the camera's. samples: N of N × N a pixel; sky_quality: \"one\", "
         "\"nine\" or \"integral\"; by default the quality level's. layers: further ones, "

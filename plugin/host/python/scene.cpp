@@ -22,6 +22,8 @@
 #include "core/waves/folding.h"
 #include "plugin/budget/budget.h"
 #include "plugin/files/files.h"
+#include "plugin/format/obj/obj.h"
+#include "plugin/format/shot/object_file.h"
 #include "plugin/format/shot/shot.h"
 #include "plugin/host/python/bindings.h"
 #include "plugin/host/python/cage.h"
@@ -201,6 +203,14 @@ std::string text_of_shot(const Scene& scene) {
                                 "a cage that was read from a file"}));
         absolute(placed.surface.cage_file);
     }
+    for (std::size_t i = 0; i < placed.objects.size(); ++i) {
+        if (placed.objects[i].file.empty())
+            throw std::invalid_argument(text_of(
+                Problem{"objects[" + std::to_string(i) + "].file", quoted_text(placed.objects[i].called()),
+                        "is a body that came from no file, which no shot file can name",
+                        "a body that was read from a file"}));
+        absolute(placed.objects[i].file);
+    }
     const auto require_utf8 = [](std::string_view key, const std::string& path) {
         if (utf8_text(path) != path)
             throw std::invalid_argument(text_of(
@@ -211,7 +221,31 @@ std::string text_of_shot(const Scene& scene) {
         require_utf8(key->path, std::get<std::string>(value_of(placed, *key)));
     if (placed.sea.measured) require_utf8(kSpectrumFile, placed.sea.measured->file);
     if (placed.surface.cage) require_utf8(kCageFile, placed.surface.cage_file);
+    for (const SceneObject& object : placed.objects) require_utf8("objects[].file", object.file);
     return shot_text(placed);
+}
+
+// With the meshes of files that the scene doesn't have yet.
+void set_list(Scene& scene, const Key& key, const py::object& given) {
+    Scene made = scene;
+    set_from_python(made, key, given);
+    for (std::size_t i = 0; i < made.objects.size(); ++i) {
+        SceneObject& object = made.objects[i];
+        if (object.mesh || object.file.empty()) continue;
+        const auto same = std::ranges::find_if(
+            made.objects, [&](const SceneObject& other) { return other.mesh && other.file == object.file; });
+        if (same != made.objects.end()) {
+            object.mesh = same->mesh;
+            continue;
+        }
+        try {
+            object.mesh = load_object(object.file);
+        } catch (const ObjError& error) {
+            throw ShotError(text_of(Problem{"objects[" + std::to_string(i) + "].file",
+                                            quoted_text(object.file), error.problem(), error.accepted()}));
+        }
+    }
+    scene = std::move(made);
 }
 
 double significant_height_of(const Scene& scene) {
@@ -322,6 +356,16 @@ void add_scene(py::module_& module) {
     base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }),
              py::arg("scene"));
     for (const KeyTable& table : key_tables()) {
+        if (table.is_list()) {
+            const Key& key = table.keys.front();
+            scene.def_property(
+                table.name.c_str(), [&key](const Scene& self) { return to_python(key, value_of(self, key)); },
+                [&key](Scene& self, const py::object& given) { set_list(self, key, given); },
+                ("[[" + table.name + "]]: " + table.help +
+                 ". Files are read when they are set, from the working folder.")
+                    .c_str());
+            continue;
+        }
         const py::object made = add_table_class(module, base, table);
         scene.def_property(
             table.name.c_str(), [made](const std::shared_ptr<Scene>& self) { return made(self); },

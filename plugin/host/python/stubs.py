@@ -140,8 +140,8 @@ def members(made):
         if name.startswith("_") and name not in ("__init__", "__eq__"):
             continue
         if isinstance(value, property):
-            if isinstance(made, type) and value.fset is not None:  # a table of a scene
-                text += indented(f"{name}: {name[0].upper()}{name[1:]}Table", 1) + docstring(value.__doc__, 1)
+            if isinstance(made, type) and value.fset is not None:  # a table of a scene, or a list of its own
+                text += indented(f"{name}: {LISTS.get(name) or f'{name[0].upper()}{name[1:]}Table'}", 1) + docstring(value.__doc__, 1)
                 continue
             signature = value.fget.__doc__.partition("\n")[0]
             text += read_only(name, result(signature.rpartition("-> ")[2], name), value.__doc__)
@@ -175,6 +175,10 @@ def kind_of(key):
     return kind if key["required"] or key["default"] is not None else f"{kind} | None"
 
 
+# What a scene has beside its tables: lists of its own.
+LISTS = {key["path"]: kind_of(key) for key in pelagic.keys() if "." not in key["path"]}
+
+
 def entry(key):
     text = indented(f"class {key['entry']}(NamedTuple):", 0) + docstring(f"An entry of {key['path']}.", 1)
     for inner in key["keys"]:
@@ -204,8 +208,9 @@ def table(name, made, keys):
 def stub():
     by_table, entries = {}, {}
     for key in pelagic.keys():
-        where, name = key["path"].split(".")
-        by_table.setdefault(f"{where[0].upper()}{where[1:]}Table", {})[name] = key
+        where, _, name = key["path"].partition(".")
+        if name:
+            by_table.setdefault(f"{where[0].upper()}{where[1:]}Table", {})[name] = key
         if key["entry"]:
             entries[key["entry"]] = key
     parts = [HEADER.format(doc=inspect.cleandoc(pelagic.__doc__))]

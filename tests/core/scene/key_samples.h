@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,21 @@ inline KeyValue value_at(const Key& key, double number) {
     }
 }
 
+// A triangle at folder/boat.obj, and as many vessels as a body could be.
+inline Scene scene_with_body() {
+    const glm::vec3 up(0.0f, 0.0f, 1.0f);
+    Scene scene;
+    scene.waves.vessels.resize(limits::kVessels);
+    scene.objects = {{.file = "folder/boat.obj",
+                      .mesh = std::make_shared<const ObjectMesh>(ObjectMeshData{
+                          .points_m = {{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+                          .triangles = {0, 1, 2},
+                          .normals = {up, up, up},
+                          .material = {0},
+                          .materials = {{.name = "paint"}}})}};
+    return scene;
+}
+
 // An entry whose keys are all good.
 inline KeyEntry good_entry(const Key& list) {
     KeyEntry entry;
@@ -33,6 +49,7 @@ inline KeyEntry good_entry(const Key& list) {
         entry.values[1].second = 100.0;
     }
     if (list.path == "waves.band_gains") entry.values[2].second = 1.5;  // 1 changes nothing
+    if (list.path == kObjectsKey) entry.values[0].second = std::string("folder/boat.obj");
     if (list.path == "camera.keys") entry.values[1].second = std::vector<double>{0.0, -60.0, 4.0};
     return entry;
 }

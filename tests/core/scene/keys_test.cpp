@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -35,7 +36,7 @@ TEST(Keys, EachIsDescribed) {
     for_each_key([&](const Key& key) {
         SCOPED_TRACE(key.path);
         EXPECT_TRUE(paths.insert(key.path).second) << "twice";
-        EXPECT_TRUE(key.path.ends_with('.' + key.name));
+        EXPECT_TRUE(key.path == key.name || key.path.ends_with('.' + key.name));
         EXPECT_FALSE(key.help.empty() || key.label.empty());
         const bool is_inner = key.path.find("[]") != std::string::npos;
         EXPECT_TRUE(is_inner || !key.is_required) << "an empty file is a sea";
@@ -69,7 +70,7 @@ TEST(Keys, PathsAreFound) {
     std::size_t count = 0;
     for (const KeyTable& table : key_tables())
         for (const Key& key : table.keys) {
-            EXPECT_EQ(key.path, table.name + '.' + key.name);
+            EXPECT_EQ(key.path, table.is_list() ? table.name : table.name + '.' + key.name);
             EXPECT_EQ(&key, &keys()[count++]);
         }
     EXPECT_EQ(count, keys().size());
@@ -140,6 +141,7 @@ TEST(Keys, ValuesOfAnotherTypeAreRefusedAndChangeNothing) {
 // A scene whose only unusual value is this one. Keys of wave trains mean nothing without them.
 Scene scene_with(const Key& key, const KeyValue& value) {
     Scene scene;
+    if (key.path == kObjectsKey) scene = test::scene_with_body();
     if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m")
         scene.waves.model = WaveModel::Trochoid;
     if (!key.of_picture.empty()) {
@@ -200,10 +202,11 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
                 << key.path << " and " << pelagic::text_of(only);
         }
         EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;
-        // Wave trains have no lean and no pairs.
+        // Wave trains have no lean and no pairs; bodies that aren't there are no line.
         const std::size_t without = key.path == "waves.model" ? 2 : 0;
+        const bool is_added = key.is_optional || key.path == kObjectsKey;
         EXPECT_EQ(described(changed, key.key_parts).size() + without,
-                  described(Scene{}, key.key_parts).size() + (key.is_optional ? 1u : 0u))
+                  described(Scene{}, key.key_parts).size() + (is_added ? 1u : 0u))
             << key.path;
     }
 }
@@ -282,6 +285,64 @@ TEST(Keys, ACageCountsAndIsDescribedByItsContent) {
     EXPECT_EQ(canonical(Scene{}).find("cage_file"), std::string::npos);
 }
 
+// Nothing but pictures depends on bodies, and a scene without any has no line of them.
+TEST(Keys, BodiesCountByTheirMeshesAndNames) {
+    EXPECT_EQ(canonical(Scene{}, all_key_parts()).find("objects"), std::string::npos);
+    EXPECT_TRUE(described(Scene{}, key_parts(KeyPart::Objects)).empty());
+    const Scene scene = test::scene_with_body();
+    const std::string content = scene.objects[0].mesh->content(), text = canonical(scene);
+    Scene without;
+    without.waves = scene.waves;
+    EXPECT_EQ(canonical(scene, ~key_parts(KeyPart::Objects)),
+              canonical(without, ~key_parts(KeyPart::Objects)));
+    EXPECT_NE(text.find("objects = [{ file = \"" + content + "\", name = \"boat\", path = \"\", "),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(described(scene, key_parts(KeyPart::Objects)).at(0).text.find("folder"), std::string::npos);
+    Scene other = scene;
+    other.objects[0].file = "elsewhere/boat.obj";
+    EXPECT_EQ(canonical(other), text);
+    other.objects[0].file = "skiff.obj";  // it is called so then
+    EXPECT_NE(canonical(other), text);
+    other.objects[0].name = "boat";
+    EXPECT_EQ(canonical(other), text);
+    ObjectMeshData data = scene.objects[0].mesh->data();
+    data.points_m[0].z = 0.25f;
+    other.objects[0].mesh = std::make_shared<const ObjectMesh>(data);
+    EXPECT_NE(canonical(other), text);
+    const std::function<void(SceneObject&)> changes[]{
+        [](SceneObject& o) { o.name = "b"; },
+        [](SceneObject& o) { o.path = "1 0 0"; },
+        [](SceneObject& o) { o.interpolation = CameraInterpolation::Linear; },
+        [](SceneObject& o) { o.vessel = 1; },
+        [](SceneObject& o) { o.east_m = 1.0; },
+        [](SceneObject& o) { o.north_m = 1.0; },
+        [](SceneObject& o) { o.up_m = 1.0; },
+        [](SceneObject& o) { o.heading_deg = 1.0; },
+        [](SceneObject& o) { o.pitch_deg = 1.0; },
+        [](SceneObject& o) { o.roll_deg = 1.0; },
+        [](SceneObject& o) { o.scale = 2.0; },
+        [](SceneObject& o) { o.floats = true; },
+        [](SceneObject& o) { o.colour.y = 0.5; },
+        [](SceneObject& o) { o.glow_cd_m2 = 1.0; },
+        [](SceneObject& o) { o.holdout = true; }};
+    for (const auto& change : changes) {
+        other = scene;
+        change(other.objects[0]);
+        EXPECT_NE(canonical(other, key_parts(KeyPart::Objects)),
+                  canonical(scene, key_parts(KeyPart::Objects)));
+        EXPECT_EQ(canonical(other, ~key_parts(KeyPart::Objects)),
+                  canonical(scene, ~key_parts(KeyPart::Objects)));
+    }
+    // Set as values, bodies keep the meshes of their files.
+    const Key& key = key_of("objects");
+    EXPECT_FALSE(set_value(other, key, value_of(scene, key)).has_value());
+    EXPECT_EQ(other.objects[0].mesh, scene.objects[0].mesh);
+    other.objects.clear();
+    EXPECT_FALSE(set_value(other, key, value_of(scene, key)).has_value());
+    EXPECT_EQ(other.objects.at(0).mesh, nullptr);
+}
+
 // A number, or the word that may stand in its place.
 TEST(Keys, AnIntegerMayHaveAnotherWord) {
     const Key& level = key_of("surface.cage_level");
@@ -303,6 +364,25 @@ TEST(ShotText, NothingDiffersIsNoText) {
     Scene scene;
     scene.sea.fetch_m = 1e5;
     EXPECT_EQ(shot_text(scene, scene), "");
+}
+
+TEST(ShotText, BodiesAreTablesOfTheirOwn) {
+    Scene scene = test::scene_with_body();
+    scene.waves.vessels.clear();
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects[1].name = "a \"b\"";
+    scene.objects[1].up_m = -0.5;
+    scene.objects[1].floats = true;
+    const std::string text =
+        "[[objects]]\nfile = \"folder/boat.obj\"\n\n[[objects]]\nfile = \"folder/boat.obj\"\nname = \"a \\\"b\\\"\"\n"
+        "up_m = -0.5\nfloats = true\n";
+    EXPECT_EQ(shot_text(scene, Scene{}), text);
+    EXPECT_EQ(shot_text(scene), "[shot]\nedition = " + std::to_string(kNewestEdition) + "\n\n" + text);
+    EXPECT_EQ(shot_text(scene, scene), "");
+    Scene none;
+    EXPECT_EQ(shot_text(none, scene), "objects = []\n");
+    none.shot.seed = 7;
+    EXPECT_EQ(shot_text(none, scene), "objects = []\n\n[shot]\nseed = 7\n");
 }
 
 TEST(ShotText, OnlyWhatDiffersInTheTablesOfAShotFile) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/scene/limits.h"
+#include "key_samples.h"
 
 namespace pelagic {
 namespace {
@@ -730,6 +731,80 @@ TEST(Validate, ACageComesWithItsKindAndIsNotRefinedWithoutEnd) {
         with_many(s);
         s.surface.cage_level.is_adaptive = true;
     });
+}
+
+TEST(Validate, BodiesHaveNamesAFileAndAPlace) {
+    const Scene good = test::scene_with_body();
+    EXPECT_TRUE(validate(good).empty());
+    const auto refusal = [&](const std::function<void(Scene&)>& change) {
+        Scene scene = good;
+        change(scene);
+        std::string text;
+        for (const Problem& problem : validate(scene)) text += text_of(problem) + '\n';
+        return text;
+    };
+    const auto twice = [](Scene& s) { s.objects.push_back(s.objects[0]); };
+    EXPECT_EQ(refusal([](Scene& s) { s.objects[0].mesh.reset(), s.objects[0].file.clear(); }),
+              "objects[0].file = \"\": names no file; accepted: the path of an .obj, which the host reads\n");
+    EXPECT_EQ(
+        refusal([](Scene& s) { s.objects[0].mesh.reset(); }),
+        "objects[0].file = \"folder/boat.obj\": is named and not read; accepted: the path of an .obj, which the host "
+        "reads\n");
+    EXPECT_EQ(
+        refusal(twice),
+        "objects[1].name = \"boat\": is what objects[0] is called: without a name it is its file's; accepted: a name of "
+        "its own for each of them\n");
+    EXPECT_EQ(refusal([&](Scene& s) { twice(s), s.objects[1].name = "other"; }), "");
+    EXPECT_EQ(
+        refusal([&](Scene& s) { twice(s), s.objects[0].name = s.objects[1].name = "a"; }),
+        "objects[1].name = \"a\": is what objects[0] is called; accepted: a name of its own for each of them\n");
+    EXPECT_EQ(refusal([](Scene& s) { s.objects[0].name = "Küstenwache 7"; }), "");
+    for (const std::string& bad :
+         {std::string("a\"b"), std::string("a\nb"), std::string("\xff"), std::string(101, 'a')})
+        EXPECT_NE(refusal([&](Scene& s) { s.objects[0].name = bad; }).find("is no name for mattes"),
+                  std::string::npos)
+            << bad;
+    EXPECT_NE(
+        refusal([&](Scene& s) { s.objects[0].file = "a\"b.obj"; }).find("is its file's name, and none for"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal([&](Scene& s) { s.objects[0].file = ""; }).find("objects[0].name = \"\": is its file's"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal([](Scene& s) {
+            s.waves.vessels.resize(2), s.objects[0].vessel = 3;
+        }).find("objects[0].vessel = 3: is not one of waves.vessels, which has 2; accepted: 1 … 2, or 0"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal([](Scene& s) { s.waves.vessels.clear(), s.objects[0].vessel = 1; }).find("which has none"),
+        std::string::npos);
+    EXPECT_NE(refusal([](Scene& s) {
+                  s.objects[0].vessel = 1, s.objects[0].path = "1 0 0";
+              }).find("objects[0].path = \"1 0 0\": is given beside vessel = 1"),
+              std::string::npos);
+    for (const auto& [path, problem] : std::vector<std::pair<std::string, std::string>>{
+             {"1 0 0, 5 1", "key 2 isn't three numbers"},
+             {"1 0 0,", "key 2 isn't three numbers"},
+             {"1 0 0, 1 2 3", "key 2, 1 2 3: does not come after the key before, of frame 1"},
+             {"1 2e9 0", "key 1, 1 2e9 0: is no place on the sea"},
+             {"2e8 0 0", "key 1, 2e8 0 0: is at a frame outside the range"}})
+        EXPECT_NE(refusal([&](Scene& s) { s.objects[0].path = path; }).find(problem), std::string::npos)
+            << refusal([&](Scene& s) { s.objects[0].path = path; });
+    const auto loop = [](Scene& s) { s.waves.vessels.clear(), s.shot.loop_s = 2.0; };
+    EXPECT_EQ(refusal([&](Scene& s) { loop(s), s.objects[0].path = "1 3 4, 9 3 4"; }), "");
+    EXPECT_NE(refusal([&](Scene& s) {
+                  loop(s), s.objects[0].path = "1 3 4, 9 3 5";
+              }).find("which a loop has no end for"),
+              std::string::npos);
+    // Where the sea's time stands still the camera's goes on.
+    EXPECT_EQ(refusal([](Scene& s) {
+                  s.waves.vessels.clear(), s.shot.time_scale = 0.0, s.objects[0].path = "1 3 4, 9 3 5";
+              }),
+              "");
+    EXPECT_NE(refusal([&](Scene& s) {
+                  s.objects.resize(limits::kObjects + 1, s.objects[0]);
+              }).find("objects = 65 entries: is too many"),
+              std::string::npos);
 }
 
 TEST(Validate, TheSkyIsDaylightOrAPicture) {

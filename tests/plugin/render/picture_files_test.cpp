@@ -29,6 +29,8 @@
 #include <vector>
 
 #include "core/lighting/primaries.h"
+#include "core/plan/fingerprint.h"
+#include "core/plan/plan.h"
 #include "core/scene/keys.h"
 #include "core/surface/view.h"
 #include "plugin/run/seals.h"
@@ -453,6 +455,43 @@ TEST(PictureFiles, NameTheKeysThatTheyDependOn) {
         EXPECT_EQ(bytes.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_said)
             << key.path;
     }
+}
+
+// By what is in their meshes, and only where there are some; nothing that is baked does.
+TEST(PictureFiles, DependOnBodies) {
+    Scene scene;
+    scene.camera.resolution = {8, 6};
+    scene.waves.cascades = {{.size_m = 50.0, .resolution = 32}};
+    scene.output.maps = {MapKind::Displacement, MapKind::Floor};
+    scene.output.volumes = {VolumeKind::LevelSet};
+    const auto picture = [](const Scene& of) {
+        return PictureFingerprint({.scene = of, .options = RenderOptions{}, .picture_content = ""}).of(1);
+    };
+    const auto baked = [](const Scene& of) {
+        const Plan plan = plan_bake(of);
+        std::string all;
+        for (const PlannedOutput& output : plan.outputs) all += output_fingerprint(plan, output) + ' ';
+        return all;
+    };
+    const glm::vec3 up(0.0f, 0.0f, 1.0f);
+    ObjectMeshData mesh{.points_m = {{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+                        .triangles = {0, 1, 2},
+                        .normals = {up, up, up},
+                        .material = {0},
+                        .materials = {{.name = "paint"}}};
+    Scene with = scene;
+    with.objects = {{.file = "a/boat.obj", .mesh = std::make_shared<const ObjectMesh>(mesh)}};
+    EXPECT_NE(picture(with), picture(scene));
+    EXPECT_EQ(baked(with), baked(scene));
+    Scene elsewhere = with;
+    elsewhere.objects[0].file = "b/boat.obj";
+    EXPECT_EQ(picture(elsewhere), picture(with));
+    mesh.materials[0].colour.x = 0.5f;
+    elsewhere.objects[0].mesh = std::make_shared<const ObjectMesh>(mesh);
+    EXPECT_NE(picture(elsewhere), picture(with));
+    elsewhere = with;
+    elsewhere.objects[0].floats = true;
+    EXPECT_NE(picture(elsewhere), picture(with));
 }
 
 // Every layer of the table under its channels' names, and no other; alpha; and what the numbers mean, in OpenEXR's own

@@ -26,7 +26,12 @@ std::string shot_with(const Key& key, const std::string& value) {
         key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
     // Waves of any height need a wind that makes them long.
     const bool is_height = key.path == "sea.significant_height_m";
-    return (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
+    // A body may be any of so many vessels'.
+    std::string vessels;
+    for (int i = 0; key.path == kObjectsKey && i < limits::kVessels; ++i)
+        vessels += (i > 0 ? ", " : "waves.vessels = [") + std::string("{ path = \"1 0 0, 48 10 0\" }");
+    if (!vessels.empty()) vessels += "]\n";
+    return vessels + (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
            std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
            (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
            '\n';
@@ -232,8 +237,9 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
         EXPECT_EQ(shot_text(read), text);
     }
     for (const Key& key : keys()) {
-        // A picture is no file here, and what is of one is refused without it.
-        const bool can_change = key.set && !key.is_picture && key.of_picture.empty();
+        // A picture is no file here, nor is a body, and what is of one is refused without it.
+        const bool can_change =
+            key.set && !key.is_picture && key.of_picture.empty() && key.path != kObjectsKey;
         EXPECT_EQ(changed.contains(key.path), can_change) << key.path;
     }
 }
@@ -251,7 +257,9 @@ TEST(ShotKeys, AMeasuredSpectrumIsNamedByItsFileAndTime) {
 TEST(ShotKeys, HelpSaysOfEachWhatDependsOnIt) {
     const std::string help = describe_keys();
     for (const KeyTable& table : key_tables())
-        EXPECT_NE(help.find('[' + table.name + "]  " + table.help), std::string::npos) << table.name;
+        EXPECT_NE(help.find('[' + table.name + (table.is_list() ? "]]  " : "]  ") + table.help),
+                  std::string::npos)
+            << table.name;
     for (const Key& key : keys()) {
         const std::size_t at = help.find("\n  " + key.path);
         ASSERT_NE(at, std::string::npos) << key.path;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/scene/canonical.h"
+#include "core/scene/keys.h"
 #include "core/scene/presets.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
@@ -439,6 +440,76 @@ TEST(Shot, ACageIsReadFromItsFile) {
             ":4:14: surface.cage_level = \"fine\": is not the word \"adaptive\"; accepted: an integer, 0 … 6, or "
             "\"adaptive\"");
     EXPECT_EQ(lines(refused_with(cage + "cage_file = 3\n")), 1u);
+}
+
+TEST(Shot, BodiesAreReadFromTheirFiles) {
+    const TemporaryFolder folder;
+    const std::string triangle = "mtllib paint.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+    folder.write("boat.obj", triangle);
+    folder.write("paint.mtl", "newmtl red\nKd 0.5 0 0\n");
+    folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n");
+    folder.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+    const std::filesystem::path file = folder.path() / "s.toml";
+    const auto refused_with = [&](const std::string& text) -> std::string {
+        try {
+            parse_shot(text, file, no_check);
+        } catch (const ShotError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const Scene scene = parse_shot(
+        "[[objects]]\nfile = \"boat.obj\"\npath = \"1 0 0, 48 20 5\"\n[[objects]]\nname = \"second\"\nfile = "
+        "\"boat.obj\"\nfloats = true\ncolour = [1, 0.5, 0]\n[[objects]]\nfile = \"plain.obj\"\n",
+        file, no_check);
+    ASSERT_EQ(scene.objects.size(), 3u);
+    EXPECT_EQ(scene.objects[0].mesh, scene.objects[1].mesh);
+    EXPECT_EQ(scene.objects[0].mesh->data().materials[0].colour, glm::vec3(0.5f, 0.0f, 0.0f));
+    EXPECT_EQ(scene.objects[0].file, (folder.path() / "boat.obj").string());
+    EXPECT_EQ(scene.objects[0].called(), "boat");
+    EXPECT_TRUE(scene.objects[1].floats);
+    EXPECT_EQ(scene.objects[1].colour, glm::dvec3(1.0, 0.5, 0.0));
+    const Scene again = parse_shot(shot_text(scene), "elsewhere.toml", no_check);
+    EXPECT_EQ(canonical(again), canonical(scene));
+    EXPECT_EQ(shot_text(again), shot_text(scene));
+    // As a list, too; and by what is in the file.
+    folder.write("boat.obj", "# another comment\n" + triangle);
+    EXPECT_EQ(canonical(parse_shot("objects = [{ file = \"boat.obj\" }]", file, no_check)),
+              canonical(parse_shot("[[objects]]\nfile = \"./boat.obj\"", file, no_check)));
+    const std::string at = file.string();
+    EXPECT_EQ(
+        refused_with("[[objects]]\nup_m = 1\n"),
+        at + ":1:1: objects[0].file = (missing): has no default; accepted: a string, the path of an .obj; " +
+            find_key("objects[].file")->help);
+    EXPECT_EQ(
+        refused_with("[[objects]]\nfile = \"bad.obj\"\n"),
+        at +
+            ":2:8: objects[0].file = \"bad.obj\": bad.obj:3: the point 3 is outside the range; accepted: 1 … 2 or "
+            "-1 … -2: so many stand above");
+    EXPECT_EQ(
+        refused_with("[[objects]]\nfile = \"none.obj\"\n"),
+        at +
+            ":2:8: objects[0].file = \"none.obj\": the mesh does not exist; accepted: a Wavefront OBJ of at most 1 GiB");
+    EXPECT_EQ(
+        refused_with("[[objects]]\nfile = \"boat.usdc\"\n"),
+        at +
+            ":2:8: objects[0].file = \"boat.usdc\": is no Wavefront OBJ; accepted: a mesh exported as OBJ, z up and in "
+            "metres");
+    EXPECT_EQ(
+        refused_with("[[objects]]\nfile = \"boat.obj\"\n\n[[objects]]\nfile = \"boat.obj\"\n"),
+        at +
+            ":4:1: objects[1].name = \"boat\" (the default): is what objects[0] is called: without a name it is its "
+            "file's; accepted: a name of its own for each of them");
+    EXPECT_EQ(
+        refused_with("[[objects]]\nfile = \"boat.obj\"\npath = \"1 0 0, 1 5 5\"\n"),
+        at +
+            ":3:8: objects[0].path = key 2, 1 5 5: does not come after the key before, of frame 1; accepted: rising "
+            "frames, each once");
+    EXPECT_NE(refused_with("[[objects]]\nfile = \"boat.obj\"\nheight = 3\n")
+                  .find(":3:1: objects[0].height = 3: is an unknown key"),
+              std::string::npos);
+    EXPECT_EQ(lines(refused_with("[objects]\nfile = \"boat.obj\"\n")), 1u);
+    EXPECT_EQ(lines(refused_with("[[objects]]\nfile = 3\n")), 1u);
 }
 
 TEST(Shot, BudgetsAreInsteadOfALevel) {

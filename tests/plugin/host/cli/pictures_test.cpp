@@ -142,8 +142,7 @@ TEST_F(Pictures, RenderWritesTheLayersThatAreAskedFor) {
         for (std::size_t i = first; i < kPictureLayerCount; i += 2) {
             const PictureLayerRow& row = kPictureLayers[i];
             names += (names.empty() ? "" : ",") + std::string(row.name);
-            if (!row.of_objects)
-                expected.insert(row.channels.begin(), row.channels.begin() + row.components);
+            if (!row.of_objects) expected.insert(row.channels.begin(), row.channels.begin() + row.components);
         }
         EXPECT_EQ(channels(names), expected) << names;
         everything.insert(expected.begin(), expected.end());

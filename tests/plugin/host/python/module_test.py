@@ -4,6 +4,7 @@ import math
 import threading
 import time
 import unittest
+from pathlib import Path
 
 import numpy as np
 import pelagic
@@ -100,7 +101,9 @@ class Scene(unittest.TestCase):
         scene = pelagic.Scene()
         written = 0
         for key in pelagic.keys():
-            table, name = key["path"].split(".")
+            table, _, name = key["path"].rpartition(".")
+            if not table:
+                continue  # a list of the scene's own, whose files are read: below
             holder = getattr(scene, table)
             if key["type"] in ("data file", "data time"):
                 self.assertIsNone(getattr(holder, name))
@@ -123,6 +126,26 @@ class Scene(unittest.TestCase):
                 setattr(holder, name, {1: 2})
             written += 1
         self.assertGreater(written, 40)
+
+    def test_bodies_are_read_when_they_are_set(self):
+        boat = str(Path(__file__).parents[4] / "tests/plugin/format/shot/data/folder/boat.obj")
+        scene = pelagic.Scene()
+        self.assertEqual(scene.objects, ())
+        scene.objects = [{"file": boat, "floats": True}, pelagic.SceneObject(boat, name="other", colour=(1.0, 0.5, 0.0))]
+        self.assertEqual(scene.validate(), [])
+        self.assertEqual([(each.file, each.name, each.floats) for each in scene.objects], [(boat, "", True), (boat, "other", False)])
+        again = pelagic.Scene.from_text(scene.shot_text())
+        self.assertEqual((str(again), again.objects), (str(scene), scene.objects))
+        scene.objects = scene.objects[:1]
+        self.assertEqual(len(scene.objects), 1)
+        with self.assertRaisesRegex(ValueError, r'objects\[0\].file = "none.obj": the mesh does not exist; accepted: '):
+            scene.objects = [{"file": "none.obj"}]
+        for wrong in ({1: 2}, "boat.obj", [{"name": "no file"}], [{"file": boat, "height": 3}]):
+            with self.assertRaises((TypeError, ValueError), msg=wrong):
+                scene.objects = wrong
+        self.assertEqual(len(scene.objects), 1)
+        scene.objects = ()
+        self.assertEqual(str(scene), str(pelagic.Scene()))
 
     def test_keys_are_described(self):
         keys = {key["path"]: key for key in pelagic.keys()}

@@ -110,7 +110,7 @@ SkyMap::SkyMap(int size, std::vector<glm::vec3> texels, std::vector<glm::vec3> o
 }
 
 glm::vec3 SkyMap::radiance(glm::vec2 u, float level) const {
-    return projection::Lookup{*this, static_cast<float>(size_)}.sky_lookup(u, level);
+    return projection::Lookup{*this, static_cast<float>(size_)}.mapped_sky(u, level);
 }
 
 glm::vec3 SkyMap::open_radiance(glm::vec2 u) const {

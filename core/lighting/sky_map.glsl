@@ -28,7 +28,7 @@ vec3 sky_smooth(vec2 u) {
 
 // The map at a place, averaged as its level does. Sharper than level 1 it is smooth, and ends at the horizon, where
 // the light from below begins (its corner's) within half a texel.
-vec3 sky_lookup(vec2 u, float level) {
+vec3 mapped_sky(vec2 u, float level) {
     if (level >= 1.0f) return sky_filtered(u, level);
     float texels = kSkyMapSize / (2.0f * kSkyMapReach);
     float ground = clamp((length(u) - 1.0f) * texels * 2.0f + 0.5f, 0.0f, 1.0f);

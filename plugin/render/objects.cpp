@@ -9,9 +9,8 @@
 #include <numbers>
 
 #include "core/base/random.h"
-#include "core/evaluate/evaluate.h"
-#include "core/scene/object_pose.h"
 #include "core/surface/earth.h"
+#include "plugin/render/object_place.h"
 
 namespace pelagic {
 namespace {
@@ -50,31 +49,6 @@ float ggx_visible(float cosine, float alpha) {
 float off_surface_m(const glm::vec3& place) {
     return 5e-4f + 4e-6f * glm::length(place);
 }
-
-// Heel and trim of a body that floats: no more than this slope. A wave as long as the body has up to 0.44.
-constexpr double kMostLean = 0.45;
-
-struct WaterPlane {
-    double height_m = 0.0;
-    glm::dvec2 slope{0.0};  // along the body's axes
-};
-
-// The least-squares plane through points (x, y along the body's axes, z).
-WaterPlane plane_through(std::span<const glm::dvec3> points) {
-    glm::dmat3 sums(0.0);
-    glm::dvec3 heights(0.0);
-    for (const glm::dvec3& p : points) {
-        const glm::dvec3 row(1.0, p.x, p.y);
-        sums += glm::outerProduct(row, row);
-        heights += p.z * row;
-    }
-    // Points in one line have no slope across it.
-    for (int i = 1; i < 3; ++i) sums[i][i] += 1e-9;
-    const glm::dvec3 plane = glm::inverse(sums) * heights;
-    return {plane.x, glm::clamp(glm::dvec2(plane.y, plane.z), -kMostLean, kMostLean)};
-}
-
-constexpr int kAlong = 5, kAcross = 3;  // places of the water under a body
 
 }  // namespace
 
@@ -116,51 +90,13 @@ void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
         Body& body = bodies_[i];
         const SceneObject& object = scene_.objects[i];
         const glm::dvec3 least = body.mesh->least_m(), most = body.mesh->most_m();
-        double water_m = sea.rest_m;
         for (const int beside : {-1, 1, 0}) {
             if (beside != 0 && !sea.has_motion) continue;
-            ObjectPose pose = object_pose(scene_, object, frame + beside);
-            if (object.floats) {
-                const glm::dvec2 size = pose.scale * glm::dvec2(most - least);
-                const bool is_long = size.x >= size.y;
-                const int nx = is_long ? kAlong : kAcross, ny = is_long ? kAcross : kAlong;
-                const double level = std::hypot(pose.turn[0].x, pose.turn[0].y);
-                const glm::dvec2 ahead =
-                    level > 1e-6 ? glm::dvec2(pose.turn[0]) / level : glm::dvec2(1.0, 0.0);
-                const glm::dvec2 port(-ahead.y, ahead.x);
-                std::array<glm::vec<2, T>, kAlong * kAcross> rest;
-                std::array<glm::vec<3, T>, kAlong * kAcross> position, velocity{};
-                const glm::dvec2 origin_m(pose.place_m);
-                for (int k = 0; k < kAlong * kAcross; ++k) {
-                    const glm::dvec2 local =
-                        pose.scale *
-                        (glm::dvec2(least) +
-                         glm::dvec2(most - least) * glm::dvec2((k % nx + 0.5) / nx, (k / nx + 0.5) / ny));
-                    rest[k] = glm::vec<2, T>(local.x * ahead + local.y * port);
-                }
-                const std::vector<T> cell_m(rest.size(), static_cast<T>(std::max(size.x, size.y) / 3.0));
-                Results<T> results;
-                results.set(Product::Position, {position.data()});
-                if (beside != 0) results.set(Product::Velocity, {velocity.data()});
-                evaluate(state, SeaLight<T>::kQuery,
-                         Points<T>{.origin_m = origin_m,
-                                   .count = rest.size(),
-                                   .rest_m = {rest.data()},
-                                   .cell_m = {cell_m.data()}},
-                         results);
-                std::array<glm::dvec3, kAlong * kAcross> points;
-                for (std::size_t k = 0; k < points.size(); ++k) {
-                    const glm::dvec3 at = glm::dvec3(position[k]) + beside * step_s * glm::dvec3(velocity[k]);
-                    points[k] = {glm::dot(glm::dvec2(at), ahead), glm::dot(glm::dvec2(at), port), at.z};
-                }
-                const WaterPlane plane = plane_through(points);
-                const glm::dvec3 up =
-                    glm::normalize(glm::dvec3(-(plane.slope.x * ahead + plane.slope.y * port), 1.0));
-                const double heave_m = plane.height_m + sea.rest_m;
-                for (int axis = 0; axis < 3; ++axis) pose.turn[axis] = from_level(pose.turn[axis], up);
-                pose.place_m = glm::dvec3(origin_m, heave_m) + pose.place_m.z * up;
-                if (beside == 0) water_m = heave_m;
-            }
+            const auto [pose, water_m] = place_object(state, scene_, object,
+                                                      {.query = SeaLight<T>::kQuery,
+                                                       .frame = frame + beside,
+                                                       .rest_m = sea.rest_m,
+                                                       .late_s = beside * step_s});
             Placed& placed = body.placed[beside + 1];
             const glm::dvec3 flat_m = pose.place_m - glm::dvec3(sea.origin_m, 0.0);
             const glm::dvec3 vertical = earth_up(glm::dvec2(flat_m), sea.curvature_per_m);

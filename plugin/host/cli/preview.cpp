@@ -58,7 +58,6 @@ void refuse_file(const std::string& option, const fs::path& file,
 int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArguments& arguments,
                    Progress& progress) {
     Scene scene = without_budget(shot);  // of bakes and renders
-    scene.objects.clear();
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
@@ -119,9 +118,6 @@ int run(const PreviewArguments& arguments) {
         scene.quality.level = *level;
     }
     if (arguments.frame) asked([&] { return parse_frames(std::to_string(*arguments.frame), scene.shot); });
-    if (!scene.objects.empty())
-        std::cerr << line_text(arguments.shot)
-                  << ": note: the preview doesn't show objects; pelagic render does" << std::endl;
     if (arguments.offscreen) {
         refuse_file("--offscreen", *arguments.offscreen, {".png", ".exr"});
         // Signals end it at once: no file is begun.

@@ -42,9 +42,15 @@ void main() {
         write_terms(kBehindGlass * below.sun, kBehindGlass * below.sky, kBehindGlass * below.sea, kBehindGlass * below.foam, vec3(0.0), 1.0);
         return;
     }
+    vec3 place = vec3(0.0, 0.0, view_height_m) + body.from_eye;
+    SeaLight light = sea_light();
+    float sun = sun_share(place);
+    light.sun_radiance *= sun;
+    light.sun_irradiance *= sun;
+    mirror_from(place);
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
-                        answer.slope_variance, foam, body, sea_light(), PlaceView(air_to_sun, air_by_place));
+                        answer.slope_variance, foam, body, light, PlaceView(air_to_sun, air_by_place));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)
         path = air_path(-pixel_ray(), point_distance_m(),

@@ -51,6 +51,18 @@ const char* shape_file(bool is_shaped, const char* shaped) {
 constexpr const char *kShapeOfVertex = "plugin/host/gpu/shape_vertex.glsl",
                      *kShapeOfFragment = "plugin/host/gpu/shape_fragment.glsl";
 constexpr const char* kCrests = "plugin/host/gpu/crests.glsl";
+const char* sky_alone_file(bool has_objects) {
+    return has_objects ? "plugin/host/gpu/sky_with_objects.glsl" : "plugin/host/gpu/sky_alone.glsl";
+}
+const char* sun_file(bool has_objects) {
+    return has_objects ? "plugin/host/gpu/sun_shadow.glsl" : "plugin/host/gpu/sun_alone.glsl";
+}
+// Of pictures with objects alone, so that others have the variants that they had.
+std::string object_constants(bool has_objects) {
+    return has_objects ? constant("kObjects", true) + constant("kObjectBoxes", kObjectBoxes) +
+                             "const float kIsObject = " + std::to_string(kIsObject) + ";\n"
+                       : std::string();
+}
 const char* points_file(const DrawOptions& options) {
     return is_lit_afterwards(options) ? "plugin/host/gpu/sea_points_texture.glsl"
                                       : "plugin/host/gpu/sea_points_in.glsl";
@@ -176,21 +188,23 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
+    const bool has_objects = options.has_objects && !options.for_host && !options.from_below;
     return {query_constants(layout, coverage, options.is_shaped) +
                 lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
-                (lives ? foam_constants() : std::string()),
+                object_constants(has_objects) + (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
                 : joined({query_files(),
                           {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
             joined({query_files(),
                     {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl",
+                     sky_alone_file(has_objects)},
                     lighting_files(),
                     {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
                      "core/lighting/air.glsl"},
                     spray_files(lighting),
-                    {"core/lighting/place.glsl", "plugin/host/gpu/rays.glsl"},
+                    {"core/lighting/place.glsl", sun_file(has_objects), "plugin/host/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/host/gpu/false_colour.glsl", points_file(options),
                      shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
@@ -211,7 +225,7 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
     return {lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options),
             {"plugin/host/gpu/full_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
-                     "core/lighting/sky_map.glsl"},
+                     "core/lighting/sky_map.glsl", sky_alone_file(false)},
                     lighting_files(),
                     {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
                      "core/lighting/air.glsl"},
@@ -219,6 +233,29 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
                     {"core/lighting/background.glsl", "plugin/host/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/host/gpu/sky_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_size, bool mirrored) {
+    LightingChoice lighting = options.lighting;
+    lighting.sky = lighting.sky && sky_map_size > 0;
+    DrawOptions drawn = options;
+    drawn.layers = drawn.layers && !mirrored;
+    return {lighting_constants(lighting, sky_map_size) + picture_constants(drawn) + object_constants(true) +
+                constant("kMirrored", mirrored),
+            {"plugin/host/gpu/object_vertex.glsl"},
+            joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
+                     "core/lighting/sky_map.glsl", sky_alone_file(false)},
+                    lighting_files(),
+                    {"core/lighting/object.glsl", "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {sun_file(true)},
+                    output_files(options),
+                    {"plugin/host/gpu/object_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_object_shadow() {
+    return {
+        {}, {"plugin/host/gpu/object_shadow_vertex.glsl"}, {"plugin/host/gpu/object_shadow_fragment.glsl"}};
 }
 
 ShaderVariant ShaderVariant::of_drops(bool layers) {

@@ -15,12 +15,19 @@ namespace pelagic {
 // software shades small triangles in blocks of pixels, and most of a block lies outside.
 bool is_lit_afterwards(const DrawOptions& options);
 
+// Objects whose boxes the sea's rays are tested against; a picture's alpha where it shows an object.
+inline constexpr int kObjectBoxes = 16;
+inline constexpr float kIsObject = -1.0f;
+
 class ShaderVariant {
   public:
     static ShaderVariant of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size);
     // The first of two passes.
     static ShaderVariant of_points(const SeaLayout& layout, bool is_shaped);
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
+    // An object for the eye, or for its mirror image.
+    static ShaderVariant of_object(const DrawOptions& options, int sky_map_size, bool mirrored);
+    static ShaderVariant of_object_shadow();
     static ShaderVariant of_drops(bool layers);
     static ShaderVariant of_screen(bool layers, bool plain);
 

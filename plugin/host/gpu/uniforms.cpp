@@ -97,6 +97,19 @@ std::vector<Uniform> air_uniforms(const Air& air) {
             {"air_sky_rows", 2, glm::vec4(air.dip, air.sky_span, 0.0f, 0.0f)}};
 }
 
+std::vector<Uniform> surroundings_uniforms(const ObjectSurroundings& light) {
+    return {vector("object_flat_part", light.flat_part),
+            vector("object_x", light.x),
+            vector("object_y", light.y),
+            vector("object_z", light.z),
+            vector("object_xy", light.xy),
+            vector("object_yz", light.yz),
+            vector("object_zz", light.zz),
+            vector("object_xz", light.xz),
+            vector("object_xx_yy", light.xx_yy),
+            vector("object_water", light.water)};
+}
+
 std::vector<Uniform> spray_uniforms(const Spray& spray) {
     return {vector("spray_azimuth", glm::vec3(spray.azimuth, spray.columns_per_rad)),
             vector("spray_rows", glm::vec3(spray.first_m, spray.row_step, spray.eye_m)),

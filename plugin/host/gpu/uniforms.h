@@ -8,6 +8,7 @@
 #include "core/lighting/air.h"
 #include "core/lighting/floor.h"
 #include "core/lighting/foam_structure.h"
+#include "core/lighting/object.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/spray.h"
 #include "core/lighting/water.h"
@@ -34,6 +35,8 @@ inline constexpr int kFloorColumns = 2048;
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern);
 // Of air_table.glsl.
 std::vector<Uniform> air_uniforms(const Air& air);
+// Of object_fragment.glsl.
+std::vector<Uniform> surroundings_uniforms(const ObjectSurroundings& light);
 // Of spray_map.glsl.
 std::vector<Uniform> spray_uniforms(const Spray& spray);
 

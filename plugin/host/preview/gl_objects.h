@@ -65,6 +65,14 @@ struct GlQueryMaker {
     }
     static void remove(GLuint name) { glDeleteQueries(1, &name); }
 };
+struct GlSamplerMaker {
+    static GLuint make() {
+        GLuint name = 0;
+        glGenSamplers(1, &name);
+        return name;
+    }
+    static void remove(GLuint name) { glDeleteSamplers(1, &name); }
+};
 struct GlProgramMaker {
     static GLuint make() { return glCreateProgram(); }
     static void remove(GLuint name) { glDeleteProgram(name); }
@@ -75,6 +83,7 @@ using GlBuffer = GlObject<GlBufferMaker>;
 using GlVertexArray = GlObject<GlVertexArrayMaker>;
 using GlFramebuffer = GlObject<GlFramebufferMaker>;
 using GlQuery = GlObject<GlQueryMaker>;
+using GlSampler = GlObject<GlSamplerMaker>;
 using GlProgram = GlObject<GlProgramMaker>;
 
 }  // namespace pelagic

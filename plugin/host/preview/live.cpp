@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/waves/frame.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/render/seen_drops.h"
 #include "plugin/render/spray_map.h"
 #include "plugin/render/under_water.h"
@@ -62,7 +63,7 @@ void LiveSea::ask(const Scene& scene) {
 }
 
 void LiveSea::show(double time_s, const std::optional<View>& eye, const std::optional<View>& spray_from,
-                   const std::optional<FloorWanted>& floor) {
+                   const std::optional<FloorWanted>& floor, std::optional<double> objects_at) {
     auto built = builder_.take();
     std::shared_ptr<const LiveBuild> build;
     {
@@ -74,6 +75,8 @@ void LiveSea::show(double time_s, const std::optional<View>& eye, const std::opt
         if (!spray_from) spray_.reset();
         floor_wanted_ = floor;
         if (!floor) floor_.reset();
+        objects_at_ = objects_at;
+        if (!objects_at) objects_.reset();
         if (built) {
             build_.swap(built);
             ++seas_;
@@ -145,6 +148,11 @@ std::shared_ptr<const LiveDrops> LiveSea::newest_drops() {
     return drops_;
 }
 
+std::shared_ptr<const std::vector<DrawnObject>> LiveSea::newest_objects() const {
+    const std::lock_guard lock(mutex_);
+    return objects_;
+}
+
 LiveStatus LiveSea::status() const {
     LiveStatus status{
         .building = builder_.is_busy(), .built = built_ ? built_->load() : 0.0, .error = builder_.error()};
@@ -164,6 +172,7 @@ void LiveSea::compute_frames() {
     std::optional<double> tried_s;
     std::optional<View> tried_eye, tried_spray;
     std::optional<FloorWanted> tried_floor;
+    std::optional<double> tried_objects;
     const auto spray_before = [&](const View& view) {
         return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->drawn->grid_options(),
                                                             kSprayMap, are_drops_near(tried->scene, view)));
@@ -175,6 +184,10 @@ void LiveSea::compute_frames() {
         light_floor(*floor, *frame, light);
         return floor;
     };
+    const auto objects_in = [&](double at) {
+        return std::make_shared<const std::vector<DrawnObject>>(drawn_objects(
+            *frame, tried->scene, {.query = tried->query, .frame = at, .rest_m = tried->drawn->rest_m()}));
+    };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {
         return build_ != nullptr && time_s_ && (build_ != tried || time_s_ != tried_s);
@@ -183,23 +196,27 @@ void LiveSea::compute_frames() {
         wake_.wait(lock, [&] {
             return stopping_ || wants_frame() ||
                    (frame && ((eye_ && eye_ != tried_eye) || (spray_from_ && spray_from_ != tried_spray) ||
-                              (floor_wanted_ && floor_wanted_ != tried_floor)));
+                              (floor_wanted_ && floor_wanted_ != tried_floor) ||
+                              (objects_at_ && objects_at_ != tried_objects)));
         });
         if (stopping_) return;
         tried_eye = eye_;
         tried_spray = spray_from_;
         tried_floor = floor_wanted_;
+        tried_objects = objects_at_;
         if (!wants_frame()) {  // the eye has moved over a sea that stands still
             lock.unlock();
             std::optional<double> water_m;
             std::shared_ptr<const Spray> spray;
             std::shared_ptr<const Floor> floor;
+            std::shared_ptr<const std::vector<DrawnObject>> objects;
             std::string error;
             try {
                 if (tried_eye)
                     water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
                 if (tried_spray) spray = spray_before(*tried_spray);
                 if (tried_floor) floor = lit_floor(*tried_floor);
+                if (tried_objects) objects = objects_in(*tried_objects);
             } catch (...) {
                 error = message_of(std::current_exception());
             }
@@ -208,6 +225,7 @@ void LiveSea::compute_frames() {
             if (eye_) water_over_eye_m_ = water_m;
             if (spray_from_) spray_ = spray;
             if (floor_wanted_) floor_ = floor;
+            if (objects_at_) objects_ = objects;
             continue;
         }
         tried = build_;
@@ -218,6 +236,7 @@ void LiveSea::compute_frames() {
         std::optional<double> water_m;
         std::shared_ptr<const Spray> spray;
         std::shared_ptr<const Floor> floor;
+        std::shared_ptr<const std::vector<DrawnObject>> objects;
         try {
             if (!frame || frame_of != tried) {
                 frame.reset();  // before the new one is made: halves the peak memory
@@ -238,6 +257,7 @@ void LiveSea::compute_frames() {
             if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->drawn->grid_options());
             if (tried_spray) spray = spray_before(*tried_spray);
             if (tried_floor) floor = lit_floor(*tried_floor);
+            if (tried_objects) objects = objects_in(*tried_objects);
         } catch (...) {
             error = message_of(std::current_exception());
             frame.reset();
@@ -249,6 +269,7 @@ void LiveSea::compute_frames() {
         if (eye_) water_over_eye_m_ = water_m;
         if (spray_from_) spray_ = spray;
         if (floor_wanted_) floor_ = floor;
+        if (objects_at_) objects_ = objects;
         slot.number = ++frames_;
         std::swap(written_, waiting_);
         fresh_ = true;

@@ -101,8 +101,9 @@ class LiveSea {
         FloorLightWanted light;
         bool operator==(const FloorWanted&) const = default;
     };
+    // `objects_at`: the frame, of a scene with objects, for newest_objects().
     void show(double time_s, const std::optional<View>& eye = {}, const std::optional<View>& spray_from = {},
-              const std::optional<FloorWanted>& floor = {});
+              const std::optional<FloorWanted>& floor = {}, std::optional<double> objects_at = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
     // The height z [m] of the surface above the eye, in the latest frame computed; nullopt for one in the air.
@@ -115,6 +116,8 @@ class LiveSea {
     std::shared_ptr<const LiveDrops> newest_drops();
     // The floor that was asked for, lit through the latest frame computed; null before the first.
     std::shared_ptr<const Floor> newest_floor() const;
+    // The sea's objects where they are in the latest frame computed; null before the first.
+    std::shared_ptr<const std::vector<DrawnObject>> newest_objects() const;
     LiveStatus status() const;
 
   private:
@@ -136,6 +139,8 @@ class LiveSea {
     std::shared_ptr<const Spray> spray_;
     std::optional<FloorWanted> floor_wanted_;
     std::shared_ptr<const Floor> floor_;
+    std::optional<double> objects_at_;
+    std::shared_ptr<const std::vector<DrawnObject>> objects_;
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;

@@ -16,6 +16,7 @@
 #include "core/waves/folding.h"
 #include "plugin/host/gpu/packed_foam.h"
 #include "plugin/host/gpu/sea_layout.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/live.h"
 #include "plugin/render/seen_drops.h"
 
@@ -40,6 +41,8 @@ MemoryNeed live_memory(const Plan& plan) {
     need.add("the frame's grids as textures", 6 * packed,
              "lower the resolutions in waves.cascades, or quality.level");
     if (render_options(plan.from->scene).lighting.spray) add_seen_drops(need, plan);
+    if (const Scene& scene = plan.from->scene; !scene.objects.empty())
+        need.add("the objects", DrawnObjects::bytes(scene), "give simpler meshes");
     // A history, three packed ones and the driver's.
     if (plan.foam)
         need.add("the foam as textures", 4 * PackedFoam::bytes_for(*plan.foam, plan.foam_history_bytes()),

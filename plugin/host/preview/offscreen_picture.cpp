@@ -21,6 +21,7 @@
 #include "core/waves/whitecaps.h"
 #include "plugin/host/gpu/packed_foam.h"
 #include "plugin/host/gpu/sea_layout.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/offscreen.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -157,6 +158,8 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
                  "set effects.spray to false");
         add_seen_drops(need, planned.plan);
     }
+    if (!planned.scene.objects.empty())
+        need.add("the objects", DrawnObjects::bytes(planned.scene), "give simpler meshes");
     need.add("the driver", kDriverBytes, smaller());
     return need;
 }
@@ -214,6 +217,7 @@ namespace {
 void take_below(const Waterline& waterline, const View& view, const LightingChoice& lighting, const Sky& sky,
                 const WaterBody& water, const FloorSeen& floor, const Picture& below, Picture& picture) {
     const auto width = static_cast<std::size_t>(picture.resolution.x);
+    std::vector<float>& object = picture.data[index(PictureLayer::Object)];  // empty without objects
     std::vector<std::size_t> climbed;
     std::vector<MeniscusSight> sights;
     for (std::size_t at = 0; at < picture.layers.size(); ++at) {
@@ -222,6 +226,7 @@ void take_below(const Waterline& waterline, const View& view, const LightingChoi
         if (height_m < 0.0) {
             picture.layers[at] = below.layers[at];
             picture.sea[at] = below.sea[at];
+            if (!object.empty()) object[3 * at] = object[3 * at + 1] = object[3 * at + 2] = 0.0f;
         } else if (meniscus_share(height_m) > 0.0f) {
             climbed.push_back(at);
             sights.push_back({glm::vec3(view.direction(pixel)), static_cast<float>(height_m)});
@@ -233,6 +238,8 @@ void take_below(const Waterline& waterline, const View& view, const LightingChoi
     for (std::size_t i = 0; i < climbed.size(); ++i) {
         const float share = meniscus_share(static_cast<double>(sights[i].height_m));
         picture.layers[climbed[i]] = mixed(picture.layers[climbed[i]], lit[i], share);
+        if (!object.empty())
+            for (std::size_t c = 0; c < 3; ++c) object[3 * climbed[i] + c] *= 1.0f - share;
         if (share == 1.0f) picture.sea[climbed[i]] = 1;
     }
 }
@@ -288,6 +295,11 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
         renderer.set_floor(floor);
     }
     renderer.set_sky(sky, water);
+    if (!planned.scene.objects.empty())
+        renderer.set_objects(
+            drawn_objects(state, planned.scene,
+                          {.frame = static_cast<double>(planned.frame), .rest_m = planned.drawn->rest_m()}),
+            object_surroundings(lighting, sky, water, law_coverage(planned.scene)));
     if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);
         Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x), are_near);

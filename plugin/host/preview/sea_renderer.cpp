@@ -18,6 +18,7 @@
 #include "plugin/host/gpu/sea_layout.h"
 #include "plugin/host/gpu/shader_variants.h"
 #include "plugin/host/gpu/uniforms.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/gl_objects.h"
 #include "plugin/host/preview/gl_stage_timer.h"
 #include "plugin/host/preview/gl_textures.h"
@@ -43,6 +44,8 @@ enum OtherUnit : int {
 constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
                                                         "foam_picture", "air_picture"};
+
+constexpr int kObjectUnits = kPictures + kTerms;
 
 constexpr std::array<const char*, 3> kPointNames{"first_points", "second_points", "third_points"};
 
@@ -92,6 +95,8 @@ struct SeaRenderer::Implementation {
     void draw_sea(const View& view, const SeaMesh& mesh, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
     void draw_drops(const View& view, const DrawOptions& options);
+    void draw_object_maps(const View& view, const SeaMesh& mesh, const DrawOptions& options);
+    const ShaderProgram& use_object_program(const View& view, const DrawOptions& options, bool mirrored);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
     GLint largest_texture = 0;
@@ -102,6 +107,9 @@ struct SeaRenderer::Implementation {
     GlTexture sky_map, dither_tile;
     int sky_map_size = 0;
     std::vector<Uniform> light, water;
+    glm::dvec3 to_sun{0.0, 0.0, 1.0};
+    double sun_angular_radius = 0.0;  // 0: it doesn't shine
+    std::optional<DrawnObjects> objects;
     std::shared_ptr<const AirModel> air_model;
     GlTexture air_table;
     std::optional<double> air_height_m;  // of the eye that the table is for
@@ -134,7 +142,7 @@ struct SeaRenderer::Implementation {
     std::array<GlTexture, kPointNames.size()> points;  // what each pixel of the sea shows, before its light
     GlTexture depth;
     glm::ivec2 picture_size{0};
-    bool picture_layers = false, picture_plain = false;
+    bool picture_layers = false, picture_plain = false, picture_objects = false;
     double near_m = kNear_m;  // of the picture that is drawn
 
     std::map<std::string, ShaderProgram> programs;  // by ShaderVariant::key()
@@ -400,6 +408,7 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const SeaMesh& mesh
     if (!is_lit_afterwards(options)) {
         program.use();
         set_uniforms(program, foam_uniforms(foam_pattern(options.foam, mesh.points.origin_m)));
+        if (options.has_objects) objects->bind(program, kObjectUnits);
         glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
         draw_mesh(program, view, mesh);
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
@@ -414,11 +423,38 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const SeaMesh& mesh
     set_uniforms(program, foam_uniforms(foam_pattern(options.foam, mesh.points.origin_m)));
     glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(mesh.points.curvature_per_m));
     for (std::size_t i = 0; i < points.size(); ++i) bind_texture(kPictures + static_cast<int>(i), points[i]);
+    if (options.has_objects) objects->bind(program, kObjectUnits);
     // Where something is nearer than the far plane.
     glDepthMask(GL_FALSE);
     glDepthFunc(reversed_depth ? GL_LESS : GL_GREATER);
     draw_over_all(program);
     glDepthMask(GL_TRUE);
+}
+
+const ShaderProgram& SeaRenderer::Implementation::use_object_program(const View& view,
+                                                                     const DrawOptions& options,
+                                                                     bool mirrored) {
+    const ShaderProgram& program = program_of(ShaderVariant::of_object(options, sky_map_size, mirrored));
+    program.use();
+    set_common(program, view);
+    set_uniforms(program, air);
+    return program;
+}
+
+void SeaRenderer::Implementation::draw_object_maps(const View& view, const SeaMesh& mesh,
+                                                   const DrawOptions& options) {
+    objects->place({.view = view,
+                    .origin_m = mesh.points.origin_m,
+                    .curvature_per_m = mesh.points.curvature_per_m,
+                    .near_m = near_m,
+                    .to_sun = to_sun,
+                    .sun_angular_radius = options.lighting.sun ? sun_angular_radius : 0.0,
+                    .reversed_depth = reversed_depth,
+                    .largest_texture = largest_texture});
+    objects->draw_shadow(program_of(ShaderVariant::of_object_shadow()));
+    objects->draw_mirrored(use_object_program(view, options, true), kObjectUnits);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    glViewport(0, 0, picture_size.x, picture_size.y);
 }
 
 void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& options) {
@@ -510,6 +546,9 @@ std::string SeaRenderer::device() const {
 void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     Implementation& of = *implementation_;
     of.light = light_uniforms(sky);
+    of.to_sun = glm::dvec3(sky.sun_direction);
+    of.sun_angular_radius =
+        sky.sun_radiance == glm::vec3(0.0f) ? 0.0 : static_cast<double>(sky.sun_angular_radius);
     set_water(water);
     of.sky_map_size = sky.map.size();
     of.air_model = sky.air;
@@ -574,6 +613,13 @@ void SeaRenderer::set_spray(const Spray& spray, std::shared_ptr<const std::vecto
                  spray.texels.data());
 }
 
+void SeaRenderer::set_objects(std::vector<DrawnObject> objects, const ObjectSurroundings& surroundings) {
+    Implementation& of = *implementation_;
+    if (objects.empty()) return of.objects.reset();
+    if (!of.objects) of.objects.emplace();
+    of.objects->set(std::move(objects), surroundings);
+}
+
 void SeaRenderer::upload(const PackedFrame& frame) {
     Implementation& of = *implementation_;
     const GlStageTimer::Measured measured(of.timer, GlStageTimer::Upload);
@@ -630,15 +676,22 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     drawn.lighting.air = options.lighting.air && of.air_model;
     drawn.lighting.spray = options.lighting.spray && !of.spray.empty() && !options.from_below;
     drawn.is_shaped = !mesh.normal.empty();
+    drawn.has_objects = of.objects && !options.from_below;
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
     of.near_m = options.behind_glass ? kFrontGlass_m : kNear_m;
     of.curvature_per_m = mesh.points.curvature_per_m;
     of.begin_picture(view.resolution, options.layers);
+    of.picture_objects = of.objects.has_value();
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
+        if (drawn.has_objects) of.draw_object_maps(view, mesh, drawn);
         if (!of.sea.empty()) of.draw_sea(view, mesh, drawn);
+        if (drawn.has_objects) {
+            glDepthFunc(of.reversed_depth ? GL_GREATER : GL_LESS);
+            of.objects->draw(of.use_object_program(view, drawn, false), kObjectUnits);
+        }
     }
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
@@ -689,6 +742,7 @@ Picture SeaRenderer::read_layers() const {
     constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{
         &SeaRadiance::sea, &SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::foam, &SeaRadiance::air};
     std::vector<glm::vec4> texels(width * height);
+    std::vector<bool> is_object(of.picture_objects ? width * height : 0);
     for (int i = 0; i < (of.picture_layers ? kTerms : 1); ++i) {
         glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
         glPixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -698,11 +752,21 @@ Picture SeaRenderer::read_layers() const {
                 const glm::vec4& texel = texels[(height - 1 - y) * width + x];
                 const std::size_t at = y * width + x;
                 if (i == 0) picture.sea[at] = texel.w > 0.5f;
+                if (i == 0 && of.picture_objects) is_object[at] = texel.w < 0.0f;
                 const auto term = of.picture_layers || picture.sea[at] ? kTerm[i] : &SeaRadiance::sky;
                 picture.layers[at].*term = glm::vec3(texel);
             }
     }
     glReadBuffer(GL_COLOR_ATTACHMENT0);
+    if (!of.picture_objects) return picture;
+    std::vector<float>& object = picture.data[index(PictureLayer::Object)];
+    object.assign(3 * is_object.size(), 0.0f);
+    picture.data[index(PictureLayer::Reflection)] = object;
+    for (std::size_t at = 0; at < is_object.size(); ++at)
+        if (is_object[at]) {
+            const glm::vec3 light = std::exchange(picture.layers[at].sky, glm::vec3(0.0f));
+            for (int c = 0; c < 3; ++c) object[3 * at + static_cast<std::size_t>(c)] = light[c];
+        }
     return picture;
 }
 

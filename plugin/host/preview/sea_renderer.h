@@ -18,6 +18,7 @@
 #include "core/effects/spray_drops.h"
 #include "core/lighting/floor.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/object.h"
 #include "core/lighting/spray.h"
 #include "core/surface/view.h"
 #include "plugin/host/gpu/draw_options.h"
@@ -33,6 +34,8 @@ class PreviewError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
+
+struct DrawnObject;
 
 // Milliseconds of the latest frame whose timer queries have finished: a few frames old, because nothing waits
 // for them.
@@ -67,6 +70,8 @@ class SeaRenderer {
     // by one, which the map lacks, as they were so long ago.
     void set_spray(const Spray& spray, std::shared_ptr<const std::vector<SprayDrop>> drops = {},
                    double late_s = 0.0);
+    // The objects of the next pictures, and the light round them; none before the first call.
+    void set_objects(std::vector<DrawnObject> objects, const ObjectSurroundings& surroundings);
     // Sets the frame of the next pictures. A frame of another sea replaces that sea: textures are made again,
     // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
     // PreviewError if the driver's textures are too small for the sea.
@@ -96,7 +101,8 @@ class SeaRenderer {
     void show(float exposure, const glm::mat3& white_balance);
 
     // Reads the last picture back, and waits for it. The terms are separate with options.layers. Otherwise
-    // `sea` has the whole radiance (and `sky` has it where there is no sea).
+    // `sea` has the whole radiance (and `sky` has it where there is no sea). Of pictures with objects their light is the layer Object;
+    // what the sea mirrors of them is in `sky`, and Reflection is 0.
     Picture read_layers() const;
 
     StageTimes times() const;

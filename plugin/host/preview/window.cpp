@@ -32,6 +32,7 @@
 #include "plugin/format/png/png.h"
 #include "plugin/host/gpu/foam_worker.h"
 #include "plugin/host/preview/controls.h"
+#include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/live.h"
 #include "plugin/host/preview/orbit.h"
 #include "plugin/light/exposure.h"
@@ -482,7 +483,8 @@ class Preview {
         const auto only_if = [&](bool wanted) { return wanted ? std::optional<View>(view) : std::nullopt; };
         has_spray_ = render_options(controls_.scene).lighting.spray;
         sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_),
-                  floor_before(view));
+                  floor_before(view),
+                  shot_.objects.empty() ? std::nullopt : std::optional<double>(controls_.frame));
         const std::shared_ptr<const LiveBuild> before = frame_ ? frame_->build : nullptr;
         frame_ = sea_.newest();
         const bool is_other = (frame_ && frame_->build != before) || water_content() != water_from_;
@@ -576,6 +578,7 @@ class Preview {
             renderer_.set_spray({});
         const std::shared_ptr<const Floor> lit_floor = sea_.newest_floor();
         renderer_.set_floor(lit_floor ? lit_floor : floor_);
+        show_objects();
         renderer_.draw(view, *mesh, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
@@ -599,6 +602,13 @@ class Preview {
                                               .gain = now_.water.caustics,
                                               .side = kSide,
                                               .is_below = is_below}};
+    }
+
+    void show_objects() {
+        const auto ready = sea_.newest_objects();
+        if (!ready || !sky_) return renderer_.set_objects({}, {});
+        renderer_.set_objects(*ready, object_surroundings(controls_.draw.lighting, sky_->sky, water_,
+                                                          law_coverage(controls_.scene)));
     }
 
     // The spray before the last camera for which it is ready, and its drops.

@@ -248,6 +248,7 @@ class OnBoth {
         source.add_file("core/lighting/special.glsl");
         source.add_file("plugin/host/gpu/sky_texture.glsl");
         source.add_file("core/lighting/sky_map.glsl");
+        source.add_file("plugin/host/gpu/sky_alone.glsl");
         source.add_files(lighting_files());
         source.add_file("core/lighting/background.glsl");
         source.add_file("core/lighting/tone.glsl");

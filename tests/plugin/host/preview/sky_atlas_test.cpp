@@ -32,7 +32,7 @@ TEST(SkyAtlas, IsReadAsTheMapIs) {
     source.add_file("plugin/host/gpu/sky_atlas.glsl");
     source.add_file("core/lighting/sky_map.glsl");
     const ShaderProgram program =
-        gpu::program_of(gpu::caller(source, "", "answer = vec4(sky_lookup(given(0).xy, given(0).z), 1.0);"));
+        gpu::program_of(gpu::caller(source, "", "answer = vec4(mapped_sky(given(0).xy, given(0).z), 1.0);"));
     program.use();
     const GlTexture texture;
     glActiveTexture(GL_TEXTURE0 + kUnit);

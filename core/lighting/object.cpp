@@ -1,0 +1,95 @@
+#include "core/lighting/object.h"
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+namespace pelagic {
+namespace object_shading {
+
+using namespace glm;
+
+// clang-format off
+#include "core/lighting/special.glsl"
+#include "core/lighting/fresnel.glsl"
+#include "core/lighting/object.glsl"
+// clang-format on
+
+}  // namespace object_shading
+
+namespace {
+
+namespace shading = object_shading;
+
+shading::ObjectLook glsl(const ObjectLook& look) {
+    return {look.colour, look.roughness, look.glow};
+}
+
+// The sun's irradiance across its light.
+glm::vec3 beam_of(const Sky& sky) {
+    return shading::kPi * sky.sun_angular_radius * sky.sun_angular_radius * sky.sun_radiance;
+}
+
+// Adds light that comes from a direction (unit): its irradiance across that direction.
+void add(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light) {
+    to.flat_part += light * 0.25f;
+    to.x += light * (0.5f * from.x);
+    to.y += light * (0.5f * from.y);
+    to.z += light * (0.5f * from.z);
+    // Of the second degree a diffuse surface keeps a quarter of what it does of the first constant.
+    to.xy += light * (0.9375f * from.x * from.y);
+    to.yz += light * (0.9375f * from.y * from.z);
+    to.xz += light * (0.9375f * from.x * from.z);
+    to.zz += light * (0.078125f * (3.0f * from.z * from.z - 1.0f));
+    to.xx_yy += light * (0.234375f * (from.x * from.x - from.y * from.y));
+}
+
+}  // namespace
+
+ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                                       double foam) {
+    ObjectSurroundings made;
+    const float covered = choice.whitecaps ? static_cast<float>(foam) : 0.0f;
+    const glm::vec3 sun = choice.sun ? sky.sun_irradiance : glm::vec3(0.0f),
+                    above = choice.sky ? sky.sky_irradiance : glm::vec3(0.0f);
+    const SeaAlbedo albedo = sea_albedo(water);
+    made.water = (sun + above) / shading::kPi *
+                 ((1.0f - covered) * (choice.water ? albedo.water : glm::vec3(0.0f)) + covered * albedo.foam);
+    const float variance = 0.5f * (water.waves.x + water.waves.y);
+    const auto reflected = [&](float cosine) {
+        return (1.0f - covered) * shading::fresnel_effective_exact(cosine, std::sqrt(variance), variance);
+    };
+    const auto mirrored = [](glm::vec3 d) { return glm::vec3(d.x, d.y, -d.z); };
+    constexpr int kSide = 64;  // of a square round the horizon's circle in the sky's map
+    constexpr float kStep = 2.0f / kSide;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const glm::vec2 u(-1.0f + kStep * (static_cast<float>(i) + 0.5f),
+                              -1.0f + kStep * (static_cast<float>(j) + 0.5f));
+            if (glm::dot(u, u) > 1.0f) continue;
+            const glm::vec3 d = sky_map_direction(u);
+            const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
+            const glm::vec3 light = choice.sky ? solid_angle * sky.map.open_radiance(u) : glm::vec3(0.0f);
+            add(made, d, light);
+            add(made, mirrored(d), reflected(d.z) * light + solid_angle * made.water);
+        }
+    if (choice.sun && sky.sun_direction.z > 0.0f)
+        add(made, mirrored(sky.sun_direction), reflected(sky.sun_direction.z) * beam_of(sky));
+    return made;
+}
+
+glm::vec3 object_irradiance(const ObjectSurroundings& light, glm::vec3 normal) {
+    return shading::object_irradiance(normal, {light.flat_part, light.x, light.y, light.z, light.xy, light.yz,
+                                               light.zz, light.xz, light.xx_yy, light.water});
+}
+
+glm::vec3 object_of_sun(const ObjectLook& look, const Sky& sky, glm::vec3 to_eye, glm::vec3 normal) {
+    return shading::object_of_sun(to_eye, sky.sun_direction, normal, glsl(look), sky.sun_radiance,
+                                  beam_of(sky));
+}
+
+glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3 irradiance,
+                                 glm::vec3 mirrored) {
+    return shading::object_of_surroundings(cosine, glsl(look), irradiance, mirrored);
+}
+
+}  // namespace pelagic

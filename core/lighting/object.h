@@ -1,0 +1,35 @@
+// The light of a body's surface (object.glsl), for C++.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "core/lighting/lighting.h"
+#include "core/lighting/sky.h"
+#include "core/lighting/water.h"
+
+namespace pelagic {
+
+// object.glsl says what the members are.
+struct ObjectLook {
+    glm::vec3 colour{0.8f};
+    float roughness = 0.5f;
+    glm::vec3 glow{0.0f};  // [kcd/m²]
+};
+struct ObjectSurroundings {
+    glm::vec3 flat_part{0.0f}, x{0.0f}, y{0.0f}, z{0.0f}, xy{0.0f}, yz{0.0f}, zz{0.0f}, xz{0.0f}, xx_yy{0.0f};
+    glm::vec3 water{0.0f};
+};
+
+// What surrounds bodies on a sea: the sky above and, below, its image and the sun's in waves of the water's slopes, with the light
+// from the water, of which so much is covered with foam (0 … 1). Terms that are off are black.
+ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                                       double foam);
+// On a surface of that unit normal.
+glm::vec3 object_irradiance(const ObjectSurroundings& light, glm::vec3 normal);
+// Radiance to the eye (unit) of the sun of a sky, where nothing hides it.
+glm::vec3 object_of_sun(const ObjectLook& look, const Sky& sky, glm::vec3 to_eye, glm::vec3 normal);
+// Radiance to the eye of light from all round: the irradiance, and the mean radiance in the varnish's lobe.
+glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3 irradiance,
+                                 glm::vec3 mirrored);
+
+}  // namespace pelagic

@@ -1,0 +1,2 @@
+// Nothing but its depth.
+void main() {}

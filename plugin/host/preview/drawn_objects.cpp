@@ -1,0 +1,388 @@
+#include "plugin/host/preview/drawn_objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "core/surface/earth.h"
+#include "plugin/host/gpu/shader_variants.h"
+#include "plugin/host/preview/gl_textures.h"
+
+namespace pelagic {
+namespace {
+
+enum Unit : int { kMaterials, kShadow, kBlockers, kMirrored };
+
+struct Vertex {
+    glm::vec3 place_m, normal;
+    float material;
+};
+
+constexpr int kShadowSide = 2048, kMirroredSide = 1024;  // texels, at most
+// The mirrored picture's pixels are twice as wide as the picture's: waves blur what they show.
+constexpr double kMirroredPixels = 0.5;
+constexpr double kWidest = 4.0;  // tangents of what the mirrored eye sees to either side
+
+void set_matrix(const ShaderProgram& program, const char* name, const glm::dmat4& value) {
+    const glm::mat4 rounded(value);
+    glUniformMatrix4fv(program.uniform(name), 1, GL_FALSE, glm::value_ptr(rounded));
+}
+
+glm::dmat4 translation(glm::dvec3 by) {
+    glm::dmat4 made(1.0);
+    made[3] = glm::dvec4(by, 1.0);
+    return made;
+}
+
+}  // namespace
+
+std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& scene,
+                                       const ObjectMoment& at) {
+    std::vector<DrawnObject> drawn;
+    for (const SceneObject& object : scene.objects) {
+        const auto [pose, water_m] = place_object(state, scene, object, at);
+        drawn.push_back(
+            {.mesh = object.mesh,
+             .place_m = pose.place_m,
+             .axes = pose.scale * pose.turn,
+             .water_m = water_m,
+             .colour = glm::vec3(object.colour),
+             // Radiance 1 is a thousand cd/m² by daylight; a sky's picture counts as if it were so.
+             .glow = static_cast<float>(1e-3 * object.glow_cd_m2),
+             .holdout = object.holdout});
+    }
+    return drawn;
+}
+
+void DrawnObjects::set(std::vector<DrawnObject> objects, const ObjectSurroundings& surroundings) {
+    objects_ = std::move(objects);
+    surroundings_ = surroundings_uniforms(surroundings);
+    std::erase_if(meshes_, [&](const Mesh& mesh) {
+        return std::ranges::none_of(objects_,
+                                    [&](const DrawnObject& object) { return object.mesh == mesh.of; });
+    });
+    for (const DrawnObject& object : objects_) {
+        if (std::ranges::any_of(meshes_, [&](const Mesh& mesh) { return mesh.of == object.mesh; })) continue;
+        const ObjectMeshData& data = object.mesh->data();
+        Mesh& mesh = meshes_.emplace_back();
+        mesh.of = object.mesh;
+        mesh.count = static_cast<GLsizei>(data.triangles.size());
+        std::vector<Vertex> vertices(data.triangles.size());
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            vertices[i] = {data.points_m[data.triangles[i]], data.normals[i],
+                           static_cast<float>(data.material[i / 3])};
+        glBindVertexArray(mesh.array.name());
+        glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+                     vertices.data(), GL_STATIC_DRAW);
+        const auto attribute = [](GLuint location, GLint size, std::size_t offset) {
+            glEnableVertexAttribArray(location);
+            glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                                  reinterpret_cast<const void*>(offset));
+        };
+        attribute(0, 3, offsetof(Vertex, place_m));
+        attribute(1, 3, offsetof(Vertex, normal));
+        attribute(2, 1, offsetof(Vertex, material));
+        std::vector<glm::vec4> texels;
+        for (const ObjectMaterial& material : data.materials) {
+            texels.emplace_back(material.colour, material.roughness);
+            texels.emplace_back(material.glow, 0.0f);
+        }
+        edit_texture(mesh.materials);
+        texels_as_they_are();
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, static_cast<GLsizei>(data.materials.size()), 0, GL_RGBA,
+                     GL_FLOAT, texels.data());
+    }
+}
+
+const DrawnObjects::Mesh& DrawnObjects::mesh_of(const DrawnObject& object) const {
+    return *std::ranges::find_if(meshes_, [&](const Mesh& mesh) { return mesh.of == object.mesh; });
+}
+
+// Of an object's box, in the grid.
+std::array<glm::dvec3, 8> DrawnObjects::corners(std::size_t object) const {
+    const glm::dvec3 least = objects_[object].mesh->least_m(), most = objects_[object].mesh->most_m();
+    std::array<glm::dvec3, 8> made{};
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner((i & 1) != 0 ? most.x : least.x, (i & 2) != 0 ? most.y : least.y,
+                                (i & 4) != 0 ? most.z : least.z);
+        made[i] = glm::dvec3(placed_[object].grid_from * glm::dvec4(corner, 1.0));
+    }
+    return made;
+}
+
+void DrawnObjects::place(const Eye& eye) {
+    eye_ = eye;
+    placed_.clear();
+    for (const DrawnObject& object : objects_) {
+        const glm::dvec3 flat_m = object.place_m - glm::dvec3(eye.origin_m, 0.0);
+        const glm::dvec3 vertical = earth_up(glm::dvec2(flat_m), eye.curvature_per_m);
+        Placed& placed = placed_.emplace_back();
+        for (int axis = 0; axis < 3; ++axis)
+            placed.grid_from[axis] = glm::dvec4(from_level(object.axes[axis], vertical), 0.0);
+        placed.grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
+        placed.water_m = on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z;
+    }
+    fit_shadow();
+    fit_mirror();
+}
+
+// The sun's rays, parallel, round all objects.
+void DrawnObjects::fit_shadow() {
+    has_shadow_ = eye_.sun_angular_radius > 0.0 && eye_.to_sun.z > 0.0;
+    if (!has_shadow_) return;
+    const glm::dvec3 ahead = -eye_.to_sun;
+    const glm::dvec3 side = glm::normalize(
+        glm::cross(ahead, std::abs(ahead.z) < 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0)));
+    const glm::dvec3 up = glm::cross(side, ahead);
+    glm::dvec3 least(std::numeric_limits<double>::infinity()), most(-least);
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+        for (const glm::dvec3& corner : corners(i)) {
+            const glm::dvec3 at(glm::dot(side, corner), glm::dot(up, corner), glm::dot(ahead, corner));
+            least = glm::min(least, at);
+            most = glm::max(most, at);
+        }
+    shadow_side_ = std::min(kShadowSide, eye_.largest_texture);
+    // Texels round the edge see past the objects, as what lies beyond it does.
+    const glm::dvec3 room = glm::max((most - least) * (4.0 / shadow_side_), glm::dvec3(1e-3));
+    least -= room;
+    most += room;
+    shadow_reach_m_ = most - least;
+    glm::dmat4 turn(1.0);
+    for (int axis = 0; axis < 3; ++axis) turn[axis] = glm::dvec4(side[axis], up[axis], ahead[axis], 0.0);
+    glm::dmat4 size(1.0);
+    for (int axis = 0; axis < 3; ++axis) size[axis][axis] = 1.0 / shadow_reach_m_[axis];
+    shadow_from_grid_ = size * translation(-least) * turn;
+}
+
+// From the eye's mirror image: an upright picture of all objects, as far as they are above the water.
+void DrawnObjects::fit_mirror() {
+    double water_m = 0.0;
+    for (const Placed& placed : placed_) water_m += placed.water_m / static_cast<double>(placed_.size());
+    mirrored_eye_m_ = {eye_.view.position_m.x - eye_.origin_m.x, eye_.view.position_m.y - eye_.origin_m.y,
+                       2.0 * water_m - eye_.view.position_m.z};
+    std::vector<glm::dvec3> seen;  // from there
+    glm::dvec3 middle(0.0);
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+        for (glm::dvec3 corner : corners(i)) {
+            corner.z = std::max(corner.z, placed_[i].water_m);
+            seen.push_back(corner - mirrored_eye_m_);
+            const double away = glm::length(seen.back());
+            if (away > 0.0) middle += seen.back() / away;
+        }
+    if (!(glm::length(middle) > 1e-9)) middle = glm::dvec3(0.0, 0.0, 1.0);
+    const glm::dvec3 ahead = glm::normalize(middle);
+    const glm::dvec3 side = glm::normalize(
+        glm::cross(ahead, std::abs(ahead.z) < 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0)));
+    const glm::dvec3 up = glm::cross(side, ahead);
+    glm::dvec2 least(kWidest), most(-kWidest);
+    for (const glm::dvec3& at : seen) {
+        const double along = glm::dot(ahead, at);
+        glm::dvec2 tangents(glm::dot(side, at), glm::dot(up, at));
+        if (along * kWidest > std::max(std::abs(tangents.x), std::abs(tangents.y)))
+            tangents /= along;
+        else  // beside the eye, or behind it
+            tangents *= 2.0 * kWidest / std::max(std::max(std::abs(tangents.x), std::abs(tangents.y)), 1e-9);
+        least = glm::min(least, tangents);
+        most = glm::max(most, tangents);
+    }
+    least = glm::max(least, glm::dvec2(-kWidest));
+    most = glm::min(most, glm::dvec2(kWidest));
+    const double pixel = eye_.view.pixel_tangent() / kMirroredPixels;
+    const int largest = std::min(kMirroredSide, eye_.largest_texture);
+    const glm::dvec2 span = glm::max(most - least, glm::dvec2(1e-4));
+    glm::ivec2 size;
+    for (int axis = 0; axis < 2;
+         ++axis) {  // sides of powers of two, so that a moving camera seldom needs others
+        size[axis] = 16;
+        while (size[axis] < largest && size[axis] * pixel < span[axis]) size[axis] *= 2;
+    }
+    // A rim of nothing.
+    const glm::dvec2 rim = span * 2.0 / glm::dvec2(size);
+    least -= rim;
+    most += rim;
+    mirrored_texels_ = std::min(size.x / (most.x - least.x), size.y / (most.y - least.y));
+    // x and y of the clip coordinates, and the distance ahead as w.
+    glm::dmat4 clip(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        clip[axis][0] = (2.0 * side[axis] - (most.x + least.x) * ahead[axis]) / (most.x - least.x);
+        clip[axis][1] = (2.0 * up[axis] - (most.y + least.y) * ahead[axis]) / (most.y - least.y);
+        clip[axis][3] = ahead[axis];
+    }
+    mirrored_from_grid_ = clip * translation(-mirrored_eye_m_);
+    mirrored_from_grid_[3][2] = 0.0;
+    if (mirrored_size_ == size) return;
+    mirrored_size_ = size;
+    edit_texture(mirrored_);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, nullptr);
+    edit_texture(mirrored_depth_);
+    texels_as_they_are();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size.x, size.y, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 nullptr);
+    glBindFramebuffer(GL_FRAMEBUFFER, mirrored_framebuffer_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, mirrored_.name(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, mirrored_depth_.name(), 0);
+}
+
+void DrawnObjects::draw_shadow(const ShaderProgram& program) {
+    if (!has_shadow_) return;
+    GLint side = 0;
+    edit_texture(shadow_);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &side);
+    if (side != shadow_side_) {
+        texels_as_they_are();
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+        constexpr std::array kNothing{1.0f, 1.0f, 1.0f, 1.0f};
+        glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, kNothing.data());
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, shadow_side_, shadow_side_, 0,
+                     GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+        glSamplerParameteri(compares_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glSamplerParameteri(compares_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        glSamplerParameteri(compares_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+        glSamplerParameteri(compares_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+        glSamplerParameterfv(compares_.name(), GL_TEXTURE_BORDER_COLOR, kNothing.data());
+        glSamplerParameteri(compares_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+        glSamplerParameteri(compares_.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_.name(), 0);
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+    glViewport(0, 0, shadow_side_, shadow_side_);
+    GLint depth_func = 0;
+    glGetIntegerv(GL_DEPTH_FUNC, &depth_func);
+    GLdouble clear_depth = 1.0;
+    glGetDoublev(GL_DEPTH_CLEAR_VALUE, &clear_depth);
+    glDepthFunc(GL_LESS);
+    glClearDepth(1.0);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.5f, 2.0f);
+    program.use();
+    glm::dmat4 clip(1.0);  // from 0 … 1
+    for (int axis = 0; axis < (eye_.reversed_depth ? 2 : 3); ++axis) {
+        clip[axis][axis] = 2.0;
+        clip[3][axis] = -1.0;
+    }
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+        set_matrix(program, "clip_from_object", clip * shadow_from_grid_ * placed_[i].grid_from);
+        const Mesh& mesh = mesh_of(objects_[i]);
+        glBindVertexArray(mesh.array.name());
+        glDrawArrays(GL_TRIANGLES, 0, mesh.count);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glDepthFunc(static_cast<GLenum>(depth_func));
+    glClearDepth(clear_depth);
+}
+
+void DrawnObjects::bind_shadow(const ShaderProgram& program, int first_unit) const {
+    glUniform1i(program.uniform("sun_shadow"), first_unit + kShadow);
+    glUniform1i(program.uniform("sun_blockers"), first_unit + kBlockers);
+    bind_texture(first_unit + kShadow, shadow_);
+    glBindSampler(static_cast<GLuint>(first_unit + kShadow), compares_.name());
+    bind_texture(first_unit + kBlockers, shadow_);
+    glm::dmat4 from_grid = shadow_from_grid_;
+    // Without a sun everything lies before the map.
+    if (!has_shadow_) from_grid = translation({0.0, 0.0, -2.0}) * glm::dmat4(0.0);
+    set_matrix(program, "shadow_from_grid", from_grid);
+    const glm::dvec3& reach = shadow_reach_m_;
+    glUniform4f(program.uniform("shadow_reach"), static_cast<float>(reach.x), static_cast<float>(reach.y),
+                static_cast<float>(reach.z), static_cast<float>(std::tan(eye_.sun_angular_radius)));
+    const double texel_m = std::max(reach.x, reach.y) / std::max(shadow_side_, 1);
+    glUniform1f(program.uniform("shadow_off"), static_cast<float>(0.5 * texel_m / reach.z));
+    glUniform1f(program.uniform("shadow_texel_m"), static_cast<float>(1.5 * texel_m));
+}
+
+void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip_from_grid, glm::dvec3 eye_m,
+                            int first_unit) const {
+    bind_shadow(program, first_unit);
+    set_uniforms(program, surroundings_);
+    glUniform1i(program.uniform("object_materials"), first_unit + kMaterials);
+    glUniform3f(program.uniform("object_eye"), static_cast<float>(eye_m.x), static_cast<float>(eye_m.y),
+                static_cast<float>(eye_m.z));
+    if (eye_.reversed_depth)
+        glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(eye_.near_m));
+    else
+        glUniform2f(program.uniform("depth_of_distance"), 1.0f, static_cast<float>(-2.0 * eye_.near_m));
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+        const DrawnObject& object = objects_[i];
+        const Mesh& mesh = mesh_of(object);
+        set_matrix(program, "clip_from_object", clip_from_grid * placed_[i].grid_from);
+        set_matrix(program, "grid_from_object", placed_[i].grid_from);
+        glUniform3f(program.uniform("object_colour"), object.colour.x, object.colour.y, object.colour.z);
+        glUniform1f(program.uniform("object_glow"), object.glow);
+        glUniform1i(program.uniform("object_holdout"), object.holdout ? 1 : 0);
+        glUniform1f(program.uniform("object_water_m"), static_cast<float>(placed_[i].water_m));
+        bind_texture(first_unit + kMaterials, mesh.materials);
+        glBindVertexArray(mesh.array.name());
+        glDrawArrays(GL_TRIANGLES, 0, mesh.count);
+    }
+}
+
+void DrawnObjects::draw_mirrored(const ShaderProgram& program, int first_unit) {
+    glBindFramebuffer(GL_FRAMEBUFFER, mirrored_framebuffer_.name());
+    glViewport(0, 0, mirrored_size_.x, mirrored_size_.y);
+    glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    draw_all(program, mirrored_from_grid_, mirrored_eye_m_, first_unit);
+    edit_texture(mirrored_);
+    glGenerateMipmap(GL_TEXTURE_2D);
+}
+
+void DrawnObjects::draw(const ShaderProgram& program, int first_unit) {
+    draw_all(program, eye_.view.clip_from(glm::dvec3(eye_.origin_m, 0.0), eye_.near_m),
+             eye_.view.position_m - glm::dvec3(eye_.origin_m, 0.0), first_unit);
+}
+
+void DrawnObjects::bind(const ShaderProgram& program, int first_unit) const {
+    bind_shadow(program, first_unit);
+    glUniform1i(program.uniform("mirrored_objects"), first_unit + kMirrored);
+    bind_texture(first_unit + kMirrored, mirrored_);
+    set_matrix(program, "mirrored_from_grid", mirrored_from_grid_);
+    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirrored_texels_));
+    // The nearest ones, where there are more.
+    std::vector<std::size_t> order(objects_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto away = [&](std::size_t i) {
+        return glm::distance(glm::dvec3(placed_[i].grid_from[3]), mirrored_eye_m_);
+    };
+    if (order.size() > kObjectBoxes) std::ranges::sort(order, {}, away);
+    order.resize(std::min<std::size_t>(order.size(), kObjectBoxes));
+    std::vector<glm::mat4> boxes;
+    for (const std::size_t i : order) {
+        const glm::dvec3 least = objects_[i].mesh->least_m(), most = objects_[i].mesh->most_m();
+        glm::dmat4 box = translation(0.5 * (least + most));
+        for (int axis = 0; axis < 3; ++axis)
+            box[axis][axis] = std::max(0.5 * (most[axis] - least[axis]), 1e-3);
+        boxes.emplace_back(glm::inverse(placed_[i].grid_from * box));
+    }
+    glUniform1i(program.uniform("object_count"), static_cast<GLint>(boxes.size()));
+    glUniformMatrix4fv(program.uniform("object_boxes"), static_cast<GLsizei>(boxes.size()), GL_FALSE,
+                       glm::value_ptr(boxes.front()));
+}
+
+std::size_t DrawnObjects::bytes(const Scene& scene) {
+    if (scene.objects.empty()) return 0;
+    std::set<const ObjectMesh*> meshes;
+    for (const SceneObject& object : scene.objects) meshes.insert(object.mesh.get());
+    std::size_t all = std::size_t{kShadowSide} * kShadowSide * sizeof(float) +
+                      std::size_t{kMirroredSide} * kMirroredSide * (2 * sizeof(glm::vec4));
+    for (const ObjectMesh* mesh : meshes) all += 2 * mesh->data().triangles.size() * sizeof(Vertex);
+    return all;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,91 @@
+#include "plugin/render/object_place.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <span>
+#include <vector>
+
+#include "core/evaluate/evaluate.h"
+#include "core/surface/earth.h"
+
+namespace pelagic {
+namespace {
+
+// Heel and trim of a body that floats: no more than this slope. A wave as long as the body has up to 0.44.
+constexpr double kMostLean = 0.45;
+constexpr int kAlong = 5, kAcross = 3;  // places of the water under a body
+
+struct WaterPlane {
+    double height_m = 0.0;
+    glm::dvec2 slope{0.0};  // along the body's axes
+};
+
+// The least-squares plane through points (x, y along the body's axes, z).
+WaterPlane plane_through(std::span<const glm::dvec3> points) {
+    glm::dmat3 sums(0.0);
+    glm::dvec3 heights(0.0);
+    for (const glm::dvec3& p : points) {
+        const glm::dvec3 row(1.0, p.x, p.y);
+        sums += glm::outerProduct(row, row);
+        heights += p.z * row;
+    }
+    // Points in one line have no slope across it.
+    for (int i = 1; i < 3; ++i) sums[i][i] += 1e-9;
+    const glm::dvec3 plane = glm::inverse(sums) * heights;
+    return {plane.x, glm::clamp(glm::dvec2(plane.y, plane.z), -kMostLean, kMostLean)};
+}
+
+}  // namespace
+
+template <class T>
+PlacedObject place_object(const Frame<T>& state, const Scene& scene, const SceneObject& object,
+                          const ObjectMoment& at) {
+    PlacedObject placed{object_pose(scene, object, at.frame), at.rest_m};
+    if (!object.floats) return placed;
+    ObjectPose& pose = placed.pose;
+    const glm::dvec2 least(object.mesh->least_m()), most(object.mesh->most_m());
+    const glm::dvec2 size = pose.scale * (most - least);
+    const bool is_long = size.x >= size.y;
+    const int nx = is_long ? kAlong : kAcross, ny = is_long ? kAcross : kAlong;
+    const double level = std::hypot(pose.turn[0].x, pose.turn[0].y);
+    const glm::dvec2 ahead = level > 1e-6 ? glm::dvec2(pose.turn[0]) / level : glm::dvec2(1.0, 0.0);
+    const glm::dvec2 port(-ahead.y, ahead.x);
+    std::array<glm::vec<2, T>, kAlong * kAcross> rest;
+    std::array<glm::vec<3, T>, kAlong * kAcross> position, velocity{};
+    const glm::dvec2 origin_m(pose.place_m);
+    for (int k = 0; k < kAlong * kAcross; ++k) {
+        const glm::dvec2 local =
+            pose.scale * (least + (most - least) * glm::dvec2((k % nx + 0.5) / nx, (k / nx + 0.5) / ny));
+        rest[k] = glm::vec<2, T>(local.x * ahead + local.y * port);
+    }
+    const std::vector<T> cell_m(rest.size(), static_cast<T>(std::max(size.x, size.y) / 3.0));
+    Results<T> results;
+    results.set(Product::Position, {position.data()});
+    if (at.late_s != 0.0) results.set(Product::Velocity, {velocity.data()});
+    evaluate(
+        state, at.query,
+        Points<T>{
+            .origin_m = origin_m, .count = rest.size(), .rest_m = {rest.data()}, .cell_m = {cell_m.data()}},
+        results);
+    std::array<glm::dvec3, kAlong * kAcross> points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const glm::dvec3 there = glm::dvec3(position[k]) + at.late_s * glm::dvec3(velocity[k]);
+        points[k] = {glm::dot(glm::dvec2(there), ahead), glm::dot(glm::dvec2(there), port), there.z};
+    }
+    const WaterPlane plane = plane_through(points);
+    const glm::dvec3 up = glm::normalize(glm::dvec3(-(plane.slope.x * ahead + plane.slope.y * port), 1.0));
+    placed.water_m = plane.height_m + at.rest_m;
+    for (int axis = 0; axis < 3; ++axis) pose.turn[axis] = from_level(pose.turn[axis], up);
+    pose.place_m = glm::dvec3(origin_m, placed.water_m) + pose.place_m.z * up;
+    return placed;
+}
+template PlacedObject place_object(const Frame<float>&, const Scene&, const SceneObject&,
+                                   const ObjectMoment&);
+template PlacedObject place_object(const Frame<double>&, const Scene&, const SceneObject&,
+                                   const ObjectMoment&);
+
+}  // namespace pelagic

@@ -17,7 +17,7 @@
 namespace pelagic {
 namespace {
 
-constexpr int kTaskColumns = 16;
+constexpr int kBlockColumns = 16;
 constexpr double kOff = 0.02;  // of the shortest wave: how far a straight step may be off its path
 
 double rise(double x) {
@@ -212,11 +212,11 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
             }
             order_.push_back(&found->second);
         }
-        const int tasks = (radius_ + kTaskColumns - 1) / kTaskColumns;
+        const int tasks = (radius_ + kBlockColumns - 1) / kBlockColumns;
         tbb::parallel_for(0, tasks * static_cast<int>(missing.size()), [&](int task) {
             stop_if(cancel);
             Leg& leg = *missing[static_cast<std::size_t>(task / tasks)];
-            const int from = task % tasks * kTaskColumns, end = std::min(from + kTaskColumns, radius_);
+            const int from = task % tasks * kBlockColumns, end = std::min(from + kBlockColumns, radius_);
             // A column's kernels write beyond its end, where the next one's values are not yet.
             for (int mx = from; mx < end; ++mx) {
                 const std::size_t at = first_of(mx), count = count_of(mx);

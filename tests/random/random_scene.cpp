@@ -737,8 +737,8 @@ std::optional<Scene> RandomScene::scene() const {
         }
     }
     for (SceneObject& object : scene.objects) {
-        object.mesh = std::make_shared<const ObjectMesh>(parse_object_obj(
-            files.at(kBodyName), kBodyName, [](const std::string&) { return std::nullopt; }));
+        object.mesh = std::make_shared<const ObjectMesh>(
+            parse_object_obj(kBody, kBodyName, [](const std::string&) { return std::nullopt; }));
     }
     return scene;
 }

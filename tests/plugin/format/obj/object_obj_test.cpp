@@ -93,6 +93,7 @@ TEST(ObjectObj, LeavesOutWhatHasNoArea) {
     const ObjectMesh body =
         read_body(std::string(kPlate) + "v 2 0 0\nf 1 2 5\nf 1 1 2\nf 1 2 3\nf 1 2 5 2\nf 1 5 3 4\n");
     EXPECT_NEAR(area(body.data()), 0.5 + 1.5, 1e-6);
+    EXPECT_EQ(read_body(std::string(kPlate) + "f 1 2 3 3\n").data().triangles.size(), 3u);
     EXPECT_NE(body_refusal(std::string(kPlate) + "v 2 0 0\nf 1 2 5\n").find("b.obj has no face with an area"),
               std::string::npos);
     EXPECT_NE(body_refusal(kPlate).find("b.obj has no faces"), std::string::npos);

@@ -18,8 +18,8 @@ namespace {
 constexpr float kPi_f = std::numbers::pi_v<float>;
 constexpr float kF0 = 0.04f;  // of a dielectric of index 1.5, straight on
 
-// Rays of a pixel, over all its samples.
-constexpr std::uint32_t kSunRays = 16, kSkyRays = 32;
+// Rays of a pixel, over all its samples, and of a sample at least.
+constexpr std::uint32_t kSunRays = 16, kSkyRays = 32, kLeastSunRays = 2, kLeastSkyRays = 4;
 enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss };
 
 // A coordinate system round a unit direction (Duff et al. 2017).
@@ -222,7 +222,7 @@ float LitObjects::sun_share(const glm::vec3& place, const glm::vec3& normal,
         return glm::dot(way, way) - along * along <= most * most;
     });
     if (!is_possible) return 1.0f;
-    const std::uint32_t count = numbers.rays(kSunRays);
+    const std::uint32_t count = numbers.rays(kSunRays, kLeastSunRays);
     std::uint32_t seen = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
         const glm::vec2 at = on_disc(numbers.place(kOfSun, k, count));
@@ -358,7 +358,7 @@ glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNu
         return below < 0.0f ? direction - 2.0f * below * at.geometric : direction;
     };
     const glm::mat3 axes = axes_round(at.normal);
-    const std::uint32_t count = numbers.rays(kSkyRays);
+    const std::uint32_t count = numbers.rays(kSkyRays, kLeastSkyRays);
     glm::vec3 sum(0.0f);
     for (std::uint32_t k = 0; k < count; ++k) {
         constexpr float kBlur = 0.15f;

@@ -6,6 +6,7 @@
 // Coordinates: relative to the origin that place() is given [m], in its axes, on the earth where the sea is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,8 +36,10 @@ inline constexpr float kWaterIndex = 1.34f;  // as core/lighting/special.glsl ha
 struct SampleNumbers {
     std::uint32_t x = 0, y = 0, frame = 0;  // of the pixel
     std::uint32_t index = 0, all = 1;       // of the sample in it
-    // As many rays for the sample that a pixel's samples have at least so many together.
-    std::uint32_t rays(std::uint32_t of_pixel) const { return (of_pixel + all - 1) / all; }
+    // As many rays for the sample, at least, that a pixel's samples have so many together.
+    std::uint32_t rays(std::uint32_t of_pixel, std::uint32_t least) const {
+        return std::max((of_pixel + all - 1) / all, least);
+    }
     // The n-th of `rays` in the unit square; what: each use has its own.
     glm::vec2 place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const;
 };

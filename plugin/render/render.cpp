@@ -569,9 +569,9 @@ class RendererOf final : public Impl {
             if (!objects_->may_be_mirrored(place, batch_.seen.to_eye[i], upright,
                                            variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
                 return;
-            constexpr std::uint32_t kFacets = 16, kUse = 100;  // of a pixel
+            constexpr std::uint32_t kFacets = 32, kLeast = 4, kUse = 100;  // of a pixel, of a sample
             const SampleNumbers numbers = numbers_of(first_row, sample);
-            const std::uint32_t count = numbers.rays(kFacets);
+            const std::uint32_t count = numbers.rays(kFacets, kLeast);
             std::array<glm::vec2, kFacets> places;
             std::array<MirroredLight, kFacets> mirrored;
             // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell

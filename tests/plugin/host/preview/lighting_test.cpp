@@ -105,6 +105,7 @@ struct Functions {
 #include "core/lighting/below.glsl"
 #include "core/lighting/background.glsl"
 #include "core/lighting/tone.glsl"
+#include "core/lighting/object.glsl"
     // clang-format on
 
     PELAGIC_BOTH(special, return vec4(erfcx(aa), erfcx_remainder(aa), smith_lambda(aa), 0.0f);)
@@ -180,6 +181,15 @@ struct Functions {
                                vec4(0.0f), vec4(0.0f), 0.0f, vec4(0.0f), vec4(0.0f), vec4(0.0f),
                                vec3(0.0f))));
         return vec4(t.sun + t.sky + t.sea + t.foam, t.sea.y);)
+    PELAGIC_BOTH(
+        object, ObjectLook look = ObjectLook(vec3(0.6f, 0.4f, ww), bb, vec3(0.0f));
+        ObjectSurroundings round = ObjectSurroundings(vec3(5.0f, 4.0f, 6.0f), vec3(1.0f), vec3(0.5f),
+                                                      vec3(2.0f), vec3(0.3f), vec3(-0.2f), vec3(0.1f),
+                                                      vec3(0.4f), vec3(-0.3f), vec3(0.2f));
+        vec3 lit = object_of_sun(vv, ll, nn, look, vec3(1000.0f), vec3(3.0f, 2.0f, 1.0f));
+        return vec4(lit + object_of_surroundings(cc, look, object_irradiance(nn, round),
+                                                 object_mirrors(ll, bb, vec3(7.0f, 8.0f, 9.0f), round)),
+                    0.0f);)
     PELAGIC_BOTH(screen, return vec4(display_colour(vec3(aa, bb, ww), 2.0f), 0.0f);)
     PELAGIC_BOTH(disc,
                  return vec4(sun_disc(vv, normalize(vv + 0.01f * (ww - 0.5f) * nn), 0.00465f, 0.002f + cc),
@@ -252,6 +262,7 @@ class OnBoth {
         source.add_files(lighting_files());
         source.add_file("core/lighting/background.glsl");
         source.add_file("core/lighting/tone.glsl");
+        source.add_file("core/lighting/object.glsl");
         const ShaderProgram program = gpu::program_of(gpu::caller(
             source,
             "vec3 vv; vec3 nn; vec3 ll; vec3 ss; float aa; float bb; float cc; float ww;\nvec4 both() { " +
@@ -376,6 +387,8 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     // Bright colours go through Oklab and back, which makes more of the last digits: at most a fortieth of a byte's step.
     EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-1f).worst, 1e-3f);
     EXPECT_LE(PELAGIC_COMPARE(on, disc, 1e-3f).worst, kBound);
+    // A mirror's lobe is 0.02 wide, which makes more of the last digits.
+    EXPECT_LE(PELAGIC_COMPARE(on, object, 1e-2f).worst, gpu::is_software() ? 1e-3f : kEdge);
 }
 
 TEST(LightingOnTheGpu, OfOneLookupAndThePapersFresnelIsCPlusPluses) {

@@ -313,6 +313,15 @@ TEST(PreviewsObjects, AreLitAsRaysSay) {
     }
 }
 
+TEST(PreviewsObjects, AreCountedInTheMemory) {
+    gpu::need_context();
+    const Scene bare = object_scene(8.0, 35.0), with = with_box(bare);
+    EXPECT_GT(DrawnObjects::bytes(with), std::size_t{16} << 20);
+    EXPECT_EQ(DrawnObjects::bytes(bare), 0u);
+    EXPECT_EQ(offscreen_memory(plan_offscreen(with, 1), 2).bytes(),
+              offscreen_memory(plan_offscreen(bare, 1), 2).bytes() + DrawnObjects::bytes(with));
+}
+
 TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {
     ObjectStage stage(with_box(calm_scene()));
     const auto bits = [](const Picture& picture) {

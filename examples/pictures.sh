@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renders the gallery's pictures from their shots in examples/pictures, on the CPU: those that the README shows, a sheet of foam near
-# and far, a strip of eight frames a second apart, one of water types, and a sheet of all presets, which becomes the add-on's thumbnails. Takes some minutes.
+# and far, a sheet of bodies in the light of the sea, a strip of eight frames a second apart, one of water types, and a sheet of all presets, which becomes the add-on's thumbnails. Takes some minutes.
 #   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
@@ -27,6 +27,8 @@ for shot in noon low-sun overcast storm storm-trough spray from-8-km patch lagoo
     render $shot 12
     sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
+for shot in trawler-noon trawler-sunset buoy-storm lighthouse-dusk; do render $shot 12; done
+sheet 2 objects.jpg "$scratch"/{trawler-noon,trawler-sunset,buoy-storm,lighthouse-dusk}.0012.png
 for shot in foam-breeze foam-gale foam-storm; do render $shot 1-2; done
 sheet 2 foam.jpg "$scratch"/foam-{breeze,gale,storm}.000{1,2}.png
 render foam-strip 25-193x24
@@ -42,4 +44,4 @@ sheet 1 presets.jpg "$scratch/presets.png"
 mapfile -t presets < <("$PELAGIC_ROOT/build/release/pelagic" presets | cut -d ' ' -f 1)
 blender -b --factory-startup --python-exit-code 1 --python "$here/preset-thumbnails.py" -- \
     "$scratch/presets.png" "$PELAGIC_ROOT/addon/pelagic_ocean/thumbnails" "${presets[@]}" >/dev/null
-ls -l "$out"/{presets,noon,low-sun,overcast,storm,storm-trough,spray,from-8-km,patch,lagoon,tiles,atoll,glassy-backlit,half-under,from-below,water-types,foam,foam-strip}.jpg
+ls -l "$out"/{presets,noon,low-sun,overcast,storm,storm-trough,spray,from-8-km,patch,lagoon,tiles,atoll,glassy-backlit,half-under,from-below,water-types,foam,objects,foam-strip}.jpg

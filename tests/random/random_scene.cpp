@@ -38,7 +38,7 @@ constexpr Cap kCaps[] = {
     {"waves.cascades[].resolution", {16, 64}, "transforms grow with the square"},
     {"waves.trains", {1, 100}, "each point sums all trains"},
     {"surface.resolution", {1, 10}, "vertices grow with the square, and near to far has many parts of it"},
-    {"objects[].vessel", {0, 0}, "without so many vessels it is refused"},
+    {"objects[].vessel", {0, 1}, "without so many vessels it is refused"},
     {"surface.cell_px", {6, 256}, "points of projected grids grow with the inverse square"},
     {"surface.cage_level", {0, 2}, "each level has four times the faces"},
     {"camera.resolution", {1, 24}, "each pixel is lit"},
@@ -430,6 +430,23 @@ class Drawing {
         if (!made_.files.contains(kCageName)) made_.files[kCageName] = random_cage(draw_);
     }
 
+    // Bodies go with a vessel that is there, or by a path of their own.
+    void fit_objects() {
+        const auto* vessels = list<std::vector<KeyEntry>>("waves.vessels");
+        auto* objects = list<std::vector<KeyEntry>>("objects");
+        if (!objects) return;
+        for (KeyEntry& entry : *objects) {
+            const auto of = [&](std::string_view name) -> KeyValue& {
+                return std::ranges::find(entry.values, name, &std::pair<std::string_view, KeyValue>::first)
+                    ->second;
+            };
+            if (!vessels || vessels->empty())
+                of("vessel") = std::int64_t{0};
+            else if (std::get<std::int64_t>(of("vessel")) != 0)
+                of("path") = std::string();
+        }
+    }
+
     void fit() {
         fit_data();
         fit_loop();
@@ -438,6 +455,7 @@ class Drawing {
         if (number("shot.loop_s") > 0.0 || number("shot.time_scale") == 0.0 ||
             is("waves.model", std::string("trochoid")))
             leave_out("waves.vessels");
+        fit_objects();
         fit_camera();
         fit_output();
         // Where all of a sea breaks that gains have raised tenfold, its drops take a minute a frame.

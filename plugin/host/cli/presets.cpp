@@ -87,8 +87,8 @@ int draw_sheet(const std::filesystem::path& file) {
         for (int y = 0; y < kSize.y; ++y)
             for (int x = 0; x < kSize.x; ++x) {
                 const std::size_t at = static_cast<std::size_t>(y) * kSize.x + x;
-                const auto shown = display_bytes(
-                    glaring.empty() ? light_of(picture, at) : glaring[at], exposure, {x, y});
+                const auto shown =
+                    display_bytes(glaring.empty() ? light_of(picture, at) : glaring[at], exposure, {x, y});
                 std::copy(
                     shown.begin(), shown.end(),
                     bytes.begin() + 3 * (static_cast<std::ptrdiff_t>(corner.y + y) * size.x + corner.x + x));

@@ -1,5 +1,4 @@
 // Shot files: what loads, and for what doesn't the words that say where, what and what instead.
-#include "plugin/format/exr/exr.h"
 #include "plugin/format/shot/shot.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +12,7 @@
 #include "core/scene/presets.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
+#include "plugin/format/exr/exr.h"
 #include "temporary_folder.h"
 #include "tests/plugin/format/shot/no_check.h"
 

@@ -195,8 +195,14 @@ bool LitObjects::is_dry(const glm::vec3& place) const {
         const glm::vec3 within = body.into * (place - body.place);
         const glm::vec3 least(body.mesh->least_m()), most(body.mesh->most_m());
         if (glm::any(glm::lessThan(within, least)) || glm::any(glm::greaterThan(within, most))) continue;
+        // What lies in the hull, as its load does, stands for it.
         const auto meets = [&](const glm::vec3& towards) {
-            return rays_->nearest({.from = place, .towards = towards}).body == static_cast<int>(i);
+            const RayHit hit = rays_->nearest({.from = place, .towards = towards});
+            if (!hit.is_hit()) return false;
+            const glm::vec3 at = body.into * (place + hit.distance_m * towards - body.place);
+            constexpr float kSlack_m = 1e-3f;  // a hit on the box's own side
+            return glm::all(glm::greaterThanEqual(at, least - kSlack_m)) &&
+                   glm::all(glm::lessThanEqual(at, most + kSlack_m));
         };
         if (!meets(glm::normalize(-body.axes[2]))) continue;
         int met = 0;

@@ -728,7 +728,7 @@ class RendererOf final : public Impl {
     }
     // Whether alpha is 1 for it.
     bool is_covered(std::size_t sample) const {
-        return is_sea(sample) || (is_object(sample) && !objects_->is_holdout(batch_.body[sample]));
+        return is_object(sample) ? !objects_->is_holdout(batch_.body[sample]) : is_sea(sample);
     }
 
     // A Cryptomatte has its largest share first.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <glm/vec3.hpp>
@@ -47,7 +48,7 @@ TEST(Headers, NameTheKeysThatTheFilesDependOn) {
         const bool is_in_stage =
             (key.key_parts & key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts)).any();
         std::string identifier = key.path;
-        identifier.replace(identifier.find('.'), 1, "_");
+        std::ranges::replace(identifier, '.', '_');
         EXPECT_EQ(stage.find(' ' + identifier + " = ") != std::string::npos, is_given && is_in_stage)
             << key.path;
     }

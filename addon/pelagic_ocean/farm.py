@@ -169,7 +169,8 @@ def write_job(scene, out):
         if file not in copies:
             copies[file] = f"files/{len(copies)}/{file.name}"
             (folder / copies[file]).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(file, folder / copies[file])
+            if not (folder / copies[file]).exists() or not file.samefile(folder / copies[file]):
+                shutil.copyfile(file, folder / copies[file])
         return json.dumps(copies[file], ensure_ascii=False)
 
     text = re.sub(r'"(?:[^"\\]|\\.)*"', copied, scene.shot_text())

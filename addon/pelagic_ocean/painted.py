@@ -2,6 +2,7 @@
 """A calm or rough place painted on a mesh: its colours, or a float attribute, become the picture of a mask of the sea."""
 
 import math
+import re
 import zlib
 from pathlib import Path
 
@@ -147,7 +148,8 @@ class PELAGIC_OT_paint_mask(NeedsModule, bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         masks = sea.pelagic.waves.masks
-        row = next((each for each in masks if Path(each.picture.replace("\\", "/")).name.startswith(start)), None)
+        of_mesh = re.compile(re.escape(start) + r"[0-9a-f]{8}\.exr")
+        row = next((each for each in masks if of_mesh.fullmatch(Path(each.picture.replace("\\", "/")).name)), None)
         if row is None:
             row = masks.add()
             row.waves, row.edge_m = 0.5, max(2.0 * painted.pixel_m, 0.05 * painted.size_m.min())

@@ -725,6 +725,9 @@ void check_objects(SceneChecker& check, const Scene& scene) {
                                                   : "is no name for mattes",
                               "1 … " + std::to_string(kMostOfName) +
                                   " bytes of UTF-8 without \", \\ and control characters"});
+        } else if (name == "sea") {
+            check.refuse(
+                {here + ".name", quoted_text(name), "is what mattes call the water", "another name"});
         } else if (const auto [first, is_new] = names.try_emplace(name, i); !is_new) {
             check.refuse({here + ".name", quoted_text(name),
                           "is what " + indexed(list, first->second) + " is called" +

@@ -759,6 +759,8 @@ TEST(Validate, BodiesHaveNamesAFileAndAPlace) {
         refusal([&](Scene& s) { twice(s), s.objects[0].name = s.objects[1].name = "a"; }),
         "objects[1].name = \"a\": is what objects[0] is called; accepted: a name of its own for each of them\n");
     EXPECT_EQ(refusal([](Scene& s) { s.objects[0].name = "Küstenwache 7"; }), "");
+    EXPECT_NE(refusal([](Scene& s) { s.objects[0].name = "sea"; }).find("is what mattes call the water"),
+              std::string::npos);
     for (const std::string& bad :
          {std::string("a\"b"), std::string("a\nb"), std::string("\xff"), std::string(101, 'a')})
         EXPECT_NE(refusal([&](Scene& s) { s.objects[0].name = bad; }).find("is no name for mattes"),

@@ -242,12 +242,13 @@ LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const
     const Body& body = bodies_[hit.body];
     const ObjectMeshData& mesh = body.mesh->data();
     const std::size_t first = 3 * std::size_t{hit.triangle};
-    std::array<glm::vec3, 3> corner{};
+    std::array<glm::dvec3, 3> corner{};
     for (std::size_t i = 0; i < 3; ++i) corner[i] = mesh.points_m[mesh.triangles[first + i]];
     Surface at{.place = ray.from + hit.distance_m * ray.towards, .body = hit.body};
     const glm::vec3 weights(1.0f - hit.weights.x - hit.weights.y, hit.weights.x, hit.weights.y);
-    at.geometric = body.axes * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    at.geometric = glm::normalize(at.geometric);
+    // In double: a sliver's area may be nothing in single precision.
+    at.geometric = glm::vec3(
+        glm::normalize(glm::dmat3(body.axes) * glm::cross(corner[1] - corner[0], corner[2] - corner[0])));
     at.normal = body.axes * (weights.x * mesh.normals[first] + weights.y * mesh.normals[first + 1] +
                              weights.z * mesh.normals[first + 2]);
     const float size = glm::length(at.normal);
@@ -367,7 +368,7 @@ glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNu
     const std::uint32_t count = numbers.rays(kSkyRays, kLeastSkyRays);
     glm::vec3 sum(0.0f);
     for (std::uint32_t k = 0; k < count; ++k) {
-        constexpr float kBlur = 0.15f;
+        constexpr float kBlur = 0.15f;  // [rad], by eye: some of what 32 rays of a hemisphere are apart
         const glm::vec2 place = numbers.place(kOfSky, k, count), disc = on_disc(place);
         sum += incoming(at, above(axes * glm::vec3(disc, std::sqrt(1.0f - place.x))), kBlur);
     }
@@ -409,6 +410,7 @@ glm::vec3 LitObjects::radiance_in_water(const Ray& ray, const RayHit& hit) const
         glm::vec3(glm::vec2(to_sun_) / kWaterIndex,
                   std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kWaterIndex * kWaterIndex))));
     const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
+    // What comes from the side and from below is by eye.
     glm::vec3 light = (0.6f + 0.4f * at.normal.z) * kOfSky * above * left_at_depth(kSkySlant * depth_m);
     const float facing = glm::dot(at.normal, to_sun);
     if (facing > 0.0f && glm::dot(at.geometric, to_sun) > 0.0f && beam_ != glm::vec3(0.0f) &&

@@ -350,6 +350,8 @@ Row<Owner, 2> with_data(Row<Owner, 1> made) {
 
 // Lets the key of a number have NumberKeys as well.
 void allow_keys(Key& key);
+// The same for those of a list's entries that may have some. A number's path has its entry's index: "sea.swell[1].height_m".
+void allow_keys_in_entries(Key& key);
 
 // A table of the scene, its rows' access moved from the table's struct to the scene.
 template <auto kTable, class... Rows>
@@ -369,6 +371,7 @@ void add_table(std::vector<KeyTable>& tables, std::vector<Key>& keys, KeyTable a
                 return set(scene.*kTable, value);
             };
         if (key.may_have_keys) allow_keys(key);
+        if (std::ranges::any_of(key.entry_keys, &Key::may_have_keys)) allow_keys_in_entries(key);
         keys.push_back(std::move(key));
     };
     (add(std::move(rows)), ...);

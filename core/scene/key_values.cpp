@@ -1,6 +1,8 @@
 // Keys by their paths, and values of any key as text and into a scene. See keys.h.
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <optional>
 #include <stdexcept>
 
 #include "core/scene/key_rows.h"
@@ -60,13 +62,27 @@ std::string list_text(const std::vector<Element>& list, const Text& text) {
 // ---- Lookup
 
 const Key* find_key(std::string_view path) {
+    std::string of_list(path);  // without the entry's number
+    if (const auto entry = entry_of(path))
+        of_list = std::string(entry->list) + "[]." + std::string(entry->name);
     for (const Key& key : keys()) {
         if (key.path == path) return &key;
         if (key.entry_keys.empty() || !path.starts_with(key.path)) continue;
         for (const Key& inner : key.entry_keys)
-            if (inner.path == path) return &inner;
+            if (inner.path == of_list) return &inner;
     }
     return nullptr;
+}
+
+std::optional<EntryPath> entry_of(std::string_view path) {
+    const std::size_t open = path.find('['), close = path.find("].");
+    if (close == std::string_view::npos || open == std::string_view::npos || close <= open + 1)
+        return std::nullopt;
+    EntryPath entry{path.substr(0, open), 0, path.substr(close + 2)};
+    const std::string_view digits = path.substr(open + 1, close - open - 1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), entry.index);
+    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+    return entry;
 }
 
 const Key& key_of(std::string_view path) {
@@ -163,6 +179,24 @@ Key key_about(const About& about, KeyType type) {
     return key;
 }
 
+namespace {
+
+// What stands for all of them where there is to be one: the largest, of angles, which have none, the first.
+double standing_for(const NumberKeys& number, bool is_angle) {
+    return is_angle ? number.keys.front().value
+                    : std::ranges::max_element(number.keys, {}, &NumberKeys::Key::value)->value;
+}
+
+// The value of an entry's key; null: there is none.
+KeyValue* value_in(std::vector<KeyEntry>& entries, const EntryPath& at) {
+    if (at.index >= entries.size()) return nullptr;
+    auto& values = entries[at.index].values;
+    const auto found = std::ranges::find(values, at.name, [](const auto& pair) { return pair.first; });
+    return found == values.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
 void allow_keys(Key& key) {
     const auto is_it = [path = key.path](const KeyedNumber& number) { return number.path == path; };
     key.get = [is_it, get = std::move(key.get)](const Scene& scene) {
@@ -173,15 +207,43 @@ void allow_keys(Key& key) {
                   Scene& scene, const KeyValue& value) {
         const auto* number = std::get_if<NumberKeys>(&value);
         if (number && number->keys.empty()) return false;
-        // What stands for all of them where there is to be one: the largest, of angles, which have none, the first.
-        const auto standing = [&] {
-            const auto is_less = [](const auto& a, const auto& b) { return a.value < b.value; };
-            return is_angle ? number->keys.front().value
-                            : std::ranges::max_element(number->keys, is_less)->value;
-        };
-        if (!set(scene, number ? KeyValue(standing()) : value)) return false;
+        if (!set(scene, number ? KeyValue(standing_for(*number, is_angle)) : value)) return false;
         std::erase_if(scene.keyed, is_it);
         if (number) scene.keyed.push_back({path, *number});
+        return true;
+    };
+}
+
+void allow_keys_in_entries(Key& key) {
+    const auto is_its = [prefix = key.path + '['](const KeyedNumber& number) {
+        return number.path.starts_with(prefix);
+    };
+    key.get = [is_its, get = std::move(key.get)](const Scene& scene) {
+        KeyValue value = get(scene);
+        for (const KeyedNumber& number : scene.keyed)
+            if (is_its(number))
+                if (KeyValue* at =
+                        value_in(std::get<std::vector<KeyEntry>>(value), entry_of(number.path).value()))
+                    *at = number.keys;
+        return value;
+    };
+    key.set = [is_its, path = key.path, inner = key.entry_keys, set = std::move(key.set)](
+                  Scene& scene, const KeyValue& value) {
+        const auto* given = std::get_if<std::vector<KeyEntry>>(&value);
+        if (!given) return set(scene, value);
+        std::vector<KeyEntry> entries = *given;
+        std::vector<KeyedNumber> keyed;
+        for (std::size_t i = 0; i < entries.size(); ++i)
+            for (auto& [name, each] : entries[i].values) {
+                const auto* number = std::get_if<NumberKeys>(&each);
+                const auto of = std::ranges::find(inner, name, &Key::name);
+                if (!number || of == inner.end() || !of->may_have_keys || number->keys.empty()) continue;
+                keyed.push_back({path + '[' + std::to_string(i) + "]." + of->name, *number});
+                each = standing_for(*number, of->is_angle);
+            }
+        if (!set(scene, entries)) return false;
+        std::erase_if(scene.keyed, is_its);
+        scene.keyed.insert(scene.keyed.end(), keyed.begin(), keyed.end());
         return true;
     };
 }
@@ -238,6 +300,28 @@ void replace_pictures(Scene& scene,
         key->set(scene, by(*key, std::get<std::string>(key->get(scene))));
 }
 
+double number_of(const Scene& scene, std::string_view path) {
+    const auto entry = entry_of(path);
+    KeyValue value = value_of(scene, key_of(entry ? entry->list : path));
+    if (!entry) return std::get<double>(value);
+    const KeyValue* inner = value_in(std::get<std::vector<KeyEntry>>(value), *entry);
+    if (!inner) throw std::logic_error("a scene has no " + std::string(path));
+    return std::get<double>(*inner);
+}
+
+void set_number(Scene& scene, std::string_view path, const KeyValue& number) {
+    const auto entry = entry_of(path);
+    const Key& key = key_of(entry ? entry->list : path);
+    KeyValue value = number;
+    if (entry) {
+        value = value_of(scene, key);
+        KeyValue* inner = value_in(std::get<std::vector<KeyEntry>>(value), *entry);
+        if (!inner) throw std::logic_error("a scene has no " + std::string(path));
+        *inner = number;
+    }
+    key.set(scene, value);
+}
+
 std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& value) {
     if (!key.set) return Problem{key.path, value_text(key, value), "can't be set", key.accepted};
     if (key.set(scene, value)) return std::nullopt;
@@ -247,6 +331,21 @@ std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& v
                            ? "has no keys in it"
                            : "is a number's keys, and this key can't have any" + why_no_keys(key.path),
                        key.accepted};
+    if (const auto* entries = std::get_if<std::vector<KeyEntry>>(&value))
+        for (std::size_t i = 0; i < entries->size(); ++i)
+            for (std::size_t k = 0; k < std::min((*entries)[i].values.size(), key.entry_keys.size()); ++k) {
+                const Key& inner = key.entry_keys[k];
+                const KeyValue& each = (*entries)[i].values[k].second;
+                if (const auto* number = std::get_if<NumberKeys>(&each);
+                    number && (number->keys.empty() || !inner.may_have_keys))
+                    return Problem{key.path + '[' + std::to_string(i) + "]." + inner.name,
+                                   value_text(inner, each),
+                                   inner.may_have_keys
+                                       ? "has no keys in it"
+                                       : "is a number's keys, and this key can't have any" +
+                                             why_no_keys(inner.path),
+                                   inner.accepted};
+            }
     const auto is_unknown = [&](const std::string& word) {
         return std::find(key.choices.begin(), key.choices.end(), word) == key.choices.end();
     };

@@ -223,17 +223,21 @@ void add_sea(Built& out) {
                                         .help = "significant height, 4 times the root of the variance",
                                         .unit = "m",
                                         .range = limits::kSwellHeight_m,
-                                        .soft = SoftRange{0.0, 10.0}}),
+                                        .soft = SoftRange{0.0, 10.0},
+                                        .may_have_keys = true}),
             required<&Swell::period_s>({.name = "period_s",
                                         .help = "period of the peak",
                                         .unit = "s",
                                         .range = limits::kSwellPeriod_s,
-                                        .soft = SoftRange{3.0, 25.0}}),
+                                        .soft = SoftRange{3.0, 25.0},
+                                        .may_have_keys = true}),
             required<&Swell::direction_deg>({.name = "direction_deg",
                                              .help = "travelling towards, counter-clockwise from +x",
                                              .unit = "degrees",
                                              .range = limits::kAngle_deg,
-                                             .soft = kTurn})),
+                                             .soft = kTurn,
+                                             .may_have_keys = true,
+                                             .is_angle = true})),
         file, time);
 }
 
@@ -319,7 +323,8 @@ void add_waves(Built& out) {
             required<&BandGain::gain>({.name = "gain",
                                        .help = "of their amplitudes: 0 leaves them out, 2 doubles them",
                                        .range = limits::kBandGain,
-                                       .soft = SoftRange{0.0, 3.0}})),
+                                       .soft = SoftRange{0.0, 3.0},
+                                       .may_have_keys = true})),
         entries<&Waves::heroes>(
             {.name = "heroes",
              .help =

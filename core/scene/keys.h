@@ -154,8 +154,16 @@ struct KeyTable {
 std::span<const KeyTable> key_tables();
 std::span<const Key> keys();
 
-// The key of a path, "sea.fetch_m", "sea.swell[].height_m"; null: there is none.
+// The key of a path, "sea.fetch_m", "sea.swell[].height_m", "sea.swell[1].height_m"; null: there is none.
 const Key* find_key(std::string_view path);
+
+// The parts of "sea.swell[1].height_m"; nothing for a path of no entry.
+struct EntryPath {
+    std::string_view list;  // "sea.swell"
+    std::size_t index = 0;
+    std::string_view name;  // "height_m"
+};
+std::optional<EntryPath> entry_of(std::string_view path);
 
 // The keys of data files: what hosts read from them is a member of the scene.
 inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file",
@@ -181,6 +189,11 @@ const MaskPicture* picture_of(const Waves& waves, const WaveMask& mask);
 // Changes each of those paths.
 void replace_pictures(Scene& scene,
                       const std::function<std::string(const Key&, const std::string& path)>& by);
+
+// A number without keys, also an entry's, by its path; to be set it may be nothing where the key has no default. Both throw
+// std::logic_error for an entry that isn't there.
+double number_of(const Scene& scene, std::string_view path);
+void set_number(Scene& scene, std::string_view path, const KeyValue& number);
 
 // Puts a value into the scene. An integer does for a number. The problem, if the value isn't of the key's
 // type or is a word that isn't one of the choices; the scene is then as it was. Ranges are validate()'s.

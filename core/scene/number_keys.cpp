@@ -48,7 +48,7 @@ Scene scene_at(const Scene& scene, double frame) {
         const Key& key = key_of(number.path);
         double value = value_at(number.keys, key.is_angle, frame);
         if (key.is_angle && !key.range->holds(value)) value -= std::copysign(360.0, value);
-        key.set(made, value);
+        set_number(made, number.path, value);
     }
     return made;
 }
@@ -70,15 +70,18 @@ void refuse_keys(const Scene& scene, std::string_view table) {
 }
 
 std::string why_no_keys(std::string_view path) {
-    if (path.find("[]") != std::string_view::npos)
-        return ": an entry of a list has one value for all of the shot";
     if (path == "sea.depth_m") return ": waves keep their frequencies, and another depth has others";
     if (path == "sea.gust_size_m") return ": patches far away would race over the sea as they grow";
     if (path == "waves.choppiness" || path == "waves.lean_deg" || path == "waves.second_order")
         return ": where waves break, what that leaves and all bounds are those of one displacement";
-    if (path.starts_with("shot.") || path.starts_with("quality.") || path.starts_with("output."))
+    if (path.find("[]") != std::string_view::npos || path.starts_with("shot.") || path.starts_with("quality.") || path.starts_with("output."))
         return ": it is one for the whole shot";
     return " yet";
+}
+
+std::string_view table_key(const KeyedNumber& number) {
+    const auto entry = entry_of(number.path);
+    return entry ? entry->list : number.path;
 }
 
 bool is_of_sea(const KeyedNumber& number) {
@@ -103,15 +106,14 @@ Scene without_still_keys(Scene scene) {
         const auto& keys = number.keys.keys;
         const auto is_first = [&](const NumberKeys::Key& key) { return key.value == keys.front().value; };
         if (is_of_sea(number) && !keys.empty() && std::ranges::all_of(keys, is_first))
-            key_of(number.path).set(scene, keys.front().value);
+            set_number(scene, number.path, keys.front().value);
     }
     return scene;
 }
 
 Scene without_keyed(Scene scene) {
     for (const std::vector<KeyedNumber> keyed = scene.keyed; const KeyedNumber& number : keyed) {
-        const Key& key = key_of(number.path);
-        key.set(scene, key.fallback);
+        set_number(scene, number.path, key_of(number.path).fallback);
     }
     return scene;
 }
@@ -120,8 +122,9 @@ std::string keyed_text(const Scene& scene, KeyPartSet parts, int frame) {
     std::string text;
     for (const Key& key : keys())
         for (const KeyedNumber& number : scene.keyed)
-            if (number.path == key.path && (key.key_parts & parts).any())
-                text += key.path + " = " + number_text(value_at(number.keys, key.is_angle, frame)) + '\n';
+            if (table_key(number) == key.path && (key.key_parts & parts).any())
+                text += number.path + " = " +
+                        number_text(value_at(number.keys, key_of(number.path).is_angle, frame)) + '\n';
     return text;
 }
 

@@ -23,6 +23,9 @@ void refuse_keys(const Scene& scene, std::string_view table = {});
 // Why a number of this path can't have keys, as a sentence's end: ": waves keep …", or " yet" where nothing but the work is in the way.
 std::string why_no_keys(std::string_view path);
 
+// The path of the key in the table that holds it: a list's where it is an entry's.
+std::string_view table_key(const KeyedNumber& number);
+
 // Of numbers that the sea is made of.
 bool is_of_sea(const KeyedNumber& number);
 

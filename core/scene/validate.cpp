@@ -553,9 +553,18 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
 }
 
 void check_keyed(SceneChecker& check, const Scene& scene) {
+    for (const KeyedNumber& number : scene.keyed)
+        if (const auto entry = entry_of(number.path))
+            if (const auto list = value_of(scene, key_of(entry->list));
+                entry->index >= std::get<std::vector<KeyEntry>>(list).size()) {
+                check.refuse({number.path, value_text(key_of(number.path), number.keys),
+                              "has keys, and there is no such entry", "keys of entries that are there"});
+                return;
+            }
     check_keyed_sea(check, scene);
     for (const KeyedNumber& number : without_still_keys(scene).keyed)
-        if (number.path == "sea.wind_direction_deg" && scene.waves.model == WaveModel::Trochoid)
+        if (number.path.starts_with("sea.") && number.path.ends_with("direction_deg") &&
+            scene.waves.model == WaveModel::Trochoid)
             check.refuse({number.path, value_text(key_of(number.path), number.keys),
                           "changes, and a train keeps its direction", "a number, or waves.model = \"fft\""});
     if (scene.shot.loop_s == 0.0) return;

@@ -183,8 +183,9 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     // The sea between two keys is no sea of plain numbers.
     for (const KeyedNumber& number : context.shot ? context.shot->keyed : std::vector<KeyedNumber>())
         for (exr::Attribute& attribute : attributes)
-            if (is_of_sea(number) && attribute.name == "pelagic." + number.path)
-                attribute.value = value_text(key_of(number.path), number.keys);
+            if (const Key& key = key_of(table_key(number));
+                is_of_sea(number) && attribute.name == "pelagic." + key.path)
+                attribute.value = value_text(key, value_of(*context.shot, key));
     return attributes;
 }
 

@@ -136,10 +136,11 @@ void print_keyed(const Scene& scene) {
                 last = scene_at(scene, scene.shot.last_frame);
     for (const KeyedNumber& number : scene.keyed) {
         const Key& key = key_of(number.path);
-        std::cout << key.path << " has "
+        std::cout << number.path << " has "
                   << count_text(static_cast<long>(number.keys.keys.size()), "key", "keys") << ", "
-                  << word_of(number.keys.interpolation) << ": " << value_text(key, value_of(first, key))
-                  << " at frame " << scene.shot.first_frame << ", " << value_text(key, value_of(last, key))
+                  << word_of(number.keys.interpolation) << ": " << value_text(key, number_of(first, number.path))
+                  << " at frame " << scene.shot.first_frame << ", "
+                  << value_text(key, number_of(last, number.path))
                   << " at frame " << scene.shot.last_frame << ".\n";
     }
     if (!scene.keyed.empty())

@@ -168,13 +168,23 @@ KeyEntry usual_entry(const Key& key) {
     return entry;
 }
 
+void key_that_changes(const Key& key, const KeyValue& value) {
+    ImGui::TextDisabled("%s: changes over the shot", key.label.c_str());
+    tooltip(value_text(key, value).c_str());
+}
+
 bool key_entries(const Key& key, std::vector<KeyEntry>& entries) {
     bool changed = false;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         ImGui::TextDisabled(entries.size() > 1 ? "%s %zu" : "%s", key.label.c_str(), i + 1);
-        for (std::size_t k = 0; k < key.entry_keys.size(); ++k)
-            changed = key_slider(key.entry_keys[k], entries[i].values[k].second) || changed;
+        for (std::size_t k = 0; k < key.entry_keys.size(); ++k) {
+            KeyValue& value = entries[i].values[k].second;
+            if (std::holds_alternative<NumberKeys>(value))
+                key_that_changes(key.entry_keys[k], value);
+            else
+                changed = key_slider(key.entry_keys[k], value) || changed;
+        }
         ImGui::PopID();
     }
     ImGui::PushID(key.path.c_str());
@@ -209,8 +219,7 @@ bool key_control(Scene& scene, const Key& key) {
     } else if (auto* entries = std::get_if<std::vector<KeyEntry>>(&value)) {
         changed = key_entries(key, *entries);
     } else if (std::holds_alternative<NumberKeys>(value)) {
-        ImGui::TextDisabled("%s: changes over the shot", key.label.c_str());
-        tooltip(value_text(key, value).c_str());
+        key_that_changes(key, value);
     } else {
         changed = key_slider(key, value);
     }

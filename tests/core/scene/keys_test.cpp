@@ -64,8 +64,9 @@ TEST(Keys, EachIsDescribed) {
 
 TEST(Keys, PathsAreFound) {
     for_each_key([](const Key& key) { EXPECT_EQ(find_key(key.path), &key); });
-    for (const char* none : {"", "sea", "sea.", "sea.wind", "sea.swell[]", "sea.swell[0].height_m"})
+    for (const char* none : {"", "sea", "sea.", "sea.wind", "sea.swell[]", "sea.swell[].", "sea.swell[x].height_m", "sea.swell[-1].height_m", "sea.swell[0]"})
         EXPECT_EQ(find_key(none), nullptr) << none;
+    EXPECT_EQ(find_key("sea.swell[12].height_m"), find_key("sea.swell[].height_m"));
     EXPECT_THROW(key_of("sea.wind"), std::logic_error);
     std::size_t count = 0;
     for (const KeyTable& table : key_tables())

@@ -96,7 +96,7 @@ TEST(NumberKeys, SayWhyThereAreNone) {
                                key.path.starts_with("output.");
         EXPECT_EQ(why_no_keys(key.path) == ": it is one for the whole shot", is_of_all) << key.path;
     }
-    EXPECT_NE(why_no_keys("waves.vessels[].length_m").find("entry of a list"), std::string::npos);
+    EXPECT_EQ(why_no_keys("waves.vessels[].length_m"), ": it is one for the whole shot");
     EXPECT_NE(why_no_keys("sea.depth_m").find("frequencies"), std::string::npos);
     EXPECT_NE(why_no_keys("sea.gust_size_m").find("race"), std::string::npos);
     EXPECT_NE(why_no_keys("waves.choppiness").find("one displacement"), std::string::npos);
@@ -162,6 +162,80 @@ TEST(NumberKeys, OfTheWholeTable) {
         }
     }
     EXPECT_EQ(taken, 26);
+}
+
+// The same in the entries of lists: a number's path has its entry's index.
+TEST(NumberKeys, OfEntriesOverTheWholeTable) {
+    int taken = 0;
+    for (const Key& list : keys())
+        for (std::size_t k = 0; k < list.entry_keys.size(); ++k) {
+            const Key& key = list.entry_keys[k];
+            SCOPED_TRACE(key.path);
+            KeyEntry entry;
+            for (const Key& each : list.entry_keys) {
+                KeyValue value = each.fallback;
+                if (each.is_required && each.type == KeyType::Number)
+                    value = std::clamp(1.0, each.range->low, each.range->high);
+                if (each.is_required && each.type == KeyType::Integer) value = std::int64_t{64};
+                entry.values.emplace_back(each.name, value);
+            }
+            const auto with = [&](KeyValue value) {
+                std::vector<KeyEntry> entries{entry, entry};
+                entries[1].values[k].second = std::move(value);
+                return entries;
+            };
+            Scene scene;
+            if (!key.may_have_keys) {
+                const std::string before = canonical(scene);
+                const auto problem = set_value(scene, list, with(two(1.0, 2.0)));
+                ASSERT_TRUE(problem);
+                EXPECT_NE(problem->problem.find("can't have any"), std::string::npos) << problem->problem;
+                EXPECT_EQ(problem->key, list.path + "[1]." + key.name);
+                EXPECT_EQ(canonical(scene), before);
+                continue;
+            }
+            ++taken;
+            const std::string path = list.path + "[1]." + key.name;
+            EXPECT_EQ(&key_of(path), &key);
+            const double low = std::max(key.range->low, 1.0), high = std::min(key.range->high, 9.0);
+            ASSERT_FALSE(set_value(scene, list, with(two(low, high))));
+            EXPECT_TRUE(value_of(scene, list) == KeyValue(with(two(low, high))));
+            ASSERT_EQ(scene.keyed.size(), 1u);
+            EXPECT_EQ(scene.keyed[0].path, path);
+            EXPECT_EQ(table_key(scene.keyed[0]), list.path);
+            const double middle = value_at(two(low, high), key.is_angle, 4.0);
+            Scene plain, other, still;
+            ASSERT_FALSE(set_value(plain, list, with(middle)));
+            EXPECT_EQ(canonical(scene_at(scene, 4.0)), canonical(plain));
+            EXPECT_EQ(number_of(scene_at(scene, 4.0), path), middle);
+            EXPECT_TRUE(scene_at(scene, 4.0).keyed.empty());
+            EXPECT_NE(canonical(scene, list.key_parts), canonical(plain, list.key_parts));
+            set_value(other, list, with(NumberKeys{{{1, low}, {4, middle}, {9, low}}, kLinear}));
+            EXPECT_EQ(canonical(without_keyed(scene)), canonical(without_keyed(other)));
+            EXPECT_EQ(keyed_text(scene, list.key_parts, 4), keyed_text(other, list.key_parts, 4));
+            EXPECT_NE(keyed_text(scene, list.key_parts, 9), keyed_text(other, list.key_parts, 9));
+            EXPECT_EQ(keyed_text(scene, ~list.key_parts, 4), "");
+            set_value(still, list, with(two(middle, middle)));
+            EXPECT_EQ(canonical(without_still_keys(still)), canonical(plain));
+            // A list that is shorter has no keys of what is gone, and other numbers' stay.
+            set_value(scene, key_of("light.turbidity"), two(2.0, 3.0));
+            set_value(scene, list, std::vector<KeyEntry>{entry});
+            ASSERT_EQ(scene.keyed.size(), 1u);
+            EXPECT_EQ(scene.keyed[0].path, "light.turbidity");
+            EXPECT_TRUE(set_value(scene, list, with(NumberKeys{})));
+        }
+    EXPECT_EQ(taken, 4);
+}
+
+// Whoever fills Scene::keyed by hand may name what isn't there.
+TEST(NumberKeys, OfAnEntryThatIsNotThereAreRefused) {
+    Scene scene;
+    scene.sea.swell = {{1.0, 9.0, 0.0}};
+    scene.keyed = {{"sea.swell[1].height_m", two(1.0, 2.0)}};
+    const std::vector<Problem> problems = validate(scene);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(text_of(problems[0]).find("sea.swell[1].height_m"), std::string::npos);
+    EXPECT_NE(problems[0].problem.find("no such entry"), std::string::npos);
 }
 
 std::string problem_of(const Scene& scene) {

@@ -150,6 +150,44 @@ TEST(Weather, OfEqualKeysIsThePlainNumber) {
     }
 }
 
+// A swell that comes up while the wind sea stays, and a band that fades: at each key the plain sea, between them by energy.
+TEST(Weather, HasSwellsAndBandGainsThatChange) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        Scene plain = first_order(rising(kind.model, kind.has_cascades));
+        plain.keyed.clear();
+        plain.sea.wind_speed_mps = 8.0;
+        plain.sea.swell = {{1.0, 8.0, 200.0}, {2.0, 12.0, 30.0}};
+        plain.waves.band_gains = {{20.0, 60.0, 1.0}};
+        if (kind.has_cascades) plain.waves.cascades = {{800.0, 192}, {90.0, 64}};
+        Scene keyed = plain;
+        keyed.keyed = {{"sea.swell[1].height_m", {{{1, 0.0}, {121, 3.0}}, kLinear}},
+                       {"waves.band_gains[0].gain", {{{1, 1.0}, {121, 0.25}}, kLinear}}};
+        const auto points = random_points<float>(300.0, 200);
+        auto frame = frame_over_time<float>(keyed, {everything()});
+        std::vector<double> m0;
+        for (const double f : {1.0, 61.0, 121.0}) {
+            const double t = keyed.shot.time_s(f);
+            frame.set(t);
+            m0.push_back(frame.sea().total().m0);
+            const auto at_key = sample(frame, 0, points);
+            EXPECT_NEAR(frame.sea().total().m0 /
+                            moments(prepared_at(prepare(keyed), t)->spectrum, 0.0,
+                                    std::numeric_limits<double>::infinity())
+                                .m0,
+                        1.0, 1e-5);
+            auto alone = frame_over_time<float>(keyed, {everything()});
+            alone.set(t);
+            EXPECT_TRUE(same_samples(sample(alone, 0, points), at_key)) << f;
+            if (f == 61.0) continue;
+            const PreparedScene still = *prepare(scene_at(keyed, f));
+            EXPECT_NEAR(frame.sea().total().m0 / still.spectrum.m0(), 1.0, 1e-4) << f;
+        }
+        EXPECT_GT(m0[2], m0[0] + 0.9 * (3.0 * 3.0 / 16.0) - 0.1);
+        EXPECT_NEAR(m0[1], 0.5 * (m0[0] + m0[2]), 1e-6 * m0[1]);
+    }
+}
+
 // Between two keys that are alike, of a sea that changes elsewhere, and at a key: its own sea, with the cascades given.
 TEST(Weather, AtAKeyIsThatKeysSea) {
     Scene scene = first_order(rising()), plain = scene;

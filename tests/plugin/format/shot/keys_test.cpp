@@ -108,6 +108,28 @@ TEST(ShotKeys, TakeKeysWhereTheyMayAndRefuseThemElsewhere) {
     }
 }
 
+TEST(ShotKeys, OfEntriesAreReadAndWrittenBack) {
+    const std::string text =
+        "[sea]\nswell = [ { height_m = 1.5, period_s = 9.0, direction_deg = 10.0 },\n"
+        "  { height_m = { keys = [[1, 0.5], [90, 3.0]], interpolation = \"smooth\" }, period_s = 14.0, "
+        "direction_deg = { keys = [[1, 350.0], [90, 20.0]] } } ]\n"
+        "[[waves.band_gains]]\nfrom_m = 2.0\nto_m = 9.0\ngain = { keys = [[1, 1.0], [90, 0.2]] }\n";
+    const Scene scene = parse_shot(text, kKeysData / "s.toml", no_check);
+    ASSERT_EQ(scene.keyed.size(), 3u);
+    EXPECT_EQ(scene.keyed[0].path, "sea.swell[1].height_m");
+    EXPECT_EQ(scene.sea.swell[1].height_m, 3.0);  // the largest
+    EXPECT_EQ(scene.sea.swell[1].direction_deg, 350.0);
+    const std::string written = shot_text(scene);
+    EXPECT_NE(written.find("height_m = { keys = [[1, 0.5], [90, 3]], interpolation = \"smooth\" }"),
+              std::string::npos)
+        << written;
+    EXPECT_EQ(canonical(parse_shot(written, kKeysData / "s.toml", no_check)), canonical(scene));
+    EXPECT_NE(key_refusal("sea.swell = [ { height_m = { keys = [[1, 0.5], [90, 300.0]] }, period_s = 9.0, "
+                          "direction_deg = 0.0 } ]")
+                  .find("sea.swell[0].height_m.keys[1] = [90, 300]: is outside the range"),
+              std::string::npos);
+}
+
 TEST(ShotKeys, SayWhyANumberHasNone) {
     const std::string keyed = " = { keys = [[1, 20.0], [9, 30.0]] }\n";
     for (const auto& [text, why] :
@@ -117,8 +139,7 @@ TEST(ShotKeys, SayWhyANumberHasNone) {
            "over the shot: patches far away would race over the sea as they grow;"},
           {"waves.choppiness" + keyed,
            "over the shot: where waves break, what that leaves and all bounds are"},
-          {"[[waves.band_gains]]\nfrom_m" + keyed,
-           "over the shot: an entry of a list has one value for all of the shot;"},
+          {"[[waves.band_gains]]\nfrom_m" + keyed, "over the shot: it is one for the whole shot;"},
           {"surface.size_m" + keyed, "over the shot yet;"}})
         EXPECT_NE(key_refusal(text).find(why), std::string::npos) << key_refusal(text);
 }
@@ -144,8 +165,8 @@ TEST(ShotKeys, OfNumbersAreRefusedWithLineAndEntry) {
           {"{ keys = [[1, 2.0], [2, 3.0]] }\n[shot]\nloop_s = 2.0", "a loop has no beginning"}})
         EXPECT_NE(refusal(value).find(said), std::string::npos) << value << '\n' << refusal(value);
     EXPECT_NE(
-        key_refusal("sea.swell = [{ height_m = { keys = [[1, 0.1]] }, period_s = 9.0, direction_deg = 0.0 }]")
-            .find("sea.swell[0].height_m = { keys = [[1, 0.1]] }: has keys, and this number can't"),
+        key_refusal("waves.band_gains = [{ from_m = { keys = [[1, 0.1]] }, to_m = 9.0, gain = 0.0 }]")
+            .find("waves.band_gains[0].from_m = { keys = [[1, 0.1]] }: has keys, and this number can't"),
         std::string::npos);
 }
 

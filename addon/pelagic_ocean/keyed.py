@@ -6,21 +6,69 @@ ocean's action. Light and look are those of each frame, and need no keys before 
 """
 
 import copy
+import re
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
 from . import compat
 from .module import pelagic
-from .properties import BY_PATH, FIELDS, PLACE, shortest
+from .properties import BY_PATH, FIELDS, PLACE, Field, entry_fields, shortest
 
 # Of the range of a number's values: how far straight lines between its keys may leave its curve. Each key of the sea is a sea.
 SEA_TOLERANCE, TOLERANCE = 0.02, 1e-3
 MOST_FRAMES = 20000  # a longer curve is looked at so often
 MOST_KEYS = 30  # of the sea: where a curve needs more, they leave it by more
 
-MAY_HAVE_KEYS = [field for field in FIELDS if field.key["may_have_keys"]]
-OF_SEA = [field for field in MAY_HAVE_KEYS if field.table in ("sea", "waves")]
+
+@dataclass(frozen=True)
+class Number:
+    """A number that may have keys: a setting, or one of an entry in a list. Its F-curves' data path is "pelagic." + path."""
+
+    path: str  # "sea.wind_speed_mps", "sea.swell[1].height_m"
+    field: Field  # of the number
+    setting: Field  # that, or the list
+    row: int = 0
+    column: int = -1  # -1: it is no entry's
+
+    @property
+    def is_of_sea(self):
+        return self.setting.table in ("sea", "waves")
+
+    def of(self, value):
+        """The number in the setting's value."""
+        return value if self.column < 0 else value[self.row][self.column]
+
+    def group(self, obj):
+        """The properties of an ocean that it is one of."""
+        table = getattr(obj.pelagic, self.setting.table)
+        return table if self.column < 0 else getattr(table, self.setting.name)[self.row]
+
+
+SETTINGS = [field for field in FIELDS if field.key["may_have_keys"] or
+            field.key["type"] == "entries" and any(inner.key["may_have_keys"] for inner in entry_fields(field))]
+
+
+def numbers_in(field, value):
+    """Those in a setting's value."""
+    if field.key["type"] != "entries":
+        return [Number(field.path, field, field)]
+    return [Number(f"{field.path}[{row}].{inner.name}", inner, field, row, column) for row in range(len(value))
+            for column, inner in enumerate(entry_fields(field)) if inner.key["may_have_keys"]]
+
+
+def numbers_of(settings):
+    return [number for field in SETTINGS for number in numbers_in(field, settings[PLACE[field.path]])]
+
+
+def numbers_with_keys(shot):
+    """[(a number, its keys)] of a pelagic.Scene."""
+    found = []
+    for field in SETTINGS:
+        value = getattr(getattr(shot, field.table), field.name)
+        found += [(number, number.of(value)) for number in numbers_in(field, value) if isinstance(number.of(value), dict)]
+    return found
 
 
 def keys_of_sea_through(frames, values, is_angle):
@@ -85,14 +133,28 @@ def keys_of(settings):
     """Of settings by frame: {path: keys} of numbers that change and may have keys, and the paths of what else changes."""
     keys, others = {}, []
     for field, *values in zip(FIELDS, *settings.values()):
-        if all(value == values[0] for value in values):
-            continue
-        if field.key["may_have_keys"] and all(isinstance(value, float) for value in values):
-            arguments = list(settings), values, field.key["is_angle"]
-            keys[field.path] = keys_of_sea_through(*arguments) if field in OF_SEA else keys_through(*arguments[:2], TOLERANCE, arguments[2])
-        else:
-            others.append(field.path)
+        numbers = numbers_in(field, values[0]) if field in SETTINGS and _are_alike(field, values) else []
+        for number in numbers:
+            frames, of_number, is_angle = list(settings), [number.of(value) for value in values], number.field.key["is_angle"]
+            if any(value != of_number[0] for value in of_number):
+                keys[number.path] = (keys_of_sea_through(frames, of_number, is_angle) if number.is_of_sea
+                                     else keys_through(frames, of_number, TOLERANCE, is_angle))
+        others += [field.path] if any(_without(numbers, value) != _without(numbers, values[0]) for value in values) else []
     return keys, others
+
+
+def _are_alike(field, values):
+    """Whether all have numbers where any has one: lists as many entries."""
+    if field.key["type"] == "entries":
+        return all(len(value) == len(values[0]) for value in values)
+    return all(isinstance(value, float) for value in values)
+
+
+def _without(numbers, value):
+    if numbers and numbers[0].column < 0:
+        return None
+    columns = {number.column for number in numbers}
+    return value if not numbers else [[each for column, each in enumerate(row) if column not in columns] for row in value]
 
 
 _read = {}  # an F-curve's values → its keys
@@ -107,33 +169,37 @@ def keys_of_sea(obj, settings, bpy_scene):
     curves = {curve.data_path: curve for curve in compat.curves(obj)}
     driven = {driver.data_path for driver in animation.drivers}
     found = {}
-    for field in OF_SEA:
-        path, value = f"pelagic.{field.table}.{field.name}", settings[PLACE[field.path]]
+    for number in numbers_of(settings):
+        path, value = f"pelagic.{number.path}", number.of(settings[PLACE[number.setting.path]])
         curve = curves.get(path)
-        if curve is None or path in driven or curve.mute or curve.group and curve.group.mute or not isinstance(value, float):
+        if (not number.is_of_sea or curve is None or path in driven or curve.mute or curve.group and curve.group.mute
+                or not isinstance(value, float)):
             continue
-        low, high = field.key["range"]  # that Blender keeps its properties in
+        low, high = number.field.key["range"]  # that Blender keeps its properties in
         if not len(curve.keyframe_points) or abs(min(max(curve.evaluate(bpy_scene.frame_current_final), low), high) - value) > 1e-5 * abs(value):
             continue
-        keys = _of_curve(curve, field, bpy_scene)
+        keys = _of_curve(curve, number, bpy_scene)
         if isinstance(keys, dict):
-            found[field.path] = keys
+            found[number.path] = keys
     return found
 
 
-def _of_curve(curve, field, bpy_scene):
+def _of_curve(curve, number, bpy_scene):
     ends = [curve.keyframe_points[end].co.x for end in (0, -1)]
     if curve.modifiers or curve.extrapolation == "LINEAR":  # it goes on beyond them
         ends = min(ends[0], bpy_scene.frame_start), max(ends[1], bpy_scene.frame_end)
     first, last = int(np.floor(ends[0])), int(np.ceil(ends[1]))
     frames = np.unique(np.linspace(first, last, min(last - first + 1, MOST_FRAMES)).astype(int))
-    values = np.clip([curve.evaluate(frame) for frame in frames.tolist()], *field.key["range"])
-    made_of = field.path, first, last, values.tobytes()
+    values = np.clip([curve.evaluate(frame) for frame in frames.tolist()], *number.field.key["range"])
+    made_of = number.path, first, last, values.tobytes()
     if made_of not in _read:
         if len(_read) > 64:
             _read.clear()
-        _read[made_of] = keys_of_sea_through(frames, values, field.key["is_angle"])
+        _read[made_of] = keys_of_sea_through(frames, values, number.field.key["is_angle"])
     return _read[made_of]
+
+
+ENTRY = re.compile(r"(.+)\[(\d+)\]\.(.+)")  # of a list: its path, the row, the number's name
 
 
 def put(scene, keys):
@@ -142,36 +208,57 @@ def put(scene, keys):
         return scene
     made = copy.copy(scene)
     for path, each in keys.items():
-        setattr(getattr(made, BY_PATH[path].table), BY_PATH[path].name, each)
+        entry = ENTRY.fullmatch(path)
+        field = BY_PATH[entry[1] if entry else path]
+        table = getattr(made, field.table)
+        if entry:
+            rows = list(getattr(table, field.name))
+            rows[int(entry[2])] = rows[int(entry[2])]._replace(**{entry[3]: each})
+            each = rows
+        setattr(table, field.name, each)
     return made
 
 
 def with_numbers(settings, numbers):
     """These settings with others of their numbers, {path: number}."""
     settings = list(settings)
-    for path, number in numbers.items():
-        settings[PLACE[path]] = number
+    for number in numbers_of(settings):
+        if number.path not in numbers:
+            continue
+        place = PLACE[number.setting.path]
+        if number.column < 0:
+            settings[place] = numbers[number.path]
+        else:
+            rows = [list(row) for row in settings[place]]
+            rows[number.row][number.column] = numbers[number.path]
+            settings[place] = tuple(map(tuple, rows))
     return tuple(settings)
+
+
+def of_numbers(settings, paths):
+    """{path: number} of settings."""
+    return {number.path: number.of(settings[PLACE[number.setting.path]]) for number in numbers_of(settings) if number.path in paths}
 
 
 def keyframe(obj, shot):
     """Gives an ocean the F-curves of a shot's numbers that have keys."""
-    for field in MAY_HAVE_KEYS:
-        number = getattr(getattr(shot, field.table), field.name)
-        if not isinstance(number, dict):
-            continue
-        keys = dict(number["keys"])
-        is_smooth = number["interpolation"] == "smooth"
+    for number, of_shot in numbers_with_keys(shot):
+        def at(frame):
+            scene = shot.at(frame)
+            return number.of(getattr(getattr(scene, number.setting.table), number.setting.name))
+
+        keys = dict(of_shot["keys"])
+        is_smooth = of_shot["interpolation"] == "smooth"
         if is_smooth and len(keys) > 2:  # the core's curves, which aren't Blender's
-            keys = {frame: getattr(getattr(shot.at(frame), field.table), field.name) for frame in range(min(keys), max(keys) + 1)}
+            keys = {frame: at(frame) for frame in range(min(keys), max(keys) + 1)}
             is_smooth = False
-        if field.key["is_angle"]:
+        if number.field.key["is_angle"]:
             keys = dict(zip(keys, np.degrees(np.unwrap(np.radians(list(keys.values()))))))
-        group, path = getattr(obj.pelagic, field.table), f"pelagic.{field.table}.{field.name}"
+        group, path = number.group(obj), f"pelagic.{number.path}"
         for frame, value in keys.items():
-            field.write(group, shortest(float(value)))
+            number.field.write(group, shortest(float(value)))
             obj.keyframe_insert(path, frame=frame)
         curve = next(curve for curve in compat.curves(obj) if curve.data_path == path)
         for point in curve.keyframe_points:
             point.interpolation = "BEZIER" if is_smooth else "LINEAR"
-        field.write(group, getattr(getattr(shot.at(bpy.context.scene.frame_current), field.table), field.name))
+        number.field.write(group, at(bpy.context.scene.frame_current))

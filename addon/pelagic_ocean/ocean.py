@@ -155,8 +155,11 @@ NARROWEST_TAN, WIDEST_TAN = (math.tan(math.radians(angle / 2)) for angle in FOV_
 
 def changing(scene, but=()):
     """What isn't animated, in words, "" if nothing: the keys whose numbers change over the shot, without those paths that are."""
-    paths = [key["path"] for key in pelagic.keys() if key["may_have_keys"] and key["path"] not in but
-             and isinstance(getattr(getattr(scene, key["path"].split(".")[0]), key["name"]), dict)]
+    def changes(value):
+        return isinstance(value, dict) or isinstance(value, tuple) and any(map(changes, value))
+
+    paths = [key["path"] for key in pelagic.keys() if "." in key["path"] and key["path"] not in but
+             and changes(getattr(getattr(scene, key["path"].split(".")[0]), key["name"]))]
     return f"Stays as at frame {scene.shot.frames[0]}, without the shot's keys: {', '.join(paths)}" if paths else ""
 
 

@@ -147,7 +147,7 @@ class Simulation:
             keys = keyed.keys_of_sea(obj, read, bpy_scene)
             settings = settled(keyed.with_numbers(read, {path: each["keys"][0][1] for path, each in keys.items()}), obj, bpy_scene, depsgraph)
             surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
-            asked = (keyed.with_numbers(settings, {path: read[PLACE[path]] for path in keys}), frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
+            asked = (keyed.with_numbers(settings, keyed.of_numbers(read, keys)), frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
             if asked != self._asked:
                 self.scene = scene_of(obj, bpy_scene, depsgraph, asked[0])
                 self._asked = asked

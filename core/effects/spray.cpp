@@ -62,6 +62,7 @@ SprayVeil::SprayVeil(const Frame<T>& frame) {
     const double towards = from.scene.sea.wind_direction_deg * kPi / 180.0;
     downwind_ = glm::dvec2(std::cos(towards), std::sin(towards));
     time_s_ = frame.time_within_loop_s();
+    if (from.wind) wind_way_m_ = wind_way_m(from, time_s_);
     loop_s_ = from.scene.shot.sea_loop_s();
     seed_ = from.scene.shot.seed;
 }
@@ -70,7 +71,8 @@ SprayVeil::SprayVeil(const Frame<T>& frame) {
 SprayVeil::Torn SprayVeil::drawn(int height, int octave, glm::dvec2 place_m, double time_s,
                                  double strength) const {
     const Tear& tear = kTears[static_cast<std::size_t>(height)];
-    const double finer = std::pow(kFiner, octave), moved_m = tear.of_wind * wind_mps_ * time_s;
+    const double finer = std::pow(kFiner, octave);
+    const double moved_m = wind_way_m_ ? tear.of_wind * *wind_way_m_ : tear.of_wind * wind_mps_ * time_s;
     const std::array at{(glm::dot(place_m, downwind_) - moved_m) / (finer * tear.along_m),
                         (place_m.y * downwind_.x - place_m.x * downwind_.y) / (finer * tear.across_m),
                         time_s / (finer * tear.lasts_s)};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 
 #include "core/evaluate/places.h"
@@ -71,6 +72,7 @@ class SprayVeil {
     SprayLaw law_;
     double mean_breaking_ = 0.0;  // 0: empty
     double wind_mps_ = 0.0, time_s_ = 0.0, loop_s_ = 0.0;
+    std::optional<double> wind_way_m_;  // how far it has blown by then, where it changes
     glm::dvec2 downwind_{1.0, 0.0};
     std::uint64_t seed_ = 0;
 };

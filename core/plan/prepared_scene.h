@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/plan/extent.h"
 #include "core/spectrum/directional_spectrum.h"
@@ -20,7 +21,12 @@ struct PreparedScene {
     Extent extent;                 // extent_of()
     // Of a scene whose sea has keys, and the spectrum is then their mean; else null.
     std::shared_ptr<const Weather> weather{};
+    // The keys of the wind's speed, of a moment of a scene where it changes: scene has the moment's.
+    std::optional<NumberKeys> wind{};
 };
+
+// How far a wind that has keys has blown since the sea's time 0 [m], at a time.
+double wind_way_m(const PreparedScene&, double t_s);
 
 // Of a scene and what was worked out for it: of the spectrum's waves at the scene's choppiness, with crests to second order.
 Extent extent_of(const Scene&, const DirectionalSpectrum&, const SecondOrder&);

@@ -82,7 +82,25 @@ std::shared_ptr<const PreparedScene> prepared_at(const std::shared_ptr<const Pre
                       .spectrum = DirectionalSpectrum(parts),
                       .second_order = shot->second_order,
                       .extent = blended(first.extent, second.extent, blend.share),
-                      .weather = nullptr});
+                      .weather = nullptr,
+                      .wind = first.wind});
+}
+
+double wind_way_m(const PreparedScene& from, double t_s) {
+    const Shot& shot = from.scene.shot;
+    const auto wind_mps = [&](double frame) { return value_at(*from.wind, false, frame); };
+    const double begin = frame_at(shot, 0.0), end = frame_at(shot, t_s);
+    std::vector<double> frames{std::min(begin, end)};
+    for (const NumberKeys::Key& key : from.wind->keys)
+        if (key.frame > frames.front() && key.frame < std::max(begin, end)) frames.push_back(key.frame);
+    frames.push_back(std::max(begin, end));
+    double way = 0.0;
+    // Simpson's rule has no error for cubics, as all is between two keys.
+    for (std::size_t i = 0; i + 1 < frames.size(); ++i)
+        way += (frames[i + 1] - frames[i]) / 6.0 *
+               (wind_mps(frames[i]) + 4.0 * wind_mps(0.5 * (frames[i] + frames[i + 1])) +
+                wind_mps(frames[i + 1]));
+    return std::copysign(way, t_s) * shot.time_scale / shot.fps;
 }
 
 std::string weather_text(const PreparedScene& shot, double t_s, double past_s, double ahead_s) {
@@ -103,6 +121,9 @@ std::string weather_text(const PreparedScene& shot, double t_s, double past_s, d
         return text + weather_text(shot, t_s);
     }
     std::string text = numbers_text(shot.scene, weather.keys[blend.first].frame);
+    // Spray remembers how far the wind has blown.
+    if (const auto& wind = weather.keys[blend.first].sea->wind; wind && is_on(Effect::Spray, shot.scene))
+        text += "way " + number_text(wind_way_m(*weather.keys[blend.first].sea, t_s)) + '\n';
     if (blend.first == blend.second) return text;
     return text + numbers_text(shot.scene, weather.keys[blend.second].frame) +
            numbers_text(shot.scene, frame_at(shot.scene.shot, t_s)) + number_text(blend.share) + ' ' +
@@ -113,11 +134,17 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     Weather weather;
     for (const KeyedNumber& number : scene.keyed)
         weather.is_smooth |= is_of_sea(number) && number.keys.interpolation == CameraInterpolation::Smooth;
+    const auto wind = std::ranges::find(scene.keyed, "sea.wind_speed_mps", &KeyedNumber::path);
+    const auto prepared_moment = [&](int frame) {
+        PreparedScene moment = *prepare(scene_at(scene, frame));
+        if (wind != scene.keyed.end()) moment.wind = wind->keys;
+        return std::make_shared<const PreparedScene>(std::move(moment));
+    };
     std::string before;
     std::map<std::string, std::size_t> first_with;  // these waves
     for (const int frame : frames_of_sea(scene)) {
         std::string numbers = numbers_text(scene, frame);
-        const auto sea = numbers == before ? weather.keys.back().sea : prepare(scene_at(scene, frame));
+        const auto sea = numbers == before ? weather.keys.back().sea : prepared_moment(frame);
         const auto found =
             first_with.try_emplace(canonical(sea->scene, key_parts(KeyPart::Waves)), weather.keys.size());
         weather.keys.push_back({frame, scene.shot.time_s(frame), sea, found.first->second});
@@ -136,7 +163,8 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
                       .spectrum = std::move(mean),
                       .second_order = second,
                       .extent = extent,
-                      .weather = std::make_shared<const Weather>(std::move(weather))});
+                      .weather = std::make_shared<const Weather>(std::move(weather)),
+                      .wind = std::nullopt});
 }
 
 }  // namespace pelagic

@@ -544,8 +544,9 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
         if (scene.shot.time_scale < kSlowest)
             refuse("changes with the sea's time, which stands still",
                    "a number, or a shot.time_scale of at least " + number_text(kSlowest));
-        if (effects.whitecaps && effects.spray)
-            refuse("changes, and spray flies with one wind", "a number, or effects.spray = false");
+        if (effects.whitecaps && effects.spray && effects.spray_drops)
+            refuse("changes, and drops of spray fly with one wind",
+                   "a number, or effects.spray_drops = false");
         if (!scene.waves.heroes.empty())
             refuse("changes, and hero waves stand in one sea", "a number, or no waves.heroes");
         return;
@@ -562,11 +563,17 @@ void check_keyed(SceneChecker& check, const Scene& scene) {
                 return;
             }
     check_keyed_sea(check, scene);
-    for (const KeyedNumber& number : without_still_keys(scene).keyed)
-        if (number.path.starts_with("sea.") && number.path.ends_with("direction_deg") &&
-            scene.waves.model == WaveModel::Trochoid)
-            check.refuse({number.path, value_text(key_of(number.path), number.keys),
-                          "changes, and a train keeps its direction", "a number, or waves.model = \"fft\""});
+    for (const KeyedNumber& number : without_still_keys(scene).keyed) {
+        const auto refuse = [&](const std::string& problem, const std::string& accepted) {
+            check.refuse({number.path, value_text(key_of(number.path), number.keys), problem, accepted});
+        };
+        const bool is_wind = number.path == "sea.wind_direction_deg",
+                   is_swell = table_key(number) == "sea.swell" && number.path.ends_with(".direction_deg");
+        if ((is_wind || is_swell) && scene.waves.model == WaveModel::Trochoid)
+            refuse("changes, and a train keeps its direction", "a number, or waves.model = \"fft\"");
+        if (is_wind && scene.effects.whitecaps && scene.effects.spray)
+            refuse("changes, and spray is torn along one wind", "a number, or effects.spray = false");
+    }
     if (scene.shot.loop_s == 0.0) return;
     for (const KeyedNumber& number : scene.keyed)
         check.refuse({number.path, value_text(key_of(number.path), number.keys),

@@ -19,6 +19,8 @@ struct SpraySlot final : OutputSlot {
     std::vector<float> heights_m, breaking;
     std::vector<glm::vec3> shares;
     std::vector<float> lifts_m;
+    SprayLaw law;  // of the moment
+    double wind_mps = 0.0;
     std::string file;
 };
 
@@ -33,8 +35,7 @@ class SprayPart final : public VolumePart {
   public:
     SprayPart(const Plan& plan, const PlannedOutput& output)
         : VolumePart(plan, output),
-          law_(spray_law(scene(), plan.from->extent.significant_height_m)),
-          wind_(scene().sea.wind_speed_mps) {
+          top_m_(spray_top_m(spray_law(scene(), plan.from->extent.significant_height_m))) {
         const int columns = voxels_a_side(scene());
         const double half_m = 0.5 * size_m();
         for (int i = 0; i < columns; ++i) {
@@ -87,6 +88,9 @@ class SprayPart final : public VolumePart {
         slot.lifts_m.resize(slot.heights_m.size());
         const double mean = mean_breaking(sea.sea());
         const SprayVeil veil(sea);
+        const PreparedScene& now = *sea.sea().plan().from;
+        slot.law = spray_law(now.scene, now.extent.significant_height_m);
+        slot.wind_mps = now.scene.sea.wind_speed_mps;
         std::vector<glm::dvec3> shares;
         std::vector<double> cells_m, lifts_m;
         for_each_row<T>(
@@ -113,15 +117,16 @@ class SprayPart final : public VolumePart {
         glm::dvec3 share(slot.shares[y * columns() + x]);
         for (int i = 0; i < 3; ++i)
             if (share[i] < kNegligibleSpray) share[i] = 0.0;
-        if (law_.over_foam.extinction_per_m > 0.0)
-            return {law_.over_foam.extinction_per_m * share.x * widths_[x] * widths_[y], 0.0, 0.0};
-        return law_.ribbons.extinction_per_m * share * widths_[x] * widths_[y];
+        if (slot.law.over_foam.extinction_per_m > 0.0)
+            return {slot.law.over_foam.extinction_per_m * share.x * widths_[x] * widths_[y], 0.0, 0.0};
+        return slot.law.ribbons.extinction_per_m * share * widths_[x] * widths_[y];
     }
     // Their mean over a height above the sea.
-    double mean_over(const glm::dvec3& extinction_per_m, double from_m, double to_m, double lift_m) const {
-        return law_.over_foam.extinction_per_m > 0.0
-                   ? extinction_per_m.x * mean_profile(law_.over_foam.scale_m, from_m, to_m)
-                   : law_.ribbons.mean(extinction_per_m, from_m, to_m, lift_m);
+    static double mean_over(const SprayLaw& law, const glm::dvec3& extinction_per_m, double from_m,
+                            double to_m, double lift_m) {
+        return law.over_foam.extinction_per_m > 0.0
+                   ? extinction_per_m.x * mean_profile(law.over_foam.scale_m, from_m, to_m)
+                   : law.ribbons.mean(extinction_per_m, from_m, to_m, lift_m);
     }
 
     std::string encoded(int frame, const SpraySlot& slot) const {
@@ -129,9 +134,9 @@ class SprayPart final : public VolumePart {
         const auto grid_of = [&](const char* name, const char* also_named, vdb::GridKind kind,
                                  const char* content, const char* unit) {
             std::vector<vdb::Attribute> about = attributes(frame, content, unit);
-            if (law_.haze.extinction_per_m > 0.0) {
-                about.push_back({"haze_extinction_per_m", law_.haze.extinction_per_m});
-                about.push_back({"haze_scale_m", law_.haze.scale_m});
+            if (slot.law.haze.extinction_per_m > 0.0) {
+                about.push_back({"haze_extinction_per_m", slot.law.haze.extinction_per_m});
+                about.push_back({"haze_scale_m", slot.law.haze.scale_m});
             }
             return vdb::Grid({.name = name,
                               .also_named = also_named,
@@ -178,6 +183,7 @@ class SprayPart final : public VolumePart {
         vdb::Block<glm::vec3> moved{.first = first};
         const double towards = scene().sea.wind_direction_deg * kPi / 180.0;
         const glm::dvec2 downwind(std::cos(towards), std::sin(towards));
+        const WindProfile wind(slot.wind_mps);
         const int count = static_cast<int>(columns());
         for (int i = 0; i < vdb::kBlock && first.x + i < count; ++i)
             for (int j = 0; j < vdb::kBlock && first.y + j < count; ++j) {
@@ -189,14 +195,15 @@ class SprayPart final : public VolumePart {
                 const auto lift_m = static_cast<double>(slot.lifts_m[y * columns() + x]);
                 for (int k = 0; k < vdb::kBlock; ++k) {
                     const double from_m = (first.z + k) * voxel_m() - height_m, to_m = from_m + voxel_m();
-                    const auto value = static_cast<float>(mean_over(extinction, from_m, to_m, lift_m));
+                    const auto value =
+                        static_cast<float>(mean_over(slot.law, extinction, from_m, to_m, lift_m));
                     if (!(value > 0.0f) || from_m > top_m_) continue;
                     const std::size_t at = vdb::index_in_block(i, j, k);
                     thick.active[at] = moved.active[at] = true;
                     thick.values[at] = value;
                     // The wind at the middle of the voxel's part that is in the air.
                     const double speed_mps =
-                        wind_.at(0.5 * (std::max(from_m, 0.0) + to_m)) * scene().shot.time_scale;
+                        wind.at(0.5 * (std::max(from_m, 0.0) + to_m)) * scene().shot.time_scale;
                     moved.values[at] = glm::vec3(glm::dvec3(downwind * speed_mps, 0.0));
                 }
             }
@@ -217,24 +224,22 @@ class SprayPart final : public VolumePart {
                 spray.breaking_over_mean += width * breaking;
                 if (breaking >= kNegligibleSpray)
                     spray.mass_flux_kg_per_s +=
-                        width * breaking * law_.mass_flux_kg_per_m2_s * voxel_m() * voxel_m();
+                        width * breaking * slot.law.mass_flux_kg_per_m2_s * voxel_m() * voxel_m();
                 const glm::dvec3 extinction = extinction_per_m(slot, x, y);
                 if (extinction == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 const double top_m =
                     (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
-                spray.optical_thickness +=
-                    mean_over(extinction, 0.0, top_m, static_cast<double>(slot.lifts_m[y * columns() + x])) *
-                    top_m;
+                spray.optical_thickness += mean_over(slot.law, extinction, 0.0, top_m,
+                                                     static_cast<double>(slot.lifts_m[y * columns() + x])) *
+                                           top_m;
             }
         spray.breaking_over_mean /= area;
         spray.optical_thickness /= area;
         return spray;
     }
 
-    SprayLaw law_;
-    WindProfile wind_;
-    double top_m_ = spray_top_m(law_);
+    double top_m_;                            // over the sea, at the shot's highest
     std::vector<double> middles_m_, widths_;  // of columns along a side, within the square; widths in voxels
     mutable std::mutex encoding_;
 };

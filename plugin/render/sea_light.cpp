@@ -59,7 +59,7 @@ template <class T>
 Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& grid, bool drops) const {
     if (!choice_.spray) return {};
     Spray spray = make_spray_map(frame(), view, grid, spray_map_size(view.resolution.x), drops);
-    light_spray(spray, choice_, sky_, water_, law_coverage(plan().from->scene));
+    light_spray(spray, choice_, sky_, water_, law_coverage(frame().sea().plan().from->scene));
     return spray;
 }
 

@@ -8,6 +8,11 @@
 #include <vector>
 
 #include "core/plan/spray.h"
+#include "core/plan/weather.h"
+#include "core/scene/keys.h"
+#include "core/scene/number_keys.h"
+#include "core/scene/validate.h"
+#include "core/waves/sea_over_time.h"
 #include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
 
@@ -113,6 +118,60 @@ TEST(Spray, TheTearingHasTheMeanOne) {
 }
 
 // Threads' generations take turns without a jump, and close a loop.
+// Of a wind that rises: as much as the moment's, torn by a noise that has come as far as the wind has blown.
+TEST(Spray, OfAWindThatChangesIsThatOfTheMoment) {
+    for (const auto interpolation : {CameraInterpolation::Linear, CameraInterpolation::Smooth}) {
+        Scene scene = spray_scene(10.0);
+        scene.shot.time_scale = 0.5;
+        scene.shot.time_offset_s = 3.0;
+        const NumberKeys keys{{{1, 6.0}, {49, 14.0}, {97, 24.0}, {145, 18.0}}, interpolation};
+        ASSERT_FALSE(set_value(scene, key_of("sea.wind_speed_mps"), keys));
+        ASSERT_TRUE(validate(scene).empty());
+        const std::vector<Query> queries{filtered(products(Product::Breaking, Displacement), 1.0)};
+        const auto veil_at = [&](double f) {
+            Frame<float> frame(std::make_shared<const SeaOverTime<float>>(make_plan(scene, queries)));
+            frame.set(scene.shot.time_s(f));
+            return SprayVeil(frame);
+        };
+        EXPECT_TRUE(veil_at(1.0).empty());  // 6 m/s tear nothing off
+        for (const double f : {49.0, 60.0, 97.0, 120.5, 300.0}) {
+            const SprayVeil veil = veil_at(f);
+            const Scene now = scene_at(scene, f);
+            EXPECT_NEAR(veil.wind_speed_mps() / now.sea.wind_speed_mps, 1.0, 1e-9);
+            const auto prepared = prepared_at(prepare(scene), scene.shot.time_s(f));
+            EXPECT_NEAR(veil.law().optical_thickness() /
+                            spray_law(now, prepared->extent.significant_height_m).optical_thickness(),
+                        1.0, 1e-9);
+        }
+        const auto shot = prepare(scene);
+        const auto way_m = [&](double f) {
+            const double t = scene.shot.time_s(f);
+            return wind_way_m(*prepared_at(shot, t), t);
+        };
+        // The seas at keys know it as well, and the sea's time 0 is where it begins.
+        EXPECT_NEAR(wind_way_m(*prepared_at(shot, 0.0), 0.0), 0.0, 1e-12);
+        double summed = 0.0;
+        constexpr double kStep = 0.25;
+        for (double f = -200.0; f < 200.0; f += kStep) {
+            const double from_s = scene.shot.time_s(f), to_s = scene.shot.time_s(f + kStep);
+            summed += scene_at(scene, f + 0.5 * kStep).sea.wind_speed_mps * (to_s - from_s);
+            ASSERT_NEAR(way_m(f + kStep) - way_m(-200.0), summed, 1e-3) << f;
+        }
+        // The noise is where an even wind has it that has blown as far.
+        const SprayVeil changing = veil_at(97.0);
+        Scene even = spray_scene(way_m(97.0) / scene.shot.time_s(97.0));
+        Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(even, queries)));
+        frame.set(scene.shot.time_s(97.0));
+        const SprayVeil steady(frame);
+        ASSERT_FALSE(steady.empty());
+        for (int i = 0; i < 20; ++i) {
+            const glm::dvec2 place_m(3.7 * i, -2.1 * i);
+            EXPECT_NEAR(changing.torn(i % 3, place_m, 0.0).factor / steady.torn(i % 3, place_m, 0.0).factor,
+                        1.0, 1e-6);
+        }
+    }
+}
+
 TEST(Spray, GenerationsTakeTurns) {
     for (const double loop_s : {0.0, 10.0}) {
         Scene scene = spray_scene(20.0);

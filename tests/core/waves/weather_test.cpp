@@ -171,10 +171,9 @@ TEST(Weather, HasSwellsAndBandGainsThatChange) {
             frame.set(t);
             m0.push_back(frame.sea().total().m0);
             const auto at_key = sample(frame, 0, points);
-            EXPECT_NEAR(frame.sea().total().m0 /
-                            moments(prepared_at(prepare(keyed), t)->spectrum, 0.0,
-                                    std::numeric_limits<double>::infinity())
-                                .m0,
+            EXPECT_NEAR(frame.sea().total().m0 / moments(prepared_at(prepare(keyed), t)->spectrum, 0.0,
+                                                         std::numeric_limits<double>::infinity())
+                                                     .m0,
                         1.0, 1e-5);
             auto alone = frame_over_time<float>(keyed, {everything()});
             alone.set(t);
@@ -439,7 +438,18 @@ TEST(Weather, IsRefusedWhereTheSeaIsOne) {
         return texts;
     };
     EXPECT_EQ(problem([](Scene&) {}), "");
-    EXPECT_NE(problem([](Scene& scene) { scene.effects.spray = true; }).find("spray flies with one wind"),
+    EXPECT_EQ(problem([](Scene& scene) { scene.effects.spray = true; }), "");
+    EXPECT_NE(
+        problem([](Scene& scene) {
+            scene.effects.spray = true;
+            give_keys(scene, "sea.wind_direction_deg", {{1, 0.0}, {240, 90.0}});
+        })
+            .find("sea.wind_direction_deg = { keys = [[1, 0], [240, 90]], interpolation = \"smooth\" }: "
+                  "changes, and spray is torn along one wind"),
+        std::string::npos);
+    EXPECT_NE(problem([](Scene& scene) {
+                  scene.effects.spray = scene.effects.spray_drops = true;
+              }).find("drops of spray fly with one wind"),
               std::string::npos);
     EXPECT_NE(problem([](Scene& scene) {
                   scene.waves.model = WaveModel::Trochoid;

@@ -177,6 +177,33 @@ TEST_F(KeyedPictures, OfASeaThatChangesStandForThemselves) {
     for (const int frame : {11, 20, 25}) EXPECT_NE(made_of(keys, frame), made_of(other, frame)) << frame;
 }
 
+// Spray is the moment's: a frame alone is that of a run, and a key before it shows in it, by how far the wind has blown.
+TEST_F(KeyedPictures, OfSprayInAWindThatRises) {
+    Scene scene = shot();
+    scene.light.sky = sky_picture();
+    scene.effects.spray = true;
+    // But for spray, what is of all keys is left out.
+    scene.waves.second_order = 0.0;
+    scene.effects.foam_decay_s = 0.0;
+    scene.effects.breaking_from_m = 1.0;
+    const Key& wind = key_of("sea.wind_speed_mps");
+    ASSERT_FALSE(set_value(scene, wind, NumberKeys{{{1, 14.0}, {2, 20.0}, {3, 22.0}}}));
+    const std::string third = shown(scene, {1, 2, 3}, 3);
+    EXPECT_TRUE(shown(scene, {3}, 3) == third) << "alone";
+    Scene calm = scene, other = scene;
+    calm.effects.spray = false;
+    EXPECT_FALSE(shown(calm, {3}, 3) == third);
+    ASSERT_FALSE(set_value(other, wind, NumberKeys{{{1, 10.0}, {2, 20.0}, {3, 22.0}}}));
+    EXPECT_FALSE(shown(other, {3}, 3) == third);
+    const auto made_of = [](const Scene& of, int frame) {
+        const RenderOptions options = render_options(of);
+        return PictureFingerprint({.scene = of, .options = options, .picture_content = {}}).of(frame);
+    };
+    EXPECT_NE(made_of(other, 3), made_of(scene, 3));
+    other.effects.spray = false;
+    EXPECT_TRUE(shown(other, {3}, 3) == shown(calm, {3}, 3));
+}
+
 // Of what has no frame.
 TEST_F(KeyedPictures, OneMomentsLightWantsAFrame) {
     Scene scene;

@@ -69,7 +69,8 @@ MaskPicture::MaskPicture(int width, int height, std::vector<float> shares)
 std::shared_ptr<const MaskCells> MaskPicture::cells(glm::ivec2 count) const {
     count = {std::clamp(count.x, 1, size_.x), std::clamp(count.y, 1, size_.y)};
     const std::lock_guard<std::mutex> lock(lock_);
-    if (cells_ && cells_->count == count) return cells_;
+    std::weak_ptr<const MaskCells>& kept = made_[{count.x, count.y}];
+    if (auto known = kept.lock()) return last_ = std::move(known);
     auto made = std::make_shared<MaskCells>();
     made->count = count;
     const auto width = static_cast<std::size_t>(size_.x), columns = static_cast<std::size_t>(count.x);
@@ -84,7 +85,8 @@ std::shared_ptr<const MaskCells> MaskPicture::cells(glm::ivec2 count) const {
     made->most = *most;
     const auto at = static_cast<int>(most - made->shares.begin());
     made->most_at = {at % count.x, at / count.x};
-    return cells_ = std::move(made);
+    kept = made;
+    return last_ = std::move(made);
 }
 
 }  // namespace pelagic

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -48,7 +49,7 @@ class MaskPicture {
     // Its size and a hash of its values: "64 x 32 texels, 0123456789abcdef". Equal texts, equal pictures.
     const std::string& content() const { return content_; }
 
-    // At most as many cells a side as texels. Those that were asked for last are kept.
+    // At most as many cells a side as texels. Those that were asked for last are kept, and all that somebody holds are shared.
     std::shared_ptr<const MaskCells> cells(glm::ivec2 count) const;
 
   private:
@@ -56,7 +57,8 @@ class MaskPicture {
     std::vector<float> shares_;
     std::string content_;
     mutable std::mutex lock_;
-    mutable std::shared_ptr<const MaskCells> cells_;
+    mutable std::map<std::pair<int, int>, std::weak_ptr<const MaskCells>> made_;
+    mutable std::shared_ptr<const MaskCells> last_;
 };
 }  // namespace PELAGIC_VERSION_NAMESPACE
 }  // namespace pelagic

@@ -162,8 +162,8 @@ PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
     if (arguments.layers) options.layers = asked([&] { return parse_picture_layers(*arguments.layers); });
     if (arguments.sky_quality) options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
     const glm::ivec2 size = order.scene.camera.resolution;
-    if (!arguments.overscan.empty()) options.overscan_px = parse_overscan(arguments.overscan, size);
-    if (!arguments.region.empty()) options.region = parse_region(arguments.region);
+    if (arguments.overscan) options.overscan_px = parse_overscan(*arguments.overscan, size);
+    if (arguments.region) options.region = parse_region(*arguments.region);
     asked([&] {
         check_window(size, options);
         return true;

@@ -16,7 +16,7 @@ struct RenderArguments : RunArguments {
     std::optional<int> samples;
     double exposure_stops = 0.0, shutter_frames = 0.0;
     bool alpha = false;
-    std::string overscan, region;
+    std::optional<std::string> overscan, region;
     std::string size, ocio, display, view, space, primaries = "rec709";
 };
 

@@ -64,7 +64,8 @@ TEST(Keys, EachIsDescribed) {
 
 TEST(Keys, PathsAreFound) {
     for_each_key([](const Key& key) { EXPECT_EQ(find_key(key.path), &key); });
-    for (const char* none : {"", "sea", "sea.", "sea.wind", "sea.swell[]", "sea.swell[].", "sea.swell[x].height_m", "sea.swell[-1].height_m", "sea.swell[0]"})
+    for (const char* none : {"", "sea", "sea.", "sea.wind", "sea.swell[]", "sea.swell[].",
+                             "sea.swell[x].height_m", "sea.swell[-1].height_m", "sea.swell[0]"})
         EXPECT_EQ(find_key(none), nullptr) << none;
     EXPECT_EQ(find_key("sea.swell[12].height_m"), find_key("sea.swell[].height_m"));
     EXPECT_THROW(key_of("sea.wind"), std::logic_error);
@@ -342,6 +343,22 @@ TEST(Keys, BodiesCountByTheirMeshesAndNames) {
     other.objects.clear();
     EXPECT_FALSE(set_value(other, key, value_of(scene, key)).has_value());
     EXPECT_EQ(other.objects.at(0).mesh, nullptr);
+}
+
+// Two masks of one picture, each with cells of its own: neither makes the other's anew.
+TEST(Keys, AMaskPicturesCellsAreMadeOnceForAllWhoHoldThem) {
+    const MaskPicture picture(4, 4, std::vector<float>(16, 0.5f));
+    const auto four = picture.cells({4, 4});
+    auto two = picture.cells({2, 2});
+    EXPECT_EQ(picture.cells({4, 4}), four);
+    EXPECT_EQ(picture.cells({2, 2}), two);
+    EXPECT_EQ(two->count, glm::ivec2(2, 2));
+    // Those that nobody holds go, but for the last.
+    const std::weak_ptr<const MaskCells> gone = two;
+    two.reset();
+    EXPECT_FALSE(gone.expired());
+    EXPECT_EQ(picture.cells({4, 4}), four);
+    EXPECT_TRUE(gone.expired());
 }
 
 TEST(Keys, AMasksPictureCountsAndIsDescribedByItsContent) {

@@ -111,8 +111,6 @@ std::string refusal(const Header& header, const Image& image) {
     return "(not refused)";
 }
 
-// The contract: column i is at x = −L/2 + i·L/N, the bottom row is at y = −L/2, and up is +y. A wave along
-// (1, 2)·2π/L is evaluated at those corners and compared with the picture, whose rows begin at the top.
 // A picture of which some is outside the display window, and some of that isn't there.
 TEST(Exr, DataWindowMayBeAnotherThanTheDisplays) {
     constexpr int kWidth = 5, kHeight = 70;  // more rows than are written at once
@@ -140,6 +138,8 @@ TEST(Exr, DataWindowMayBeAnotherThanTheDisplays) {
                       values[static_cast<std::size_t>((kHeight - 1 - y) * kWidth + x)]);
 }
 
+// The contract: column i is at x = −L/2 + i·L/N, the bottom row is at y = −L/2, and up is +y. A wave along
+// (1, 2)·2π/L is evaluated at those corners and compared with the picture, whose rows begin at the top.
 TEST(Exr, TheBottomRowIsTheSmallestYAndColumnsAreCorners) {
     const int n = 8;
     const double length_m = 100.0;

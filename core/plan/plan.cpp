@@ -13,6 +13,7 @@
 #include "core/plan/extent.h"
 #include "core/plan/foam_tiles.h"
 #include "core/plan/grid_layout.h"
+#include "core/plan/hulls.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
@@ -522,6 +523,12 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         outputs.push_back(std::move(output));
         queries.push_back(query);
     }
+    if (std::optional<Query> hulls = hulls_query(prepared->scene))
+        for (PlannedOutput& output : outputs) {
+            if (!may_meet_hulls(output)) continue;
+            output.meets_hulls = true;
+            if (hulls) queries.push_back(*std::exchange(hulls, std::nullopt));
+        }
     Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);
     plan.surface = surface;

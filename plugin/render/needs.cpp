@@ -10,6 +10,7 @@
 
 #include "core/base/precision.h"
 #include "core/plan/effects.h"
+#include "core/plan/hulls.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
 #include "core/scene/number_keys.h"
@@ -70,7 +71,9 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
                                          .filter = options.filter});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
-    return make_plan(std::move(prepared), {query}, {.knobs = options.knobs, .filter = options.filter});
+    std::vector<Query> queries{std::move(query)};
+    if (auto hulls = hulls_query(prepared->scene)) queries.push_back(std::move(*hulls));
+    return make_plan(std::move(prepared), queries, {.knobs = options.knobs, .filter = options.filter});
 }
 
 PixelWindow data_window(glm::ivec2 display, const RenderOptions& options) {

@@ -128,17 +128,21 @@ void Hulls::meet(const Frame<T>& state, int query, const Points<T>& points, doub
     const auto cell = [&](std::size_t i) {
         return points.cell_m ? static_cast<double>(points.cell_m[i]) : cell_m;
     };
-    // Places at rest are near, or their water is.
-    constexpr double kMoved_m = 32.0;
-    const double slack_m = positions_m.empty() ? kMoved_m : 0.0;
+    // Of places at rest the water may be elsewhere.
+    const double slack_m = positions_m.empty() ? state.sea().plan().from->extent.reach_m : 0.0;
+    std::vector<char> is_near(points.count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const glm::dvec3 at = glm::dvec3(points.origin_m, 0.0) +
+                                  (positions_m.empty() ? glm::dvec3(glm::dvec2(points.rest_m[i]), rest_m_)
+                                                       : glm::dvec3(positions_m[i]));
+            is_near[i] = std::ranges::any_of(
+                hulls_, [&](const Placed& placed) { return placed.is_near(at, slack_m); });
+        }
+    });
     std::vector<std::size_t> near;
-    for (std::size_t i = 0; i < points.count; ++i) {
-        glm::dvec3 at(points.origin_m, 0.0);
-        at += positions_m.empty() ? glm::dvec3(glm::dvec2(points.rest_m[i]), rest_m_)
-                                  : glm::dvec3(positions_m[i]);
-        if (std::ranges::any_of(hulls_, [&](const Placed& placed) { return placed.is_near(at, slack_m); }))
-            near.push_back(i);
-    }
+    for (std::size_t i = 0; i < points.count; ++i)
+        if (is_near[i]) near.push_back(i);
     if (near.empty()) return;
     std::vector<glm::vec<2, T>> rest_m;
     for (const std::size_t i : near) rest_m.push_back(points.rest_m[i]);

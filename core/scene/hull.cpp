@@ -404,6 +404,17 @@ std::string hulls_text(const Scene& scene) {
     return text;
 }
 
+std::size_t hulls_bytes(const Scene& scene) {
+    std::map<const Hull*, std::size_t> bytes;  // bodies of one mesh share it
+    for (const std::size_t i : hulls_of(scene)) {
+        const auto hull = hull_of(*scene.objects[i].mesh);
+        bytes[hull.get()] = hull->bytes();
+    }
+    std::size_t all = 0;
+    for (const auto& of : bytes) all += of.second;
+    return all;
+}
+
 double contact_foam_m(const SceneObject& object, const Hull& hull) {
     // By eye: of a launch two decimetres, of a trawler a metre.
     constexpr double kOfBeam = 0.12, kWidest_m = 3.0;

@@ -62,6 +62,9 @@ std::vector<std::size_t> hulls_of(const Scene& scene);
 // What the sea's files have of them: where they are and what they are like, but not how they look. Empty where none keeps water out.
 std::string hulls_text(const Scene& scene);
 
+// What all of them hold [bytes].
+std::size_t hulls_bytes(const Scene& scene);
+
 // How wide the foam along its outline is in the world [m].
 double contact_foam_m(const SceneObject& object, const Hull& hull);
 

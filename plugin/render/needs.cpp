@@ -13,6 +13,7 @@
 #include "core/plan/hulls.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
+#include "core/scene/hull.h"
 #include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
@@ -222,10 +223,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
             rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
         constexpr std::size_t kSample = sizeof(RayHit) + sizeof(glm::vec3) + sizeof(BodiesInSea) +
                                         sizeof(SeaRadiance) + sizeof(std::uint8_t) + sizeof(float);
-        need.add(
-            "the objects",
-            LitObjects::bytes(scene) + rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
-            "give meshes of fewer triangles");
+        need.add("the objects",
+                 LitObjects::bytes(scene) + hulls_bytes(scene) +
+                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
+                 "give meshes of fewer triangles");
     }
     if (options.lighting.spray) {
         need.add("the map of the spray",

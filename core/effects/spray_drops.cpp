@@ -91,7 +91,7 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
         std::make_shared<const Sea<T>>(plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
     // Its own: where foam lives, what counts as breaking depends on whether anybody asks for that.
     mean_breaking_ = mean_breaking(frame_->sea());
-    if (hulls_query(frame_->sea().plan())) hulls_ = std::make_unique<Hulls>(frame_->sea().plan().from->scene);
+    if (knows_hulls(frame_->sea().plan())) hulls_ = std::make_unique<Hulls>(frame_->sea().plan().from->scene);
     if (!(mean_breaking_ > 0.0)) return;
     per_m2_ = law.drops.optical_thickness / plan_.parcels_per_s;
     seed_ = from.scene.shot.seed;
@@ -260,7 +260,7 @@ void SprayDrops<T>::leave_out_of_hulls(std::vector<Parcel>& parcels, double time
     const double frame = shot.time_scale > 0.0
                              ? 1.0 + (time_s - shot.time_offset_s) / shot.time_scale * shot.fps
                              : static_cast<double>(shot.first_frame);
-    hulls_->place(*frame_, *hulls_query(plan), frame);
+    hulls_->place(*frame_, hulls_query(plan), frame);
     std::erase_if(parcels, [&](const Parcel& parcel) { return hulls_->distance_m(parcel.from_m) < 0.0; });
 }
 

@@ -32,17 +32,18 @@ Hulls::Hulls(const Scene& scene) : scene_(scene) {
 }
 
 template <class T>
-void Hulls::place(const Frame<T>& state, int query, double frame, double rest_m) {
+void Hulls::place(const Frame<T>& state, std::optional<int> query, double frame, double rest_m) {
     const double step_s = scene_.shot.time_scale / scene_.shot.fps;
     rest_m_ = rest_m;
     for (Placed& placed : hulls_) {
         const SceneObject& object = scene_.objects[placed.object];
         const auto at = [&](double beside) {
-            const ObjectPose pose =
-                place_object(
-                    state, scene_, object,
-                    {.query = query, .frame = frame + beside, .rest_m = rest_m, .late_s = beside * step_s})
-                    .pose;
+            const ObjectPose pose = place_object(state, scene_, object,
+                                                 {.query = query.value_or(0),
+                                                  .frame = frame + beside,
+                                                  .rest_m = rest_m,
+                                                  .late_s = beside * step_s})
+                                        .pose;
             return std::pair(pose.scale * pose.turn, pose.place_m);
         };
         std::tie(placed.axes, placed.place_m) = at(0.0);
@@ -63,8 +64,8 @@ void Hulls::place(const Frame<T>& state, int query, double frame, double rest_m)
         placed.radius_m = placed.scale * glm::length(0.5 * (most - least) + beside);
     }
 }
-template void Hulls::place(const Frame<float>&, int, double, double);
-template void Hulls::place(const Frame<double>&, int, double, double);
+template void Hulls::place(const Frame<float>&, std::optional<int>, double, double);
+template void Hulls::place(const Frame<double>&, std::optional<int>, double, double);
 
 double Hulls::Placed::distance(const glm::dvec3& place) const {
     return is_near(place, 0.0) ? scale * hull->distance_m(local(place)) : kFar;
@@ -120,8 +121,9 @@ double Hulls::Placed::foam_at(const glm::dvec3& place, double distance_m, const 
 }
 
 template <class T>
-void Hulls::meet(const Frame<T>& state, int query, const Points<T>& points, double cell_m,
-                 std::span<const glm::vec3> positions_m, const Met& met) const {
+void Hulls::meet(const Frame<T>& state, std::optional<int> query, const Points<T>& points, double cell_m,
+                 const Known& known, const Met& met) const {
+    const std::span<const glm::vec3> positions_m = known.positions_m, velocities_mps = known.velocities_mps;
     std::ranges::fill(met.wet, 1.0f);
     std::ranges::fill(met.foam, 0.0f);
     if (empty() || points.count == 0) return;
@@ -149,16 +151,17 @@ void Hulls::meet(const Frame<T>& state, int query, const Points<T>& points, doub
     // By hull, since each has footprints of its own.
     for (const Placed& placed : hulls_) {
         const bool has_foam = placed.foam > 0.0 && !met.foam.empty();
+        const bool asks_speed = has_foam && velocities_mps.empty();
         std::vector<glm::vec<3, T>> position_m(positions_m.empty() ? near.size() : 0),
-            velocity_mps(has_foam ? near.size() : 0);
-        if (!position_m.empty() || has_foam) {
+            velocity_mps(asks_speed ? near.size() : 0);
+        if (!position_m.empty() || asks_speed) {
             const T level_m = static_cast<T>(contact_level_m(placed.foam_m));
             Points<T> asked{.origin_m = points.origin_m, .count = near.size(), .rest_m = {rest_m.data()}};
             asked.cell_m = {&level_m, 0};
             Results<T> results;
             if (!position_m.empty()) results.set(Product::Position, {position_m.data()});
-            if (has_foam) results.set(Product::Velocity, {velocity_mps.data()});
-            evaluate(state, query, asked, results);
+            if (asks_speed) results.set(Product::Velocity, {velocity_mps.data()});
+            evaluate(state, query.value(), asked, results);
         }
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, near.size(), 256), [&](const auto& range) {
             for (std::size_t k = range.begin(); k < range.end(); ++k) {
@@ -170,21 +173,24 @@ void Hulls::meet(const Frame<T>& state, int query, const Points<T>& points, doub
                 if (!met.wet.empty()) met.wet[i] = std::min(met.wet[i], wet_share(distance_m, cell(i)));
                 // A little way in as well, so that what is cut at the outline has foam up to it.
                 if (!has_foam || distance_m < -2.0 * cell(i) - placed.foam_m) continue;
-                const double foam = placed.foam_at(place, distance_m, glm::dvec3(velocity_mps[k]), cell(i));
+                const glm::dvec3 water_mps =
+                    asks_speed ? glm::dvec3(velocity_mps[k]) : glm::dvec3(velocities_mps[i]);
+                const double foam = placed.foam_at(place, distance_m, water_mps, cell(i));
                 met.foam[i] =
                     static_cast<float>(1.0 - (1.0 - static_cast<double>(met.foam[i])) * (1.0 - foam));
             }
         });
     }
 }
-template void Hulls::meet(const Frame<float>&, int, const Points<float>&, double, std::span<const glm::vec3>,
+template void Hulls::meet(const Frame<float>&, std::optional<int>, const Points<float>&, double, const Known&,
                           const Met&) const;
-template void Hulls::meet(const Frame<double>&, int, const Points<double>&, double,
-                          std::span<const glm::vec3>, const Met&) const;
+template void Hulls::meet(const Frame<double>&, std::optional<int>, const Points<double>&, double,
+                          const Known&, const Met&) const;
 
 void add_contact_foam(std::span<const float> foam, Values& values) {
-    std::vector<float>&coverage = values.numbers(Product::Coverage),
-    &breaking = values.numbers(Product::Breaking), &age_s = values.numbers(Product::FoamAge);
+    std::vector<float>& coverage = values.numbers(Product::Coverage);
+    std::vector<float>& breaking = values.numbers(Product::Breaking);
+    std::vector<float>& age_s = values.numbers(Product::FoamAge);
     for (std::size_t i = 0; i < foam.size(); ++i) {
         if (!(foam[i] > 0.0f)) continue;
         const auto with = [&](float share) { return 1.0f - (1.0f - share) * (1.0f - foam[i]); };

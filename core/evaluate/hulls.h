@@ -5,6 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,10 @@ class Hulls {
     explicit Hulls(const Scene& scene);
 
     bool empty() const { return hulls_.empty(); }
-    // At a frame, of a sea that is set to its time; `query` is the plan's hulls_query() (core/plan/hulls.h). rest_m: height at which the
+    // At a frame, of a sea that is set to its time; `query` is the plan's hulls_query() (core/plan/hulls.h), which knows_hulls(). rest_m: height at which the
     // sea rests. Hulls move with the sea's time: where that stands still (shot.time_scale = 0) they stand.
     template <class T>
-    void place(const Frame<T>& state, int query, double frame, double rest_m = 0.0);
+    void place(const Frame<T>& state, std::optional<int> query, double frame, double rest_m = 0.0);
 
     // Along the hull's decks from its outline at the place's height, the nearest one's [m]; negative: dry. Infinite where none is near. Where a hull
     // leans by an angle it is the level one's over its cosine at most, a tenth more at the 24° to which what floats is kept.
@@ -40,18 +41,21 @@ class Hulls {
     // How much of a cell so wide is water, where the outline goes through it straight: 0 in a hull … 1, ½ on the outline.
     static float wet_share(double distance_m, double cell_m);
 
+    // What is known of points' water: where it is, relative to their origin, and how fast, each second of the sea. Without, as the hulls' query has it.
+    struct Known {
+        std::span<const glm::vec3> positions_m{}, velocities_mps{};
+    };
     struct Met {
         std::span<float> wet{};   // wet_share() of each point's cell; empty: not wanted
         std::span<float> foam{};  // coverage of contact foam, 0 … 1; empty: not wanted
     };
-    // Of points of the sea at rest, with their footprints in cell_m, or all of `cell_m` where they have none. positions_m: where they are, relative to
-    // the points' origin; empty: as the hulls' query has them. On all threads of the calling arena.
+    // Of points of the sea at rest, with their footprints in cell_m, or all of `cell_m` where they have none. On all threads of the calling arena.
     //
     // Contact foam is W (1 − smooth(s/w)) min(|v·n|/v₀, 1) outside a hull, s its distance_m(), n its side's normal, v the water's velocity less the hull's, with waves from about w on.
     // Form and constants are by eye. In cells wider than w it is as wide as a cell, and thinner in proportion.
     template <class T>
-    void meet(const Frame<T>& state, int query, const Points<T>& points, double cell_m,
-              std::span<const glm::vec3> positions_m, const Met& met) const;
+    void meet(const Frame<T>& state, std::optional<int> query, const Points<T>& points, double cell_m,
+              const Known& known, const Met& met) const;
 
   private:
     struct Placed {

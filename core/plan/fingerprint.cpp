@@ -129,7 +129,7 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
         const bool is_of_camera = output.has_surface && !plan.surface->is_constant();
         hash.add(weather_plan_text(plan, is_of_camera || output.volume));
     }
-    if (output.meets_hulls) hash.add(hulls_text(scene)).add(plan_text(plan, *hulls_query(plan)));
+    if (output.meets_hulls) hash.add(hulls_text(scene)).add(hulls_text(plan));
     return hash.text();
 }
 

@@ -227,7 +227,8 @@ class MeshPart final : public OutputPart {
         slot.wet.resize(points.count);
         std::vector<float> foam(asks(Product::Coverage) ? points.count : 0);
         hulls_at(sea, frame)
-            .meet(sea, hulls_query(), points, query().cell_m.front(), slot.values.vectors(Product::Position),
+            .meet(sea, hulls_query(), points, query().cell_m.front(),
+                  {slot.values.vectors(Product::Position), slot.values.vectors(Product::Velocity)},
                   {slot.wet, foam});
         add_contact_foam(foam, slot.values);
     }

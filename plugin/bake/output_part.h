@@ -89,7 +89,7 @@ class OutputPart {
         hulls_->place(sea, hulls_query(), frame);
         return *hulls_;
     }
-    int hulls_query() const { return *pelagic::hulls_query(plan_); }
+    std::optional<int> hulls_query() const { return pelagic::hulls_query(plan_); }
 
     const Plan& plan_;
     PlannedOutput output_;

@@ -278,7 +278,7 @@ class RendererOf final : public Impl {
                              .has_motion = needs_motion(options_.layers)});
             objects_->light(sea_);
         }
-        if (hulls_) hulls_->place(sea_.frame(), *hulls_query(plan()), pass.frame, drawn_.rest_m());
+        if (hulls_) hulls_->place(sea_.frame(), hulls_query(plan()), pass.frame, drawn_.rest_m());
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
             const SeaView middle{with_overscan(view_at(scene_.camera, pass.frame), overscan), frame_};

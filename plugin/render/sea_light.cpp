@@ -142,7 +142,7 @@ void SeaLight<T>::add_foam_of(const Hulls& hulls, const SeenSea<T>& seen) {
     Points<T> points = seen.points();
     points.cell_m = points.pixel_m;
     contact_foam_.resize(points.count);
-    hulls.meet(frame(), *hulls_query(plan()), points, 0.0, {}, {.foam = contact_foam_});
+    hulls.meet(frame(), hulls_query(plan()), points, 0.0, {}, {.foam = contact_foam_});
     add_contact_foam(contact_foam_, answers_);
 }
 

@@ -178,13 +178,13 @@ TEST(Hulls, AreWherePicturesHaveThem) {
         const Plan plan = make_plan(prepared, {view_query(*prepared, {.products = products(Product::Position),
                                                                       .finest_cell_m = 0.5,
                                                                       .finest_pixel_m = 0.5}),
-                                               *hulls_query(scene)});
+                                               *hulls_query(scene, false)});
         Frame<double> frame(std::make_shared<const Sea<double>>(plan));
         frame.set(scene.shot.time_s(2));
         LitObjects lit(plan.from->scene);
         lit.place(frame, 2.0, {});
         Hulls hulls(plan.from->scene);
-        hulls.place(frame, *hulls_query(plan), 2.0);
+        hulls.place(frame, hulls_query(plan), 2.0);
         std::mt19937 random(11);
         std::uniform_real_distribution<double> across(-20.0, 20.0), height(-2.0, 2.0);
         int dry = 0, apart = 0, far_apart = 0;
@@ -234,7 +234,7 @@ Hulls hulls_of_bake(const Scene& scene, int at, const std::function<void(const P
     Frame<float> frame(std::make_shared<const Sea<float>>(*plan));
     frame.set(scene.shot.time_s(at));
     Hulls hulls(plan->from->scene);
-    hulls.place(frame, *hulls_query(*plan), at);
+    hulls.place(frame, hulls_query(*plan), at);
     return hulls;
 }
 
@@ -267,6 +267,12 @@ TEST_F(HullBakes, SayWhereAMeshIsWet) {
         EXPECT_NE(stage.find(line), std::string::npos) << line;
         EXPECT_EQ(plain_stage.find(line), std::string::npos) << line;
     }
+    // Whether others ask for more of a hull's water changes nothing.
+    Scene mapped = scene;
+    mapped.output.maps = {MapKind::Whitecaps};
+    mapped.output.map_resolution = 32;
+    EXPECT_EQ(bytes_of(baked(mapped, {2}, "mapped") / usd::frame_file("sea", 2, "usdc")),
+              bytes_of(with / usd::frame_file("sea", 2, "usdc")));
     // What keeps no water out changes nothing, to the bit.
     Scene sail = scene;
     sail.objects[0].mesh = sheet();

@@ -252,13 +252,13 @@ class LevelDistances {
             nearest = piece;
     }
 
-    // Each node takes over what its neighbours know (Danielsson 1980), there and back, twice.
+    // Each node takes over what its neighbours know (Danielsson 1980), there and back.
     void spread() {
         const auto take = [&](int x, int y, int dx, int dy) {
             if (x + dx < 0 || x + dx >= count_.x || y + dy < 0 || y + dy >= count_.y) return;
             offer(x, y, nearest_[index(x + dx, y + dy)]);
         };
-        for (int pass = 0; pass < 4; ++pass) {
+        for (int pass = 0; pass < 2; ++pass) {
             const int way = pass % 2 == 0 ? 1 : -1;
             for (int j = 0; j < count_.y; ++j) {
                 const int y = way > 0 ? j : count_.y - 1 - j;

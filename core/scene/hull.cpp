@@ -108,12 +108,14 @@ class Cut {
             way.reach_m = std::abs(way.along.y) * half.x + std::abs(way.along.x) * half.y;
             way.farthest.assign(kLines, static_cast<float>(-kInfinity));
         }
-        const ObjectMeshData& data = mesh.data();
-        for (std::size_t i = 0; i < data.triangles.size(); i += 3)
-            if (const auto cut = cut_of(corner_of(data, i), corner_of(data, i + 1), corner_of(data, i + 2))) {
-                is_empty_ = false;
-                for (Direction& way : ways_) way.add({cut->from - middle_, cut->to - middle_});
-            }
+    }
+
+    // A triangle of the mesh.
+    void add(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        const auto cut = cut_of(a, b, c);
+        if (!cut) return;
+        is_empty_ = false;
+        for (Direction& way : ways_) way.add({cut->from - middle_, cut->to - middle_});
     }
 
     bool is_empty() const { return is_empty_; }
@@ -298,12 +300,30 @@ Hull::Hull(const ObjectMesh& mesh) : lowest_m_(mesh.least_m().z), highest_m_(mes
     const Bottom bottom(mesh);
     std::vector<float> distance_m(a_level * kLevels);
     std::array<char, kLevels> is_any{};
-    tbb::parallel_for(0, kLevels, [&](int level) {
-        const Cut cut(mesh, lowest_m_ + (level + 0.5) * level_m_);
-        const LevelDistances distances(cut, bottom, first_m_, cell_m_, columns_);
-        is_any[static_cast<std::size_t>(level)] = distances.is_any();
-        distances.write(std::span(distance_m).subspan(a_level * static_cast<std::size_t>(level), a_level),
-                        margin_m_ + beam_m_);
+    // Some levels at a time: each goes through the triangles once.
+    constexpr int kTogether = 12;
+    static_assert(kLevels % kTogether == 0);
+    tbb::parallel_for(0, kLevels / kTogether, [&](int group) {
+        const int first = group * kTogether;
+        std::vector<Cut> cuts;
+        for (int i = 0; i < kTogether; ++i) cuts.emplace_back(mesh, lowest_m_ + (first + i + 0.5) * level_m_);
+        const ObjectMeshData& data = mesh.data();
+        for (std::size_t i = 0; i < data.triangles.size(); i += 3) {
+            const glm::dvec3 a = corner_of(data, i), b = corner_of(data, i + 1), c = corner_of(data, i + 2);
+            const double low = (std::min({a.z, b.z, c.z}) - lowest_m_) / level_m_ - 0.5 - first,
+                         high = (std::max({a.z, b.z, c.z}) - lowest_m_) / level_m_ - 0.5 - first;
+            // A level more on each side, for what is rounded.
+            const int from = static_cast<int>(std::max(std::floor(low), 0.0)),
+                      to = static_cast<int>(std::min(std::ceil(high), kTogether - 1.0));
+            for (int level = from; level <= to; ++level) cuts[static_cast<std::size_t>(level)].add(a, b, c);
+        }
+        for (int i = 0; i < kTogether; ++i) {
+            const auto level = static_cast<std::size_t>(first + i);
+            const LevelDistances distances(cuts[static_cast<std::size_t>(i)], bottom, first_m_, cell_m_,
+                                           columns_);
+            is_any[level] = distances.is_any();
+            distances.write(std::span(distance_m).subspan(a_level * level, a_level), margin_m_ + beam_m_);
+        }
     });
     if (std::ranges::none_of(is_any, [](char any) { return any != 0; })) return;
     distance_m_ = std::move(distance_m);

@@ -321,7 +321,7 @@ with checking("Check for the Farm says what needs the add-on, which files are mi
 
 with checking("where a hull is the sea is cut out"):
     fresh_file()
-    corners = [(x, y, z) for z in (-2, 2) for y in (-5, 5) for x in (-15, 15)]
+    corners = [(x, y, z) for z in (-6, 6) for y in (-5, 5) for x in (-15, 15)]
     faces = ((1, 3, 4, 2), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6))  # without a top
     (folder / "barge.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners)
                                       + "".join(f"f {' '.join(map(str, face))}\n" for face in faces), encoding="utf-8")

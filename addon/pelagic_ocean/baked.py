@@ -190,6 +190,8 @@ def show(obj, frame):
             arrays, surface = bake.smoothed(arrays, obj.pelagic_baked.halvings)
         else:
             surface = bake.surface(arrays)
+        if "wet" in arrays:  # meshes without hulls have no such attribute, which Blender's nodes read as 0
+            arrays = {**arrays, "dry": 1 - arrays["wet"]}
         if not meshes.holds(obj.data, surface):
             meshes.put_surface(obj.data, surface)
         elif surface.moves:
@@ -291,7 +293,9 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
 
         def give_look():
             if self.light:
-                material.ensure_material(obj, bake.scene, bake.dense_foam)
+                water = material.ensure_material(obj, bake.scene, bake.dense_foam)
+                if water is not None and "dry" in obj.data.attributes:
+                    material.cut_hulls(water)
             if self.light and first_ocean(context.scene) is None:
                 light.ensure_light(context.scene, bake.scene)
 

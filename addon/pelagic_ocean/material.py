@@ -28,6 +28,30 @@ def ensure_material(obj, scene, dense_foam=None):
     return update_material(obj, scene, dense_foam=dense_foam)
 
 
+HULLS = "In a Hull"
+
+
+def cut_hulls(material):
+    """Leaves the sea out where its mesh's attribute "dry" is above a half: in the hulls of a bake's objects."""
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    if HULLS in nodes:
+        return
+    dry, inside, nothing = (nodes.new(kind) for kind in ("ShaderNodeAttribute", "ShaderNodeMath", "ShaderNodeBsdfTransparent"))
+    dry.attribute_name = "dry"
+    inside.name = inside.label = HULLS
+    inside.operation = "GREATER_THAN"
+    inside.inputs[1].default_value = 0.5
+    links.new(dry.outputs["Fac"], inside.inputs[0])
+    for output in [node for node in nodes if node.type == "OUTPUT_MATERIAL" and node.inputs["Surface"].links]:
+        cut = nodes.new("ShaderNodeMixShader")
+        cut.location = output.location
+        output.location.x += 200
+        shown = output.inputs["Surface"].links[0].from_socket
+        for socket, place in ((inside.outputs[0], 0), (shown, 1), (nothing.outputs[0], 2)):
+            links.new(socket, cut.inputs[place])
+        links.new(cut.outputs[0], output.inputs["Surface"])
+
+
 def update_material(obj, scene, significant_height_m=None, dense_foam=None):
     """Brings the ocean's material to the scene's water, light and wind, and to the height of its waves and Sea.dense_foam
     where they are known; returns it, or None where there is none. What an artist changed stays until the scene's own value

@@ -20,6 +20,7 @@ ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
               ("whitecap_coverage", "FLOAT", "value", "coverage"),
               ("foam_active", "FLOAT", "value", "foam_active"),
               ("foam_age", "FLOAT", "value", "foam_age"),
+              ("dry", "FLOAT", "value", "dry"),  # of bakes with hulls alone: baked.py
               (upwelling.ATTRIBUTE, "FLOAT_VECTOR", "vector", upwelling.ATTRIBUTE))  # not the core's: upwelling.py
 
 

@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/effects/spray.h"
 #include "core/evaluate/prepared_query.h"
+#include "core/plan/hulls.h"
 #include "core/plan/spray.h"
 #include "core/plan/wind_profile.h"
 #include "core/waves/loop.h"
@@ -90,6 +91,7 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
         std::make_shared<const Sea<T>>(plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
     // Its own: where foam lives, what counts as breaking depends on whether anybody asks for that.
     mean_breaking_ = mean_breaking(frame_->sea());
+    if (knows_hulls(frame_->sea().plan())) hulls_ = std::make_unique<Hulls>(frame_->sea().plan().from->scene);
     if (!(mean_breaking_ > 0.0)) return;
     per_m2_ = law.drops.optical_thickness / plan_.parcels_per_s;
     seed_ = from.scene.shot.seed;
@@ -162,7 +164,8 @@ template <class T>
 std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t interval, const Cells& cells,
                                                                 const std::atomic<bool>* cancel) {
     using Vec = glm::vec<2, T>;
-    frame_->set(std::max(static_cast<double>(interval) * plan_.interval_s, -Frame<T>::kLatest_s), cancel);
+    const double time_s = std::max(static_cast<double>(interval) * plan_.interval_s, -Frame<T>::kLatest_s);
+    frame_->set(time_s, cancel);
     const glm::i64vec2 middle(cells.x + cells.columns / 2, cells.y + cells.rows / 2);
     const glm::dvec2 origin_m = glm::dvec2(middle) * plan_.cell_m;
     const PreparedQuery<T> query(*frame_, 0, frame_->sea().plan().queries[0].query.products, origin_m);
@@ -245,7 +248,20 @@ std::vector<typename SprayDrops<T>::Parcel> SprayDrops<T>::made(std::int64_t int
             parcel.section_m2 /= parcel.life_s;
         });
     }
+    if (hulls_) leave_out_of_hulls(made, time_s);
     return made;
+}
+
+template <class T>
+void SprayDrops<T>::leave_out_of_hulls(std::vector<Parcel>& parcels, double time_s) {
+    const Plan& plan = frame_->sea().plan();
+    const Shot& shot = plan.from->scene.shot;
+    // The frame that shows this time; one of a sea that stands still is like the others.
+    const double frame = shot.time_scale > 0.0
+                             ? 1.0 + (time_s - shot.time_offset_s) / shot.time_scale * shot.fps
+                             : static_cast<double>(shot.first_frame);
+    hulls_->place(*frame_, hulls_query(plan), frame);
+    std::erase_if(parcels, [&](const Parcel& parcel) { return hulls_->distance_m(parcel.from_m) < 0.0; });
 }
 
 template <class T>

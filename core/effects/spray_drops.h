@@ -19,6 +19,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/evaluate/hulls.h"
 #include "core/plan/spray_drops.h"
 #include "core/waves/frame.h"
 
@@ -62,6 +63,8 @@ class SprayDrops {
     Cells cells_round(glm::dvec2 middle_m) const;
     std::int64_t within_loop(std::int64_t interval) const;
     std::vector<Parcel> made(std::int64_t interval, const Cells& cells, const std::atomic<bool>* cancel);
+    // Those that would start in a hull.
+    void leave_out_of_hulls(std::vector<Parcel>& parcels, double time_s);
     Parcel started(std::int64_t interval, glm::i64vec2 cell, int number, double weight) const;
 
     SprayDropsPlan plan_;
@@ -74,6 +77,7 @@ class SprayDrops {
     double wind_mps_ = 0.0, friction_mps_ = 0.0;  // where drops fly
     std::vector<double> settling_mps_;            // of drops that each stand for as much
     std::unique_ptr<Frame<T>> frame_;
+    std::unique_ptr<Hulls> hulls_;  // none where the plan has none
     Cells cells_;
     std::map<std::int64_t, std::vector<Parcel>> known_;  // by interval, of these cells
 };

@@ -1,8 +1,10 @@
 #include "core/plan/fingerprint.h"
 
+#include "core/plan/hulls.h"
 #include "core/plan/products.h"
 #include "core/plan/weather.h"
 #include "core/scene/canonical.h"
+#include "core/scene/hull.h"
 #include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 
@@ -127,6 +129,7 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
         const bool is_of_camera = output.has_surface && !plan.surface->is_constant();
         hash.add(weather_plan_text(plan, is_of_camera || output.volume));
     }
+    if (output.meets_hulls) hash.add(hulls_text(scene)).add(hulls_text(plan));
     return hash.text();
 }
 

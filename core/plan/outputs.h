@@ -87,6 +87,7 @@ struct PlannedOutput {
     std::optional<VolumeKind> volume{};
     int query = 0;             // into Plan::queries, whose name is the output's: "mesh", "map normal", …
     bool has_surface = false;  // its points are Plan::surface's
+    bool meets_hulls = false;  // there are some, and what it holds of the sea isn't in them
     KeyPartSet key_parts;      // the row's, the surface's, and the foam's where it holds coverage
 };
 

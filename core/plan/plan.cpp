@@ -13,6 +13,7 @@
 #include "core/plan/extent.h"
 #include "core/plan/foam_tiles.h"
 #include "core/plan/grid_layout.h"
+#include "core/plan/hulls.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
@@ -20,6 +21,7 @@
 #include "core/plan/taps.h"
 #include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
+#include "core/scene/hull.h"
 #include "core/spectrum/dispersion.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
@@ -521,6 +523,23 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
             if (row.shapes && row.shapes(query)) output.key_parts |= row.key_parts;
         outputs.push_back(std::move(output));
         queries.push_back(query);
+    }
+    if (!hulls_of(prepared->scene).empty()) {
+        bool is_any = false, have_places = true;
+        for (PlannedOutput& output : outputs) {
+            output.meets_hulls = may_meet_hulls(output);
+            is_any = is_any || output.meets_hulls;
+            // A map's texels are at rest. Volumes and drops ask at places, and have no foam.
+            const ProductSet& products = queries[static_cast<std::size_t>(output.query)].products;
+            const bool is_mesh_with_foam =
+                output.row->kind == OutputKind::Mesh && products[index(Product::Coverage)];
+            if (output.meets_hulls &&
+                (output.map || (is_mesh_with_foam && !products[index(Product::Velocity)])))
+                have_places = false;
+        }
+        if (is_any)
+            if (std::optional<Query> hulls = hulls_query(prepared->scene, have_places))
+                queries.push_back(std::move(*hulls));
     }
     Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/plan/hulls.h"
 #include "core/plan/spray.h"
 
 namespace pelagic {
@@ -41,7 +43,10 @@ Plan plan_of_spray_drops(const Plan& plan, const SprayDropsPlan& drops) {
     query.cell_m = query.pixel_m = {drops.cell_m};
     query.is_view = true;
     // No picture: drops tear off where a mesh's sea breaks, so that a stage's are its picture's.
-    Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
+    std::vector<Query> queries{query};
+    if (knows_hulls(plan))
+        if (auto hulls = hulls_query(plan.from->scene, true)) queries.push_back(std::move(*hulls));
+    Plan own = make_plan(plan.from, queries, {.double_precision = plan.knobs.double_precision});
     own.knobs.spline_taps = 4;  // as for foam's past: a hundredth of a breaking is enough
     own.trains = plan.trains;
     return own;

@@ -986,7 +986,7 @@ void add_objects(Built& out) {
     auto made = entries<&Scene::objects>(
         {.name = "objects",
          .help =
-             "bodies in the light of the sea: seen, shadowing, mirrored. Of pictures alone; their wakes are waves.vessels",
+             "bodies in the light of the sea: seen, shadowing, mirrored in pictures; no sea is in their hulls, in files either. Their wakes are waves.vessels",
          .key_parts = key_parts(KeyPart::Objects),
          .most_entries = limits::kObjects,
          .are_entries_independent = false,
@@ -1051,6 +1051,12 @@ void add_objects(Built& out) {
                                   .soft = SoftRange{0.01, 100.0, true}}),
         row<&SceneObject::floats>(
             {.name = "floats", .help = "heaves, pitches and rolls with the waves that are as long as it is"}),
+        row<&SceneObject::foam>(
+            {.name = "foam",
+             .help =
+                 "of the coverage of the foam along its hull, where hull and water meet at speed; its wake's is its vessel's",
+             .range = limits::kMaskShare,
+             .soft = SoftRange{0.0, 1.0}}),
         row<&SceneObject::colour>({.name = "colour",
                                    .help = "times its materials' colours, linear Rec. 709",
                                    .range = limits::kObjectColour}),

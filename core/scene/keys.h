@@ -45,7 +45,7 @@ enum class KeyPart {
     Maps,     // what is in a map, besides the sea
     Volumes,  // what a volume covers and how finely, besides the sea
     Spray,    // the droplets over breaking crests
-    Objects,  // bodies in the light of the sea: pictures alone
+    Objects,  // bodies in the light of the sea: pictures; of their hulls more (core/scene/hull.h)
     Choice,   // whether an output exists; what is in it does not depend on the key
 };
 inline constexpr std::size_t kKeyParts = 19;

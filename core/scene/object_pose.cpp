@@ -102,4 +102,9 @@ ObjectPose object_pose(const Scene& scene, const SceneObject& object, double fra
             .scale = object.scale};
 }
 
+double floating_cell_m(const SceneObject& object) {
+    const glm::dvec2 size(object.mesh->most_m() - object.mesh->least_m());
+    return object.scale * std::max(size.x, size.y) / 3.0;
+}
+
 }  // namespace pelagic

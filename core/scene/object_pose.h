@@ -15,7 +15,10 @@ struct ObjectPose {
     double scale = 1.0;
 };
 
-// At a frame, also between two of them, in a calm sea: what `floats` adds is the waves' (plugin/render). The object is one of the scene's.
+// At a frame, also between two of them, in a calm sea: what `floats` adds is the waves' (core/evaluate/object_place.h). The object is one of the scene's.
 ObjectPose object_pose(const Scene& scene, const SceneObject& object, double frame);
+
+// The footprint of the waves that move what floats: a third of its length [m]. The object has a mesh.
+double floating_cell_m(const SceneObject& object);
 
 }  // namespace pelagic

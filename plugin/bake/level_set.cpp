@@ -148,7 +148,7 @@ class BlockColumn {
     BlockColumn(const Solid& solid, const SeaSolid& about, const VoxelLattice& voxels, glm::ivec2 block)
         : solid_(solid), about_(about), voxels_(voxels), first_(block * vdb::kBlock) {}
 
-    void for_each(const std::function<void(const vdb::Block<float>&)>& take) const {
+    void for_each(const std::function<void(const vdb::Block<float>&)>& take) {
         const double width_m = kHalfWidth_voxels * voxels_.voxel_m;
         const glm::dvec2 low_m = glm::dvec2(voxels_.first_m) + voxels_.voxel_m * glm::dvec2(first_) - width_m;
         const glm::dvec2 high_m = low_m + (vdb::kBlock - 1) * voxels_.voxel_m + 2.0 * width_m;
@@ -161,8 +161,9 @@ class BlockColumn {
         const int floor_from = block_at(about_.floor_m - width_m),
                   floor_to = block_at(about_.floor_m + width_m);
         const int from = block_at(heights_m.x - width_m), to = block_at(heights_m.y + width_m);
+        has_hulls_ = about_.hulls && about_.hulls->are_near(low_m, high_m, width_m);
         for (int k = floor_from; k <= to; ++k)
-            if (is_at_side || k <= floor_to || k >= from) take_block(k, take);
+            if (is_at_side || has_hulls_ || k <= floor_to || k >= from) take_block(k, take);
     }
 
   private:
@@ -179,7 +180,9 @@ class BlockColumn {
                 for (int k = 0; k < vdb::kBlock; ++k) {
                     const glm::dvec3 at_m =
                         voxels_.first_m + voxels_.voxel_m * glm::dvec3(block.first + glm::ivec3(i, j, k));
-                    const auto distance_m = static_cast<float>(solid_.distance(at_m, most_m));
+                    double of_sea_m = solid_.distance(at_m, most_m);
+                    if (has_hulls_) of_sea_m = std::max(of_sea_m, -about_.hulls->depth_m(at_m, most_m));
+                    const auto distance_m = static_cast<float>(of_sea_m);
                     const std::size_t index = vdb::index_in_block(i, j, k);
                     block.values[index] = distance_m;
                     block.active[index] = std::abs(distance_m) < most;
@@ -191,6 +194,7 @@ class BlockColumn {
     const SeaSolid& about_;
     const VoxelLattice& voxels_;
     glm::ivec2 first_;  // voxel
+    bool has_hulls_ = false;
 };
 
 }  // namespace

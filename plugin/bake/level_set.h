@@ -6,9 +6,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 
 #include <glm/vec3.hpp>
+#include "core/evaluate/hulls.h"
 #include "plugin/format/vdb/vdb.h"
 
 namespace pelagic {
@@ -19,6 +21,8 @@ struct SeaSolid {
     std::span<const float>
         heights_m;  // at the cells' corners, (cells + 1)² of them: rows of rising y, x rising in each
     double floor_m = -1.0;  // below all heights
+    // Bodies that hold none of it. Near them distances are those of Hulls::depth_m(), where they are the nearest boundary.
+    const Hulls* hulls = nullptr;
 };
 
 // Voxel (i, j, k)'s middle is at first_m + (i, j, k) · voxel_m.

@@ -2,6 +2,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <mutex>
+#include <optional>
 
 #include "plugin/bake/volume_blocks.h"
 #include "plugin/bake/volume_part.h"
@@ -11,6 +12,7 @@ namespace {
 
 struct LevelSetSlot final : OutputSlot {
     std::vector<float> heights_m;  // at corners of cells
+    std::optional<Hulls> hulls;
     std::string file;
 };
 
@@ -21,11 +23,12 @@ class LevelSetPart final : public VolumePart {
 
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<LevelSetSlot>(); }
 
-    void compute(const SeaAtTime<float>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
-        compute_as(sea.frame(), static_cast<LevelSetSlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int frame, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(sea.frame(), frame, static_cast<LevelSetSlot&>(slot), watch);
     }
-    void compute(const SeaAtTime<double>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
-        compute_as(sea.frame(), static_cast<LevelSetSlot&>(slot), watch);
+    void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(sea.frame(), frame, static_cast<LevelSetSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -50,7 +53,8 @@ class LevelSetPart final : public VolumePart {
 
   private:
     template <class T>
-    void compute_as(const Frame<T>& sea, LevelSetSlot& slot, const BuildWatch& watch) const {
+    void compute_as(const Frame<T>& sea, int frame, LevelSetSlot& slot, const BuildWatch& watch) {
+        if (meets_hulls()) slot.hulls.emplace(hulls_at(sea, frame));
         std::vector<double> corners_m;
         for (int i = 0; i <= cells_; ++i)
             corners_m.push_back(size_m() * (static_cast<double>(i) / cells_ - 0.5));
@@ -80,8 +84,11 @@ class LevelSetPart final : public VolumePart {
             .first_m = lattice.first_m,
             .background = static_cast<float>(kHalfWidth_voxels * lattice.voxel_m),
             .attributes = attributes(frame, "distance from the water's boundary, negative inside", "m")});
-        const SeaSolid solid{
-            .size_m = size_m(), .cells = cells_, .heights_m = slot.heights_m, .floor_m = floor_m(slot)};
+        const SeaSolid solid{.size_m = size_m(),
+                             .cells = cells_,
+                             .heights_m = slot.heights_m,
+                             .floor_m = floor_m(slot),
+                             .hulls = slot.hulls ? &*slot.hulls : nullptr};
         for_each_block(solid, lattice, [&](const vdb::Block<float>& block) { grids.front().add(block); });
         return vdb::encode(grids, attributes(frame, "the sea as a closed solid"), fingerprint(frame));
     }

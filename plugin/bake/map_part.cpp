@@ -33,6 +33,8 @@ struct MapSlot final : OutputSlot {
     // Of whitecaps: what the moments of J are compared with, one value, or by mip level and texel where gusts make it differ.
     float whitecap_threshold = 0.0f;
     std::vector<std::vector<float>> whitecap_thresholds;
+    // And where there are hulls: how much of a texel is water, and how much of it contact foam.
+    std::vector<glm::vec3> hulls;
     std::string file;  // encoded
 };
 
@@ -62,11 +64,12 @@ class MapPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MapSlot>(); }
 
-    void compute(const SeaAtTime<float>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
-        compute_as(single_, sea, static_cast<MapSlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int frame, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(single_, sea, frame, static_cast<MapSlot&>(slot), watch);
     }
-    void compute(const SeaAtTime<double>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
-        compute_as(wide_, sea, static_cast<MapSlot&>(slot), watch);
+    void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(wide_, sea, frame, static_cast<MapSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -112,7 +115,8 @@ class MapPart final : public OutputPart {
             const auto& moments = slot.values.vectors(Product::JacobianMoments);
             for (std::size_t i = 0; i < coverage.size(); ++i) {
                 const JacobianMoments<float> j{moments[i].x, moments[i].y, moments[i].z};
-                mean.add(coverage[i], sea_area(j, plan_.knobs.third_moment));
+                mean.add(slot.hulls.empty() ? coverage[i] : beside_hulls(coverage[i], slot.hulls[i]),
+                         sea_area(j, plan_.knobs.third_moment));
             }
             slot.coverage = mean.value();
         }
@@ -136,7 +140,8 @@ class MapPart final : public OutputPart {
     };
 
     template <class T>
-    void compute_as(State<T>& state, const SeaAtTime<T>& sea, MapSlot& slot, const BuildWatch& watch) {
+    void compute_as(State<T>& state, const SeaAtTime<T>& sea, int frame, MapSlot& slot,
+                    const BuildWatch& watch) {
         if (kind_ == MapKind::Floor) return light_floor(sea.frame(), slot, watch);
         if (!state.rest)
             state.rest = squares_->points<T>({.per_side = n_,
@@ -147,6 +152,20 @@ class MapPart final : public OutputPart {
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
         if (kind_ == MapKind::SlopeVariance) find_unresolved(state, sea.frame(), slot);
         if (has_gusts()) find_thresholds(state, sea.frame(), slot);
+        if (meets_hulls()) meet_hulls(sea.frame(), frame, points, slot);
+    }
+
+    // Where a texel's water is the hulls' query says: the map's own has no positions.
+    template <class T>
+    void meet_hulls(const Frame<T>& sea, int frame, const Points<T>& points, MapSlot& slot) {
+        std::vector<float> wet(points.count), foam(points.count);
+        hulls_at(sea, frame).meet(sea, hulls_query(), points, size_m_ / n_, {}, {wet, foam});
+        slot.hulls.resize(points.count);
+        for (std::size_t i = 0; i < points.count; ++i) slot.hulls[i] = {wet[i], wet[i] * foam[i], 0.0f};
+    }
+    // A coverage of the sea there.
+    static float beside_hulls(float coverage, const glm::vec3& hulls) {
+        return hulls.x * coverage + hulls.y * (1.0f - coverage);
     }
 
     struct FloorBelow {
@@ -270,7 +289,7 @@ class MapPart final : public OutputPart {
     // Only if the patch is a common period of every cascade that shows in this map, whatever other outputs
     // show; trains have none, nor have copies at random offsets or places of the world.
     bool patch_is_periodic() const {
-        if (plan_.trains || plan_.masks || plan_.sea_cascades() < plan_.cascades.size() ||
+        if (plan_.trains || plan_.masks || meets_hulls() || plan_.sea_cascades() < plan_.cascades.size() ||
             scene().waves.tiling == Tiling::Random)
             return false;
         const std::vector<int> levels = summed_levels(plan_, plan_.queries[output_.query]);
@@ -385,7 +404,8 @@ class MapPart final : public OutputPart {
         add_level(full);
         for (const MipLevel<Moments>& level : moment_mips({.n = n_, .texels = full, .periodic = periodic_}))
             add_level(level.texels);
-        const std::vector<std::vector<glm::vec3>> foam = foam_levels(slot, texels);
+        std::vector<std::vector<glm::vec3>> foam = foam_levels(slot, texels);
+        if (!slot.hulls.empty()) add_hulls(slot, texels, foam);
         std::vector<Level> levels;
         for (std::size_t i = 0; i < texels.size(); ++i)
             levels.push_back({exr::mip_level_size(n_, n_, static_cast<int>(i)).first, texels[i],
@@ -438,6 +458,25 @@ class MapPart final : public OutputPart {
         for (const MipLevel<glm::vec3>& level : mean_mips({.n = n_, .texels = left, .periodic = periodic_}))
             add_level(level.texels);
         return levels;
+    }
+
+    // A coarser texel has the means of its own: they are shares of its area.
+    void add_hulls(const MapSlot& slot, std::vector<std::vector<glm::vec3>>& texels,
+                   std::vector<std::vector<glm::vec3>>& foam) const {
+        const auto add_level = [&](std::size_t level, std::span<const glm::vec3> hulls) {
+            for (std::size_t i = 0; i < hulls.size(); ++i) {
+                texels[level][i].x = beside_hulls(texels[level][i].x, hulls[i]);
+                if (foam.empty()) continue;
+                glm::vec3& parts = foam[level][i];
+                parts.x = beside_hulls(parts.x, hulls[i]);
+                parts.y *= hulls[i].x - hulls[i].y;
+            }
+        };
+        add_level(0, slot.hulls);
+        std::size_t next = 1;
+        for (const MipLevel<glm::vec3>& level :
+             mean_mips({.n = n_, .texels = slot.hulls, .periodic = periodic_}))
+            add_level(next++, level.texels);
     }
 
     static exr::Image image(const Level& level, const std::vector<ChannelOf>& channels) {

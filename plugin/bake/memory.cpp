@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/plan/products.h"
+#include "core/scene/hull.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/format/vdb/vdb.h"
@@ -59,6 +60,8 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
     if (std::ranges::any_of(plan.outputs,
                             [](const PlannedOutput& output) { return output.volume.has_value(); }))
         during.add("OpenVDB itself", vdb::kLibraryBytes, "set output.volumes to []");
+    if (std::ranges::any_of(plan.outputs, &PlannedOutput::meets_hulls))
+        during.add("the objects' hulls", hulls_bytes(plan.from->scene), "give fewer objects");
     before.add("the faces of the mesh", fixed, fixed_remedy);
     return before.bytes() > during.bytes() ? before : during;
 }

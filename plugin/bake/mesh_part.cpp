@@ -51,7 +51,7 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
 // What the vertices of a cage have.
 struct CageArrays {
     std::vector<glm::vec3> points, velocities, slope_variance;
-    std::vector<float> coverage, breaking, age_s;
+    std::vector<float> coverage, breaking, age_s, wet;
 };
 
 struct MeshSlot final : OutputSlot {
@@ -71,6 +71,7 @@ class MeshPart final : public OutputPart {
                       .slope_variance = asks(Product::SlopeVariance),
                       .whitecap_coverage = asks(Product::Coverage),
                       .foam_history = has_foam_history(),
+                      .wet = meets_hulls(),
                       .faces = !plan.surface->has_constant_faces(),
                       .origin = plan.surface->has_origin(),
                       .st_of_corners = plan.surface->has_st_of_corners()} {}
@@ -104,6 +105,7 @@ class MeshPart final : public OutputPart {
         // Footprints of each point, and the grid that they are taken from.
         if (!plan_.surface->is_constant())
             memory.once += points * (2 * scalar + sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double));
+        if (meets_hulls()) memory.slot += points * sizeof(float);
         if (cage_) memory.slot += points * numbers() * sizeof(float);  // beside the points' values
         if (is_text()) {
             memory.slot += points * kText * numbers();
@@ -182,7 +184,7 @@ class MeshPart final : public OutputPart {
         std::size_t count = 0;
         for (const ProductRow& row : kProductTable)
             if (asks(row.product)) count += row.components;
-        return count;
+        return count + meets_hulls();
     }
 
     bool asks(Product product) const { return query().products[index(product)]; }
@@ -210,12 +212,25 @@ class MeshPart final : public OutputPart {
         if (!at.normal.empty()) points.rest_normal = {at.normal.data()};
         state.runner.run(sea, output_.query, points, slot.values, watch);
         raise_by(slot.values.vectors(Product::Position), at.height_m);
+        if (meets_hulls()) meet_hulls(sea.frame(), frame, points, slot);
         if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
         if (at.curvature_per_m != 0.0)
             lay_on_earth(at, slot.origin_m, slot.values);
         else
             move_by(slot.values.vectors(Product::Position), glm::dvec3(at.origin_m, 0.0) - slot.origin_m);
         scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
+    }
+
+    // Positions are still those of the flat sea, relative to the points' origin.
+    template <class T>
+    void meet_hulls(const Frame<T>& sea, int frame, const Points<T>& points, MeshSlot& slot) {
+        slot.wet.resize(points.count);
+        std::vector<float> foam(asks(Product::Coverage) ? points.count : 0);
+        hulls_at(sea, frame)
+            .meet(sea, hulls_query(), points, query().cell_m.front(),
+                  {slot.values.vectors(Product::Position), slot.values.vectors(Product::Velocity)},
+                  {slot.wet, foam});
+        add_contact_foam(foam, slot.values);
     }
 
     // Of the frame's record.
@@ -247,6 +262,7 @@ class MeshPart final : public OutputPart {
         keep(slot.values.numbers(Product::Coverage), cage.coverage);
         keep(slot.values.numbers(Product::Breaking), cage.breaking);
         keep(slot.values.numbers(Product::FoamAge), cage.age_s);
+        keep(slot.wet, cage.wet);
     }
 
     static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -339,7 +355,8 @@ class MeshPart final : public OutputPart {
                                .slope_variance = slot.values.vectors(Product::SlopeVariance),
                                .whitecap_coverage = slot.values.numbers(Product::Coverage),
                                .breaking = slot.values.numbers(Product::Breaking),
-                               .age_s = slot.values.numbers(Product::FoamAge)};
+                               .age_s = slot.values.numbers(Product::FoamAge),
+                               .wet = slot.wet};
         if (cage_) {
             sample.points = slot.cage.points;
             sample.velocities = slot.cage.velocities;
@@ -347,6 +364,7 @@ class MeshPart final : public OutputPart {
             sample.whitecap_coverage = slot.cage.coverage;
             sample.breaking = slot.cage.breaking;
             sample.age_s = slot.cage.age_s;
+            sample.wet = slot.cage.wet;
         }
         if (attributes_.origin) sample.origin_m = slot.origin_m;
         if (attributes_.faces)

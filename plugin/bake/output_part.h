@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "core/effects/sea_at_time.h"
+#include "core/evaluate/hulls.h"
 #include "core/evaluate/values.h"
 #include "core/plan/fingerprint.h"
+#include "core/plan/hulls.h"
 #include "core/plan/plan.h"
 #include "core/surface/patch.h"
 #include "core/waves/frame.h"
@@ -27,6 +29,7 @@ namespace pelagic {
 struct OutputSlot {
     virtual ~OutputSlot() = default;
     Values values;
+    std::vector<float> wet;          // where hulls keep water out: wet_share() (core/evaluate/hulls.h)
     std::vector<float> floor_light;  // of a floor's map: what values have no product for
     // Of the frame's record; absent where the output says nothing about it.
     std::optional<double> coverage, significant_height_m;
@@ -56,6 +59,8 @@ class OutputPart {
     std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
     const std::string& fingerprint() const { return base_; }
 
+    // Whether there are hulls that its water isn't in.
+    bool meets_hulls() const { return output_.meets_hulls; }
     // Whether its coverage has a past.
     bool has_foam_history() const { return plan_.foam && query().asks_for_past(); }
 
@@ -77,10 +82,21 @@ class OutputPart {
 
   protected:
     const Scene& scene() const { return plan_.from->scene; }
+    // Those of a frame: of the sea at its time; only where meets_hulls().
+    template <class T>
+    const Hulls& hulls_at(const Frame<T>& sea, int frame) {
+        if (!hulls_) hulls_.emplace(scene());
+        hulls_->place(sea, hulls_query(), frame);
+        return *hulls_;
+    }
+    std::optional<int> hulls_query() const { return pelagic::hulls_query(plan_); }
 
     const Plan& plan_;
     PlannedOutput output_;
     std::string base_;
+
+  private:
+    std::optional<Hulls> hulls_;
 };
 
 // Points at rest over squares, the same for every output that has the same square.

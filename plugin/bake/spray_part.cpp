@@ -47,11 +47,12 @@ class SprayPart final : public VolumePart {
 
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<SpraySlot>(); }
 
-    void compute(const SeaAtTime<float>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
-        compute_as(sea.frame(), static_cast<SpraySlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int frame, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(sea.frame(), frame, static_cast<SpraySlot&>(slot), watch);
     }
-    void compute(const SeaAtTime<double>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
-        compute_as(sea.frame(), static_cast<SpraySlot&>(slot), watch);
+    void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(sea.frame(), frame, static_cast<SpraySlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -81,7 +82,8 @@ class SprayPart final : public VolumePart {
     std::size_t columns() const { return middles_m_.size(); }
 
     template <class T>
-    void compute_as(const Frame<T>& sea, SpraySlot& slot, const BuildWatch& watch) const {
+    void compute_as(const Frame<T>& sea, int frame, SpraySlot& slot, const BuildWatch& watch) {
+        const Hulls* hulls = meets_hulls() ? &hulls_at(sea, frame) : nullptr;
         slot.heights_m.resize(columns() * columns());
         slot.breaking.resize(slot.heights_m.size());
         slot.shares.resize(slot.heights_m.size());
@@ -107,6 +109,13 @@ class SprayPart final : public VolumePart {
                         mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean) : 0.0f;
                     slot.shares[first + i] = glm::vec3(shares[i]);
                     slot.lifts_m[first + i] = static_cast<float>(lifts_m[i]);
+                    if (!hulls) continue;
+                    // Above water that is in a hull there is none.
+                    const glm::dvec3 place(glm::dvec2(row.places_m[i]),
+                                           static_cast<double>(row.displacement_m[i].z));
+                    const float wet = Hulls::wet_share(hulls->distance_m(place), voxel_m());
+                    slot.breaking[first + i] *= wet;
+                    slot.shares[first + i] *= wet;
                 }
             });
     }

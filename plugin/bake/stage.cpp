@@ -239,6 +239,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
                         .slope_variance = products[index(Product::SlopeVariance)],
                         .whitecap_coverage = products[index(Product::Coverage)],
                         .foam_history = plan.foam && products[index(Product::Coverage)],
+                        .wet = mesh.meets_hulls(),
                         .faces = !plan.surface->has_constant_faces(),
                         .origin = plan.surface->has_origin(),
                         .st_of_corners = plan.surface->has_st_of_corners()};

@@ -10,8 +10,10 @@
 
 #include "core/base/precision.h"
 #include "core/plan/effects.h"
+#include "core/plan/hulls.h"
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
+#include "core/scene/hull.h"
 #include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
@@ -70,7 +72,9 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
                                          .filter = options.filter});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
-    return make_plan(std::move(prepared), {query}, {.knobs = options.knobs, .filter = options.filter});
+    std::vector<Query> queries{std::move(query)};
+    if (auto hulls = hulls_query(prepared->scene, false)) queries.push_back(std::move(*hulls));
+    return make_plan(std::move(prepared), queries, {.knobs = options.knobs, .filter = options.filter});
 }
 
 PixelWindow data_window(glm::ivec2 display, const RenderOptions& options) {
@@ -219,10 +223,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
             rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
         constexpr std::size_t kSample = sizeof(RayHit) + sizeof(glm::vec3) + sizeof(BodiesInSea) +
                                         sizeof(SeaRadiance) + sizeof(std::uint8_t) + sizeof(float);
-        need.add(
-            "the objects",
-            LitObjects::bytes(scene) + rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
-            "give meshes of fewer triangles");
+        need.add("the objects",
+                 LitObjects::bytes(scene) + hulls_bytes(scene) +
+                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
+                 "give meshes of fewer triangles");
     }
     if (options.lighting.spray) {
         need.add("the map of the spray",

@@ -1,29 +1,4 @@
-// Where the objects of a scene are in its waves.
+// Its place is core/evaluate: who still includes it from here may take it from there.
 #pragma once
 
-#include "core/scene/object_pose.h"
-#include "core/waves/frame.h"
-#include "pelagic/scene.h"
-
-namespace pelagic {
-
-// Over the flat sea, whose origin is the scene's.
-struct PlacedObject {
-    ObjectPose pose;
-    double water_m = 0.0;  // height of the water at it
-};
-
-struct ObjectMoment {
-    int query = 0;        // of the sea's plan; asked for what floats
-    double frame = 1.0;   // also between two
-    double rest_m = 0.0;  // height at which the sea rests
-    double late_s = 0.0;  // beside the sea's time; other than 0 asks for Product::Velocity
-};
-
-// What floats lies on the plane through the water under it, in waves about as long as it is: it heaves, pitches and rolls with that, and
-// turns about its origin. Others are as object_pose() has them. Any thread, for an object with a mesh and a frame that is set.
-template <class T>
-PlacedObject place_object(const Frame<T>& state, const Scene& scene, const SceneObject& object,
-                          const ObjectMoment& at);
-
-}  // namespace pelagic
+#include "core/evaluate/object_place.h"

@@ -18,8 +18,10 @@
 
 #include "core/base/precision.h"
 #include "core/base/random.h"
+#include "core/evaluate/hulls.h"
 #include "core/lighting/background.h"
 #include "core/lighting/meniscus.h"
+#include "core/plan/hulls.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/pixel_footprint.h"
@@ -74,6 +76,7 @@ class RendererOf final : public Impl {
         options_.layers = layers_of(!scene_.objects.empty(), options_.layers);
         if (scene_.objects.empty()) return;
         objects_ = std::make_unique<LitObjects>(scene_);
+        if (hulls_query(plan)) hulls_.emplace(scene_);
         for (const SceneObject& object : scene_.objects) mattes_.push_back(matte_id(object.called()));
     }
 
@@ -136,6 +139,7 @@ class RendererOf final : public Impl {
                         if (is_answered && !batch_.sea.empty()) {
                             find_places(row);
                             sea_.answer(batch_.seen);
+                            if (hulls_) sea_.add_foam_of(*hulls_, batch_.seen);
                         }
                         if (is_lit) light_sea(row);
                         if (is_lit) light_water(row);
@@ -274,6 +278,7 @@ class RendererOf final : public Impl {
                              .has_motion = needs_motion(options_.layers)});
             objects_->light(sea_);
         }
+        if (hulls_) hulls_->place(sea_.frame(), hulls_query(plan()), pass.frame, drawn_.rest_m());
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
             const SeaView middle{with_overscan(view_at(scene_.camera, pass.frame), overscan), frame_};
@@ -1127,6 +1132,7 @@ class RendererOf final : public Impl {
     Rasteriser raster_;
     Batch<T> batch_;
     std::unique_ptr<LitObjects> objects_;  // of scenes with some
+    std::optional<Hulls> hulls_;           // of those that keep water out
     std::vector<float> mattes_;            // by object
     const std::atomic<bool>* cancel_ = nullptr;
 };

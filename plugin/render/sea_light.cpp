@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/lighting/background.h"
+#include "core/plan/hulls.h"
 #include "core/plan/weather.h"
 #include "core/scene/number_keys.h"
 #include "core/waves/whitecaps.h"
@@ -133,6 +134,16 @@ void SeaLight<T>::answer(const SeenSea<T>& seen) {
     runner_.run(state_, kQuery, points, wanted, answers_);
     bubbles_.resize(state_.has_bubbles(kQuery) && choice_.whitecaps ? seen.size() : 0);
     if (!bubbles_.empty()) state_.bubbles(kQuery, points, bubbles_);
+}
+
+template <class T>
+void SeaLight<T>::add_foam_of(const Hulls& hulls, const SeenSea<T>& seen) {
+    if (!choice_.whitecaps || answers_.numbers(Product::Coverage).empty()) return;
+    Points<T> points = seen.points();
+    points.cell_m = points.pixel_m;
+    contact_foam_.resize(points.count);
+    hulls.meet(frame(), hulls_query(plan()), points, 0.0, {}, {.foam = contact_foam_});
+    add_contact_foam(contact_foam_, answers_);
 }
 
 template <class T>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/effects/sea_at_time.h"
+#include "core/evaluate/hulls.h"
 #include "core/evaluate/values.h"
 #include "core/lighting/air.h"
 #include "core/lighting/floor.h"
@@ -129,6 +130,8 @@ class SeaLight {
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
+    // And the foam of hulls at these places (core/evaluate/hulls.h), which are set for the frame. After answer().
+    void add_foam_of(const Hulls& hulls, const SeenSea<T>& seen);
     // The light of the places that were answered last, under a sky, through the air and the spray before the eye. wanted: by place,
     // whether it is asked for; empty: all are.
     void light(const SeenSea<T>& seen, const Sky& sky, const Air& air, const Spray& spray,
@@ -160,6 +163,7 @@ class SeaLight {
     SeaAtTime<T> state_;
     QueryRunner<T> runner_;
     Values answers_;
+    std::vector<float> contact_foam_;
     std::vector<float> bubbles_;  // by the same points, of a sea that has them
     std::vector<SeaPoint> points_;
 };

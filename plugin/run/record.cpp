@@ -68,7 +68,7 @@ struct ToJson {
     }
 };
 
-// Every key's value, by its path. Bodies are of pictures alone, which have no record.
+// Every key's value, by its path. Bodies aren't among them: what files depend on of their hulls is in the fingerprints.
 Json settings(const Scene& scene) {
     Json json = Json::object();
     for (const Key& key : keys())

@@ -318,3 +318,21 @@ with checking("Check for the Farm says what needs the add-on, which files are mi
             bpy.data.objects.remove(obj)
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "place.blend"))
     assert "don't need the add-on" in farm_says() and "No file is missing" in farm_says()
+
+with checking("where a hull is the sea is cut out"):
+    fresh_file()
+    corners = [(x, y, z) for z in (-6, 6) for y in (-5, 5) for x in (-15, 15)]
+    faces = ((1, 3, 4, 2), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6))  # without a top
+    (folder / "barge.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+                                      + "".join(f"f {' '.join(map(str, face))}\n" for face in faces), encoding="utf-8")
+    afloat = played(bake(shot_file("afloat", PATCH + '[[objects]]\nfile = "barge.obj"\n')))
+    places, dry = numbers(afloat.data), numbers(afloat.data, "dry").ravel()
+    outside = np.maximum(abs(places[:, 0]) - 15, abs(places[:, 1]) - 5)
+    assert (dry[outside < -1.5] == 1).all() and (dry[outside > 1.5] == 0).all() and 40 < (dry == 1).sum() < 160
+    tree = afloat.data.materials[0].node_tree
+    outputs = [node for node in tree.nodes if node.type == "OUTPUT_MATERIAL" and node.inputs["Surface"].links]
+    for output in outputs:
+        cut = output.inputs["Surface"].links[0].from_node
+        assert cut.type == "MIX_SHADER" and cut.inputs[0].links[0].from_node.name == "In a Hull"
+    plain = played(folder / "text")
+    assert outputs and "In a Hull" not in plain.data.materials[0].node_tree.nodes and "dry" not in plain.data.attributes

@@ -43,7 +43,7 @@ void expect_whole(const usd::MeshLayer& layer) {
         for (const usd::MeshArray& array : layer.arrays)
             for (const std::string_view varying :
                  {"normals", "velocities", "primvars:slopeVariance", "primvars:whitecapCoverage",
-                  "primvars:foamActive", "primvars:foamAge"})
+                  "primvars:foamActive", "primvars:foamAge", "primvars:wet"})
                 if (array.name == varying)
                     hold(values_of<float>(layer, array.name).size() ==
                              points * static_cast<std::size_t>(array.components),

@@ -171,7 +171,8 @@ void judge_mesh(const std::string& bytes) {
         else if (is("normals"))
             judge_normals(*numbers, 1e-4, "mesh " + array.name);
         else
-            judge_numbers(*numbers, is("whitecapCoverage") ? Is::Share : Is::Any, "mesh " + array.name);
+            judge_numbers(*numbers, is("whitecapCoverage") || is("wet") ? Is::Share : Is::Any,
+                          "mesh " + array.name);
     }
 }
 

@@ -303,6 +303,7 @@ struct SceneObject {
     double pitch_deg = 0.0, roll_deg = 0.0;  // bow up; to starboard down
     double scale = 1.0;                      // > 0
     bool floats = false;      // heaves, pitches and rolls with the waves that are as long as it is
+    double foam = 1.0;        // times the foam where hull and water meet, 0 … 1
     glm::dvec3 colour{1.0};   // times its materials', 0 … 1
     double glow_cd_m2 = 0.0;  // luminance of materials that glow, ≥ 0
     bool holdout =

@@ -27,6 +27,7 @@ constexpr VaryingAttribute kSlopeVariance{"primvars:slopeVariance", "float3", 3,
 constexpr VaryingAttribute kWhitecapCoverage{"primvars:whitecapCoverage", "float", 1, true};
 constexpr VaryingAttribute kFoamActive{"primvars:foamActive", "float", 1, true};
 constexpr VaryingAttribute kFoamAge{"primvars:foamAge", "float", 1, true};
+constexpr VaryingAttribute kWet{"primvars:wet", "float", 1, true};
 
 std::span<const float> floats(std::span<const glm::vec3> vectors) {
     return {vectors.empty() ? nullptr : &vectors[0].x, 3 * vectors.size()};
@@ -149,6 +150,7 @@ std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes)
     if (attributes.slope_variance) result.push_back(kSlopeVariance);
     if (attributes.whitecap_coverage) result.push_back(kWhitecapCoverage);
     if (attributes.foam_history) result.insert(result.end(), {kFoamActive, kFoamAge});
+    if (attributes.wet) result.push_back(kWet);
     return result;
 }
 
@@ -171,6 +173,7 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
         if (attribute.name == kWhitecapCoverage.name) values = sample.whitecap_coverage;
         if (attribute.name == kFoamActive.name) values = sample.breaking;
         if (attribute.name == kFoamAge.name) values = sample.age_s;
+        if (attribute.name == kWet.name) values = sample.wet;
         const VaryingValues& varying = result.emplace_back(VaryingValues{attribute, values});
         const bool is_of_corners = attribute.name == kSt.name && faces.is_st_of_corners;
         const std::size_t wanted = is_of_corners ? faces.indices.size() : sample.points.size();

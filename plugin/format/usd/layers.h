@@ -63,6 +63,7 @@ struct AttributeSet {
     bool slope_variance = false;
     bool whitecap_coverage = false;
     bool foam_history = false;   // primvars:foamActive and primvars:foamAge, both
+    bool wet = false;            // primvars:wet: hulls keep water out of the mesh
     bool faces = false;          // faceVertexCounts, faceVertexIndices and primvars:st, all three
     bool origin = false;         // kOrigin
     bool st_of_corners = false;  // primvars:st has a value for each corner of each face (faceVarying)
@@ -90,6 +91,7 @@ struct MeshSample {
     std::span<const float> whitecap_coverage{};   // 0 … 1
     std::span<const float> breaking{};            // of it, where waves break now, 0 … 1; with age_s
     std::span<const float> age_s{};               // the mean age of that foam [s]
+    std::span<const float> wet{};                 // 1 water, 0 in a hull; ½ on its outline
 
     AttributeSet attributes() const {
         return {.normals = !normals.empty(),
@@ -97,6 +99,7 @@ struct MeshSample {
                 .slope_variance = !slope_variance.empty(),
                 .whitecap_coverage = !whitecap_coverage.empty(),
                 .foam_history = !breaking.empty() || !age_s.empty(),
+                .wet = !wet.empty(),
                 .faces = faces.has_value(),
                 .origin = origin_m.has_value(),
                 .st_of_corners = faces && faces->is_st_of_corners};

@@ -49,7 +49,8 @@ void check(const MeshLayer& layer) {
                       .slope_variance = vectors_of<glm::vec3>(layer, "primvars:slopeVariance"),
                       .whitecap_coverage = values_of<float>(layer, "primvars:whitecapCoverage"),
                       .breaking = values_of<float>(layer, "primvars:foamActive"),
-                      .age_s = values_of<float>(layer, "primvars:foamAge")};
+                      .age_s = values_of<float>(layer, "primvars:foamAge"),
+                      .wet = values_of<float>(layer, "primvars:wet")};
     if (!faces.counts.empty() || !faces.indices.empty() || !faces.st.empty()) sample.faces = faces;
     varying_values(sample, {});
 }
@@ -62,6 +63,7 @@ std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::strin
                                                                            .slope_variance = true,
                                                                            .whitecap_coverage = true,
                                                                            .foam_history = true,
+                                                                           .wet = true,
                                                                            .faces = true});
     for (const VaryingAttribute& attribute : known)
         if (attribute.name == name && name != "extent" && array_type == std::string(attribute.type) + "[]")

@@ -199,13 +199,28 @@ class Network {
 };
 
 // UsdPreviewSurface has no node that mixes two colours, so it shows water without whitecaps.
-void write_preview_surface(Page& page, const Material& material) {
+// An opacity below its threshold is a hole: nothing of the mesh is in a hull.
+void write_preview_surface(Page& page, const Stage& stage, const std::string& path) {
+    const Material& material = stage.material;
+    if (stage.attributes.wet) {
+        page.prim("def Shader", "WetReader");
+        page.line({"uniform token info:id = \"UsdPrimvarReader_float\""});
+        page.line({"float inputs:fallback = 1"});
+        page.line({"string inputs:varname = \"wet\""});
+        page.line({"float outputs:result"});
+        page.close("}");
+    }
     page.prim("def Shader", "Preview");
     page.line({"uniform token info:id = \"UsdPreviewSurface\""});
     page.line({"color3f inputs:diffuseColor = ", color("the water's colour", material.color)});
     page.line({"float inputs:ior = ", real32("the water's ior", material.ior)});
     page.line({"float inputs:metallic = 0"});
-    page.line({"float inputs:opacity = ", real32("the water's opacity", material.opacity)});
+    if (stage.attributes.wet) {
+        page.line({"float inputs:opacity.connect = <", path, "/WetReader.outputs:result>"});
+        page.line({"float inputs:opacityThreshold = 0.5"});
+    } else {
+        page.line({"float inputs:opacity = ", real32("the water's opacity", material.opacity)});
+    }
     page.line({"float inputs:roughness = ", real32("the water's roughness", material.roughness)});
     page.line({"token outputs:surface"});
     page.close("}");
@@ -308,6 +323,7 @@ void write_materialx_surface(Page& page, const Stage& stage, const std::string& 
         inputs.push_back({"float", "transmission_depth", "1"});
         inputs.push_back({"color3f", "transmission_scatter", scattering});
     }
+    if (stage.attributes.wet) inputs.push_back({"color3f", "opacity", "Opacity", true});
     network.node("Surface", "ND_standard_surface_surfaceshader", "token", inputs);
 
     if (foam) {
@@ -321,13 +337,21 @@ void write_materialx_surface(Page& page, const Stage& stage, const std::string& 
                      {{"float", "bg", "1"}, {"float", "fg", "0"}, {"float", "mix", "Coverage", true}});
     }
     if (slopes) write_microfacets(network);
+    if (stage.attributes.wet) {
+        network.node("Wet", "ND_geompropvalue_float", "float", {{"string", "geomprop", "\"wet\""}});
+        network.node("Opacity", "ND_ifgreatereq_color3", "color3f",
+                     {{"float", "value1", "Wet", true},
+                      {"float", "value2", "0.5"},
+                      {"color3f", "in1", "(1, 1, 1)"},
+                      {"color3f", "in2", "(0, 0, 0)"}});
+    }
 }
 
 void write_material(Page& page, const Stage& stage, const std::string& path) {
     page.prim("def Material", "Water");
     page.line({"token outputs:mtlx:surface.connect = <", path, "/Surface.outputs:out>"});
     page.line({"token outputs:surface.connect = <", path, "/Preview.outputs:surface>"});
-    write_preview_surface(page, stage.material);
+    write_preview_surface(page, stage, path);
     write_materialx_surface(page, stage, path);
     page.close("}");
 }

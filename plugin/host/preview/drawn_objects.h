@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluate/object_place.h"
 #include "core/lighting/object.h"
 #include "core/surface/view.h"
 #include "pelagic/object_mesh.h"
@@ -18,7 +19,6 @@
 #include "plugin/host/gpu/uniforms.h"
 #include "plugin/host/preview/gl_objects.h"
 #include "plugin/host/preview/shader_program.h"
-#include "plugin/render/object_place.h"
 
 namespace pelagic {
 

@@ -45,6 +45,7 @@ const char* key_of(std::string_view attribute) {
     for (const ProductRow& row : kProductTable)
         if (row.in_meshes && attribute == row.in_meshes) return row.identifier;
     return attribute == "primvars:st"         ? "st"
+           : attribute == "primvars:wet"      ? "wet"
            : attribute == "faceVertexCounts"  ? "face_counts"
            : attribute == "faceVertexIndices" ? "face_corners"
                                               : nullptr;

@@ -325,6 +325,7 @@ TEST(Keys, BodiesCountByTheirMeshesAndNames) {
         [](SceneObject& o) { o.roll_deg = 1.0; },
         [](SceneObject& o) { o.scale = 2.0; },
         [](SceneObject& o) { o.floats = true; },
+        [](SceneObject& o) { o.foam = 0.5; },
         [](SceneObject& o) { o.colour.y = 0.5; },
         [](SceneObject& o) { o.glow_cd_m2 = 1.0; },
         [](SceneObject& o) { o.holdout = true; }};

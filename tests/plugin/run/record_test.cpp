@@ -44,7 +44,7 @@ TEST(Record, HasEveryKeyAsAValue) {
     const auto settings = nlohmann::json::parse(stream).at("settings");
     std::filesystem::remove(file);
     std::size_t found = 0;
-    EXPECT_FALSE(settings.contains(std::string(kObjectsKey))) << "of pictures alone";
+    EXPECT_FALSE(settings.contains(std::string(kObjectsKey))) << "in fingerprints alone";
     for (const Key& key : keys()) {
         if (key.path == kObjectsKey) continue;
         ASSERT_TRUE(settings.contains(key.path)) << key.path;

@@ -338,7 +338,13 @@ TEST(UsdText, SaysWhatFollowsTheCamera) {
 }
 
 TEST(UsdText, MaterialReadsTheMeshsPrimvarsOnlyWhereTheyAre) {
-    const std::string both = root_text({.attributes = {.slope_variance = true, .whitecap_coverage = true}});
+    const std::string both =
+        root_text({.attributes = {.slope_variance = true, .whitecap_coverage = true, .wet = true}});
+    EXPECT_NE(both.find("float inputs:opacity.connect = </sea/Materials/Water/WetReader.outputs:result>"),
+              std::string::npos);
+    EXPECT_NE(both.find("color3f inputs:opacity.connect = </sea/Materials/Water/Opacity.outputs:out>"),
+              std::string::npos);
+    EXPECT_EQ(root_text({.attributes = {.slope_variance = true}}).find("pacityThreshold"), std::string::npos);
     EXPECT_NE(both.find("string inputs:geomprop = \"whitecapCoverage\""), std::string::npos);
     EXPECT_NE(both.find("string inputs:geomprop = \"slopeVariance\""), std::string::npos);
     // Every connection inside the material leads to a node that is there.

@@ -1,4 +1,4 @@
-#include "plugin/render/object_place.h"
+#include "core/evaluate/object_place.h"
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ PlacedObject place_object(const Frame<T>& state, const Scene& scene, const Scene
             pose.scale * (least + (most - least) * glm::dvec2((k % nx + 0.5) / nx, (k / nx + 0.5) / ny));
         rest[k] = glm::vec<2, T>(local.x * ahead + local.y * port);
     }
-    const std::vector<T> cell_m(rest.size(), static_cast<T>(std::max(size.x, size.y) / 3.0));
+    const std::vector<T> cell_m(rest.size(), static_cast<T>(floating_cell_m(object)));
     Results<T> results;
     results.set(Product::Position, {position.data()});
     if (at.late_s != 0.0) results.set(Product::Velocity, {velocity.data()});

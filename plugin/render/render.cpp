@@ -20,6 +20,7 @@
 #include "core/base/random.h"
 #include "core/lighting/background.h"
 #include "core/lighting/meniscus.h"
+#include "core/lighting/object.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/pixel_footprint.h"
@@ -84,7 +85,12 @@ class RendererOf final : public Impl {
         const int n = options_.samples;
         clear(picture);
         cancel_ = watch.cancel;
-        if (sea_.light_frame(frame)) air_ = {};
+        const bool is_other_light = sea_.light_frame(frame);
+        if (is_other_light) air_ = {};
+        if (objects_ && (is_other_light || !scene_.keyed.empty() || !are_objects_lit_)) {
+            objects_->light(sea_);
+            are_objects_lit_ = true;
+        }
         const auto [all, parts] = passes_of(scene_.camera, frame, options_);
         const auto passes = static_cast<int>(all.size());
         // In rising time, so that foam's past is gone through once.
@@ -270,9 +276,8 @@ class RendererOf final : public Impl {
             objects_->place(sea_.frame(), pass.frame,
                             {.origin_m = mesh_.points.origin_m,
                              .curvature_per_m = mesh_.points.curvature_per_m,
-                             .rest_m = drawn_.rest_m(),
+                             .rest_m = [&](glm::dvec2 place_m) { return drawn_.rest_m(place_m); },
                              .has_motion = needs_motion(options_.layers)});
-            objects_->light(sea_);
         }
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
@@ -469,7 +474,7 @@ class RendererOf final : public Impl {
                     hit = {};
                     if (!is_under(i) && objects_->is_dry(place)) {
                         hit = objects_->nearest({.from = place, .towards = ray.towards});
-                        hit.distance_m += sea_m;
+                        if (hit.is_hit()) hit.distance_m += sea_m;
                     }
                 }
             }
@@ -511,6 +516,14 @@ class RendererOf final : public Impl {
             numbers.index = static_cast<std::uint32_t>(pass_.stratum);
         else
             numbers.index = static_cast<std::uint32_t>(in_pixel.y * a_pixel + in_pixel.x);
+        return numbers;
+    }
+
+    // Of a sample that stands for all of its pixel.
+    SampleNumbers numbers_of_middle(int first_row, std::size_t sample) const {
+        SampleNumbers numbers = numbers_of(first_row, sample);
+        numbers.index = 0;
+        numbers.all = 1;
         return numbers;
     }
 
@@ -620,7 +633,8 @@ class RendererOf final : public Impl {
             if (!objects_->may_be_mirrored(place, batch_.seen.to_eye[i], upright,
                                            variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
                 return;
-            constexpr std::uint32_t kFacets = 32, kLeast = 4, kUse = 100;  // of a pixel, of a sample
+            constexpr std::uint32_t kFacets = 32, kLeast = 4, kUse = 100,  // of a pixel, of a sample
+                                    kBounce = 101;
             const SampleNumbers numbers = numbers_of(first_row, sample);
             const std::uint32_t count = numbers.rays(kFacets, kLeast);
             std::array<glm::vec2, kFacets> places;
@@ -646,7 +660,7 @@ class RendererOf final : public Impl {
                 shown.sky += sky;
                 const RayHit hit = objects_->nearest(ray);
                 if (!hit.is_hit()) continue;
-                shown.mirrored += weight * objects_->estimate(ray, hit);
+                shown.mirrored += weight * objects_->estimate(ray, hit, numbers.place(kBounce, k, count));
                 shown.hidden += sky;
             }
         });
@@ -667,13 +681,13 @@ class RendererOf final : public Impl {
             const float cosine = glm::dot(upright, to_eye);
             if (!(cosine > 0.02f)) return;
             const Ray ray{.from = place,
-                          .towards = glm::refract(-to_eye, upright, 1.0f / kWaterIndex),
+                          .towards = refracted_by_water(-to_eye, upright),
                           .farthest_m = clear_m};
             const RayHit hit = objects_->nearest(ray);
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);
             const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
-            const glm::vec3 body = (clear * (1.0f - LitObjects::mirrored_by_water(cosine)) * kBehindGlass) *
+            const glm::vec3 body = (clear * (1.0f - mirrored_by_level_water(cosine)) * kBehindGlass) *
                                    left * objects_->radiance_in_water(ray, hit);
             batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
         });
@@ -1036,8 +1050,8 @@ class RendererOf final : public Impl {
                     glm::dvec1(glm::dot(view_.forward, places[1] + origin - view_.position_m)));
                 set(PictureLayer::Position, places[1] + origin);
                 set(PictureLayer::Normal, normal);
-                set(PictureLayer::Shadow, glm::vec1(objects_->sun_share(glm::vec3(places[1]), normal,
-                                                                        numbers_of(first_row, sample))));
+                set(PictureLayer::Shadow,
+                    glm::vec1(objects_->sun_share(ray, hit, numbers_of_middle(first_row, sample))));
                 if (needs_motion(options_.layers)) set_motion(motion.of(places));
                 return;
             }
@@ -1075,7 +1089,7 @@ class RendererOf final : public Impl {
             std::lower_bound(batch_.sea.begin(), batch_.sea.end(), sample) - batch_.sea.begin();
         if (objects_)
             set(PictureLayer::Shadow, glm::vec1(objects_->sun_share(glm::vec3(position), batch_.seen.up[i],
-                                                                    numbers_of(first_row, sample))));
+                                                                    numbers_of_middle(first_row, sample))));
         const std::vector<float>& coverage = sea_.answers().numbers(Product::Coverage);
         set(PictureLayer::Normal, from_level(glm::dvec3(sea_.answers().vectors(Product::Normal)[i]),
                                              glm::dvec3(batch_.seen.up[i])));
@@ -1127,6 +1141,7 @@ class RendererOf final : public Impl {
     Rasteriser raster_;
     Batch<T> batch_;
     std::unique_ptr<LitObjects> objects_;  // of scenes with some
+    bool are_objects_lit_ = false;
     std::vector<float> mattes_;            // by object
     const std::atomic<bool>* cancel_ = nullptr;
 };

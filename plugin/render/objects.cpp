@@ -244,6 +244,27 @@ float LitObjects::sun_share(const Ray& ray, const RayHit& hit, const SampleNumbe
     return sun_share(at.smooth, at.geometric, numbers);
 }
 
+// Normals mean a smooth surface that lies over the triangles of a convex body, and reaches the sun where a triangle faces away from it already.
+// There the sun's rays of such a place begin, or the shadow's edge would have the triangles' steps: by the planes that touch that surface
+// in the corners, as a mean by the same weights as the normals (Hanika 2021). What faces the sun stays where it is: under eaves the sun
+// must not come to a wall that bulges in its normals alone.
+glm::vec3 LitObjects::smooth_lift(const ObjectMeshData& mesh, std::size_t first, const glm::vec3& weights,
+                                  const Body& body, const glm::vec3& geometric) const {
+    glm::vec3 lift(0.0f);
+    if (glm::dot(geometric, to_sun_) >= 0.0f) return lift;
+    std::array<glm::vec3, 3> corner{};
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = body.axes * mesh.points_m[mesh.triangles[first + i]];
+    const glm::vec3 middle = weights.x * corner[0] + weights.y * corner[1] + weights.z * corner[2];
+    for (std::size_t i = 0; i < 3; ++i) {
+        glm::vec3 upright = body.axes * mesh.normals[first + i];
+        const float size = glm::length(upright);
+        if (!(size > 0.0f)) continue;
+        upright *= std::copysign(1.0f / size, glm::dot(upright, geometric));
+        lift += weights[static_cast<int>(i)] * std::max(glm::dot(corner[i] - middle, upright), 0.0f) * upright;
+    }
+    return lift;
+}
+
 LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const {
     const Body& body = bodies_[hit.body];
     const ObjectMeshData& mesh = body.mesh->data();
@@ -271,19 +292,7 @@ LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const
     at.look = {.colour = body.colour * material.colour,
                .roughness = material.roughness,
                .glow = body.glow * material.glow};
-    // The smooth surface that the normals mean lies over a triangle of a convex one: by the planes that touch it in the corners, as a mean
-    // by the same weights as theirs (Hanika 2021). From there its neighbours don't shade it in steps along the shadow's edge.
-    const glm::dmat3 turn(body.axes);
-    const glm::dvec3 place =
-        static_cast<double>(weights.x) * corner[0] + static_cast<double>(weights.y) * corner[1] + static_cast<double>(weights.z) * corner[2];
-    glm::dvec3 lift(0.0);
-    for (int i = 0; i < 3; ++i) {
-        glm::dvec3 upright(mesh.normals[first + static_cast<std::size_t>(i)]);
-        if (glm::dot(turn * upright, glm::dvec3(at.geometric)) < 0.0) upright = -upright;
-        const double below = glm::dot(corner[static_cast<std::size_t>(i)] - place, upright);
-        lift += static_cast<double>(weights[i]) * std::max(below, 0.0) * upright;
-    }
-    at.smooth = at.place + glm::vec3(turn * lift);
+    at.smooth = at.place + smooth_lift(mesh, first, weights, body, at.geometric);
     return at;
 }
 

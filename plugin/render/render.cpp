@@ -203,8 +203,9 @@ class RendererOf final : public Impl {
                static_cast<std::size_t>(at.x);
     }
 
-    void clear(Picture& picture) const {
+    void clear(Picture& picture) {
         picture.resolution = data_.size();
+        unranked_.assign(objects_ ? static_cast<std::size_t>(picture.resolution.y) : 0, {});
         picture.low = data_.low;
         picture.display.reset();
         if (data_ != PixelWindow{.high = display_}) picture.display = display_;
@@ -747,10 +748,12 @@ class RendererOf final : public Impl {
 
     // A Cryptomatte has its largest share first.
     void end_objects(Picture& picture) const {
-        if (std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)]; !mattes.empty())
-            in_parallel(picture.layers.size(), [&](std::size_t pixel) {
-                sort_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>());
-            });
+        std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
+        if (mattes.empty()) return;
+        for (const std::vector<Unranked>& row : unranked_)
+            for (const Unranked& of : row) keep_in_ranks(ranks_of(mattes, of.pixel), of.id, of.share);
+        in_parallel(picture.layers.size(),
+                    [&](std::size_t pixel) { sort_ranks(ranks_of(mattes, pixel)); });
     }
 
     // What a pixel's samples of the sea show of bodies, more than without them, in all. Of the sky that they mirror, `sky`, bodies take the
@@ -974,6 +977,21 @@ class RendererOf final : public Impl {
             picture.skyline.insert(picture.skyline.end(), of_row.begin(), of_row.end());
     }
 
+    static std::span<float, kMatteFloats> ranks_of(std::vector<float>& mattes, std::size_t pixel) {
+        return std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>();
+    }
+    // What samples to come may still make more than a rank's. A row of pixels is one thread's.
+    void add_unranked(const Picture& picture, std::size_t pixel, float id, float share) const {
+        std::vector<Unranked>& row = unranked_[pixel / static_cast<std::size_t>(picture.resolution.x)];
+        const auto same = std::find_if(row.begin(), row.end(), [&](const Unranked& of) {
+            return of.pixel == pixel && of.id == id;
+        });
+        if (same != row.end())
+            same->share += share;
+        else
+            row.push_back({pixel, id, share});
+    }
+
     // A pixel's light of bodies, and what it shows of which.
     void add_objects(int row, std::size_t x, int n, float share, Picture& picture, std::size_t pixel) const {
         std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
@@ -991,10 +1009,9 @@ class RendererOf final : public Impl {
                 shown.through += in_sea.through;
                 if (in_sea.sky != glm::vec3(0.0f)) sky += batch_.radiance[at].sky;
                 if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
-                add_to_ranks(
-                    std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>(),
-                    is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte,
-                    share);
+                const float id =
+                    is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte;
+                if (!add_to_ranks(ranks_of(mattes, pixel), id, share)) add_unranked(picture, pixel, id, share);
             }
         const glm::vec3 reflection = shown_in_sea(shown, sky);
         for (int c = 0; c < 3; ++c) {
@@ -1142,6 +1159,12 @@ class RendererOf final : public Impl {
     Batch<T> batch_;
     std::unique_ptr<LitObjects> objects_;  // of scenes with some
     bool are_objects_lit_ = false;
+    // Shares of a pixel's bodies beyond those that have its ranks, by row.
+    struct Unranked {
+        std::size_t pixel;
+        float id, share;
+    };
+    mutable std::vector<std::vector<Unranked>> unranked_;
     std::vector<float> mattes_;            // by object
     const std::atomic<bool>* cancel_ = nullptr;
 };

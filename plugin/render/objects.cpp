@@ -19,9 +19,9 @@ constexpr float kPi_f = std::numbers::pi_v<float>;
 
 // Rays of a pixel, over all its samples, and of a sample at least.
 constexpr std::uint32_t kSunRays = 16, kSkyRays = 32, kLeastSunRays = 2, kLeastSkyRays = 4;
-constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 1;
+constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
 constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
-enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces };
+enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces, kOfGlossBounces };
 
 // A coordinate system round a unit direction (Duff et al. 2017).
 glm::mat3 axes_round(const glm::vec3& z) {
@@ -35,13 +35,40 @@ glm::vec2 on_disc(glm::vec2 square) {
     return radius * glm::vec2(std::cos(angle), std::sin(angle));
 }
 
-// The share of all that is open; all of nothing.
-glm::vec3 share_of(const glm::vec3& open, const glm::vec3& all) {
-    glm::vec3 share(1.0f);
-    for (int c = 0; c < 3; ++c)
-        if (all[c] > 0.0f) share[c] = std::min(open[c] / all[c], 1.0f);
-    return share;
-}
+// The mean light of rays, each of which meets a body or is open, where it is known what all would have in the mean if they were open. What
+// chance gives the rays too much or too little of that is taken off as far as they are open, by the share of the other half of them: a
+// share of the same rays would depend on that chance, and the mean be another with few rays. So what nothing hides has no grain, what is
+// closed in is dark, and what comes between has the right mean.
+class MeanLight {
+  public:
+    // light: of `open`, where it is, or of the body. In turns to the two halves: two rays at least.
+    void add(const glm::vec3& open, const glm::vec3& light, bool is_open) {
+        Half& half = halves_[count_++ % 2];
+        ++half.count;
+        half.all += open;
+        half.light += light;
+        half.open += is_open;
+    }
+    glm::vec3 of(const glm::vec3& expected) const {
+        glm::vec3 sum(0.0f);
+        for (std::size_t h = 0; h < 2; ++h) {
+            const Half &half = halves_[h], &other = halves_[1 - h];
+            const float share = static_cast<float>(other.open) / static_cast<float>(other.count);
+            sum += half.light + share * (static_cast<float>(half.count) * expected - half.all);
+        }
+        // Below 0 the halves have disagreed.
+        return glm::max(sum / static_cast<float>(count_), glm::vec3(0.0f));
+    }
+    bool is_any_open() const { return halves_[0].open + halves_[1].open > 0; }
+
+  private:
+    struct Half {
+        glm::vec3 all{0.0f}, light{0.0f};
+        int count = 0, open = 0;
+    };
+    std::array<Half, 2> halves_;
+    std::size_t count_ = 0;
+};
 
 // Off a surface, by what single precision knows of the place.
 float off_surface_m(const glm::vec3& place) {
@@ -50,14 +77,18 @@ float off_surface_m(const glm::vec3& place) {
 
 }  // namespace
 
-glm::vec2 SampleNumbers::place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const {
+SampleNumbers::Places SampleNumbers::places(std::uint32_t what) const {
     constexpr std::uint64_t kKey =
         0x6f626a65637473;  // "objects": no other use of philox() shares its numbers
     const auto shift = philox({x, y, frame, what}, kKey);
+    return {shift[0], shift[1], index};
+}
+
+glm::vec2 SampleNumbers::Places::of(std::uint32_t n, std::uint32_t rays) const {
     const std::uint32_t at = index * rays + n;
     const auto unit = [](std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
     // R2's two numbers, times 2³².
-    return {unit(shift[0] + at * 3242174889u), unit(shift[1] + at * 2447445413u)};
+    return {unit(shift_x + at * 3242174889u), unit(shift_y + at * 2447445413u)};
 }
 
 LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
@@ -230,9 +261,10 @@ float LitObjects::sun_share(const glm::vec3& place, const glm::vec3& normal,
     });
     if (!is_possible) return 1.0f;
     const std::uint32_t count = numbers.rays(kSunRays, kLeastSunRays);
+    const SampleNumbers::Places places = numbers.places(kOfSun);
     std::uint32_t seen = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-        const glm::vec2 at = on_disc(numbers.place(kOfSun, k, count));
+        const glm::vec2 at = on_disc(places.of(k, count));
         seen += !rays_->is_blocked(
             {.from = from, .towards = glm::normalize(to_sun_ + at.x * sun_side_ + at.y * sun_rise_)});
     }
@@ -241,6 +273,7 @@ float LitObjects::sun_share(const glm::vec3& place, const glm::vec3& normal,
 
 float LitObjects::sun_share(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const {
     const Surface at = surface(ray, hit);
+    if (beam_ != glm::vec3(0.0f) && !is_sunny(at)) return 0.0f;
     return sun_share(at.smooth, at.geometric, numbers);
 }
 
@@ -379,26 +412,23 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     return at.look.colour * light / kPi_f + at.look.glow;
 }
 
-// Of sky and sea by the normal, less the share of it that bodies hide, which a few rays tell: so what nothing hides has no grain. And
-// what these rays meet.
 glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers) const {
     constexpr float kBlur = 0.15f;  // [rad], by eye: some of what 32 rays of a hemisphere are apart
     const glm::mat3 axes = axes_round(at.normal);
     const std::uint32_t count = numbers.rays(kSkyRays, kLeastSkyRays);
-    glm::vec3 all(0.0f), open(0.0f), met(0.0f);
+    const SampleNumbers::Places places = numbers.places(kOfSky), bounces = numbers.places(kOfBounces);
+    MeanLight mean;
     for (std::uint32_t k = 0; k < count; ++k) {
-        const glm::vec2 place = numbers.place(kOfSky, k, count);
+        const glm::vec2 place = places.of(k, count);
         const Incoming from =
             incoming(at, outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x))), kBlur,
-                     numbers.place(kOfBounces, k, count));
-        all += from.open;
-        (from.is_open ? open : met) += from.light;
+                     bounces.of(k, count));
+        mean.add(from.open, from.light, from.is_open);
     }
-    return share_of(open, all) * object_irradiance(surroundings_, at.normal) +
-           (kPi_f / static_cast<float>(count)) * met;
+    return kPi_f * mean.of(object_irradiance(surroundings_, at.normal) / kPi_f);
 }
 
-// The mean radiance in the varnish's lobe, likewise: many facets look at sky and sea, a few ask what is before them.
+// The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
 glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye, const SampleNumbers& numbers) const {
     const glm::mat3 axes = axes_round(at.normal);
     const glm::vec3 eye = glm::transpose(axes) * to_eye;
@@ -414,19 +444,21 @@ glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye, const
         return {from, mirrored_by_facet(facing, glm::dot(from, at.normal), roughness)};
     };
     const std::uint32_t count = numbers.rays(kGlossRays, kLeastGlossRays), facets = kOpenFacets * count;
-    glm::vec3 all(0.0f), open(0.0f), met(0.0f), seen(0.0f);
+    const SampleNumbers::Places of_rays = numbers.places(kOfGloss), bounces = numbers.places(kOfGlossBounces),
+                                of_facets = numbers.places(kOfFacets);
+    MeanLight mean;
+    glm::vec3 seen(0.0f);
     for (std::uint32_t k = 0; k < count; ++k) {
-        const auto [from, weight] = facet(numbers.place(kOfGloss, k, count));
-        const Incoming light = incoming(at, from, blur_rad, numbers.place(kOfBounces, k, count));
-        all += weight * light.open;
-        (light.is_open ? open : met) += weight * light.light;
+        const auto [from, weight] = facet(of_rays.of(k, count));
+        const Incoming light = incoming(at, from, blur_rad, bounces.of(k, count));
+        mean.add(weight * light.open, weight * light.light, light.is_open);
     }
-    if (open != glm::vec3(0.0f))
+    if (mean.is_any_open())
         for (std::uint32_t k = 0; k < facets; ++k) {
-            const auto [from, weight] = facet(numbers.place(kOfFacets, k, facets));
+            const auto [from, weight] = facet(of_facets.of(k, facets));
             seen += weight * (from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad));
         }
-    return (share_of(open, all) * seen / static_cast<float>(facets) + met / static_cast<float>(count)) /
+    return mean.of(seen / static_cast<float>(facets)) /
            object_reflectance(std::max(glm::dot(at.normal, to_eye), 1e-3f), roughness);
 }
 

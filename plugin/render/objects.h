@@ -40,8 +40,12 @@ struct SampleNumbers {
     std::uint32_t rays(std::uint32_t of_pixel, std::uint32_t least) const {
         return std::max((of_pixel + all - 1) / all, least);
     }
-    // The n-th of `rays` in the unit square; what: each use has its own.
-    glm::vec2 place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const;
+    struct Places {
+        std::uint32_t shift_x = 0, shift_y = 0, index = 0;
+        // The n-th of `rays` in the unit square.
+        glm::vec2 of(std::uint32_t n, std::uint32_t rays) const;
+    };
+    Places places(std::uint32_t what) const;  // each use has its own
 };
 
 class LitObjects {

@@ -634,10 +634,11 @@ class RendererOf final : public Impl {
             if (!objects_->may_be_mirrored(place, batch_.seen.to_eye[i], upright,
                                            variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
                 return;
-            constexpr std::uint32_t kFacets = 32, kLeast = 4, kUse = 100,  // of a pixel, of a sample
+            constexpr std::uint32_t kFacets = 64, kLeast = 4, kUse = 100,  // of a pixel, of a sample
                                     kBounce = 101;
             const SampleNumbers numbers = numbers_of(first_row, sample);
             const std::uint32_t count = numbers.rays(kFacets, kLeast);
+            const SampleNumbers::Places of_facets = numbers.places(kUse), bounces = numbers.places(kBounce);
             std::array<glm::vec2, kFacets> places;
             std::array<MirroredLight, kFacets> mirrored;
             // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell
@@ -647,7 +648,7 @@ class RendererOf final : public Impl {
             const float begin = static_cast<float>(drawn[0] >> 8) * 0x1p-24f;
             const std::uint32_t turn = (numbers.index * (n + 1) + drawn[1] % numbers.all) % numbers.all;
             for (std::uint32_t k = 0; k < count; ++k) {
-                places[k] = numbers.place(kUse, k, count);
+                places[k] = of_facets.of(k, count);
                 places[k].x = (static_cast<float>(k * numbers.all + turn) + begin) /
                               static_cast<float>(count * numbers.all);
             }
@@ -661,7 +662,7 @@ class RendererOf final : public Impl {
                 shown.sky += sky;
                 const RayHit hit = objects_->nearest(ray);
                 if (!hit.is_hit()) continue;
-                shown.mirrored += weight * objects_->estimate(ray, hit, numbers.place(kBounce, k, count));
+                shown.mirrored += weight * objects_->estimate(ray, hit, bounces.of(k, count));
                 shown.hidden += sky;
             }
         });

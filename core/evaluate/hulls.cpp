@@ -12,7 +12,6 @@
 #include <tuple>
 #include <utility>
 
-#include "core/evaluate/object_place.h"
 #include "core/plan/hulls.h"
 
 namespace pelagic {
@@ -32,16 +31,16 @@ Hulls::Hulls(const Scene& scene) : scene_(scene) {
 }
 
 template <class T>
-void Hulls::place(const Frame<T>& state, std::optional<int> query, double frame, double rest_m) {
+void Hulls::place(const Frame<T>& state, std::optional<int> query, double frame, RestHeight rest_m) {
     const double step_s = scene_.shot.time_scale / scene_.shot.fps;
-    rest_m_ = rest_m;
+    rest_m_ = std::move(rest_m);
     for (Placed& placed : hulls_) {
         const SceneObject& object = scene_.objects[placed.object];
         const auto at = [&](double beside) {
             const ObjectPose pose = place_object(state, scene_, object,
                                                  {.query = query.value_or(0),
                                                   .frame = frame + beside,
-                                                  .rest_m = rest_m,
+                                                  .rest_m = rest_m_,
                                                   .late_s = beside * step_s})
                                         .pose;
             return std::pair(pose.scale * pose.turn, pose.place_m);
@@ -64,8 +63,8 @@ void Hulls::place(const Frame<T>& state, std::optional<int> query, double frame,
         placed.radius_m = placed.scale * glm::length(0.5 * (most - least) + beside);
     }
 }
-template void Hulls::place(const Frame<float>&, std::optional<int>, double, double);
-template void Hulls::place(const Frame<double>&, std::optional<int>, double, double);
+template void Hulls::place(const Frame<float>&, std::optional<int>, double, RestHeight);
+template void Hulls::place(const Frame<double>&, std::optional<int>, double, RestHeight);
 
 double Hulls::Placed::distance(const glm::dvec3& place) const {
     return is_near(place, 0.0) ? scale * hull->distance_m(local(place)) : kFar;
@@ -130,13 +129,16 @@ void Hulls::meet(const Frame<T>& state, std::optional<int> query, const Points<T
     const auto cell = [&](std::size_t i) {
         return points.cell_m ? static_cast<double>(points.cell_m[i]) : cell_m;
     };
+    const auto rest_at = [&](std::size_t i) {
+        return rest_m_ ? rest_m_(points.origin_m + glm::dvec2(points.rest_m[i])) : 0.0;
+    };
     // Of places at rest the water may be elsewhere.
     const double slack_m = positions_m.empty() ? state.sea().plan().from->extent.reach_m : 0.0;
     std::vector<char> is_near(points.count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const glm::dvec3 at = glm::dvec3(points.origin_m, 0.0) +
-                                  (positions_m.empty() ? glm::dvec3(glm::dvec2(points.rest_m[i]), rest_m_)
+                                  (positions_m.empty() ? glm::dvec3(glm::dvec2(points.rest_m[i]), rest_at(i))
                                                        : glm::dvec3(positions_m[i]));
             is_near[i] = std::ranges::any_of(
                 hulls_, [&](const Placed& placed) { return placed.is_near(at, slack_m); });
@@ -166,7 +168,7 @@ void Hulls::meet(const Frame<T>& state, std::optional<int> query, const Points<T
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, near.size(), 256), [&](const auto& range) {
             for (std::size_t k = range.begin(); k < range.end(); ++k) {
                 const std::size_t i = near[k];
-                glm::dvec3 place(points.origin_m, position_m.empty() ? 0.0 : rest_m_);
+                glm::dvec3 place(points.origin_m, position_m.empty() ? 0.0 : rest_at(i));
                 place += position_m.empty() ? glm::dvec3(positions_m[i]) : glm::dvec3(position_m[k]);
                 const double distance_m = placed.distance(place);
                 if (!(distance_m < kFar)) continue;

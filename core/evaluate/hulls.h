@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/evaluate/evaluate.h"
+#include "core/evaluate/object_place.h"
 #include "core/evaluate/values.h"
 #include "core/scene/hull.h"
 #include "core/waves/frame.h"
@@ -27,7 +28,8 @@ class Hulls {
     // At a frame, of a sea that is set to its time; `query` is the plan's hulls_query() (core/plan/hulls.h), which knows_hulls(). rest_m: height at which the
     // sea rests. Hulls move with the sea's time: where that stands still (shot.time_scale = 0) they stand.
     template <class T>
-    void place(const Frame<T>& state, std::optional<int> query, double frame, double rest_m = 0.0);
+    void place(const Frame<T>& state, std::optional<int> query, double frame,
+               RestHeight rest_m = {});
 
     // Along the hull's decks from its outline at the place's height, the nearest one's [m]; negative: dry. Infinite where none is near. Where a hull
     // leans by an angle it is the level one's over its cosine at most, a tenth more at the 24° to which what floats is kept.
@@ -82,7 +84,7 @@ class Hulls {
 
     const Scene& scene_;
     std::vector<Placed> hulls_;
-    double rest_m_ = 0.0;
+    RestHeight rest_m_;
 };
 
 // The foam of Hulls::meet() beside all that a query says is there, 1 − (1 − a)(1 − b): it is what breaks now, of age 0.

@@ -44,7 +44,8 @@ WaterPlane plane_through(std::span<const glm::dvec3> points) {
 template <class T>
 PlacedObject place_object(const Frame<T>& state, const Scene& scene, const SceneObject& object,
                           const ObjectMoment& at) {
-    PlacedObject placed{object_pose(scene, object, at.frame), at.rest_m};
+    PlacedObject placed{object_pose(scene, object, at.frame), 0.0};
+    if (at.rest_m) placed.water_m = at.rest_m(glm::dvec2(placed.pose.place_m));
     if (!object.floats) return placed;
     ObjectPose& pose = placed.pose;
     const glm::dvec2 least(object.mesh->least_m()), most(object.mesh->most_m());
@@ -78,7 +79,7 @@ PlacedObject place_object(const Frame<T>& state, const Scene& scene, const Scene
     }
     const WaterPlane plane = plane_through(points);
     const glm::dvec3 up = glm::normalize(glm::dvec3(-(plane.slope.x * ahead + plane.slope.y * port), 1.0));
-    placed.water_m = plane.height_m + at.rest_m;
+    placed.water_m += plane.height_m;
     for (int axis = 0; axis < 3; ++axis) pose.turn[axis] = from_level(pose.turn[axis], up);
     pose.place_m = glm::dvec3(origin_m, placed.water_m) + pose.place_m.z * up;
     return placed;

@@ -1,6 +1,9 @@
 // Where the objects of a scene are in its waves.
 #pragma once
 
+#include <functional>
+#include <glm/vec2.hpp>
+
 #include "core/scene/object_pose.h"
 #include "core/waves/frame.h"
 #include "pelagic/scene.h"
@@ -13,10 +16,13 @@ struct PlacedObject {
     double water_m = 0.0;  // height of the water at it
 };
 
+// At which the sea rests at a place [m]; null: 0 everywhere.
+using RestHeight = std::function<double(glm::dvec2)>;
+
 struct ObjectMoment {
     int query = 0;        // of the sea's plan; asked for what floats
     double frame = 1.0;   // also between two
-    double rest_m = 0.0;  // height at which the sea rests
+    RestHeight rest_m{};
     double late_s = 0.0;  // beside the sea's time; other than 0 asks for Product::Velocity
 };
 

@@ -1,5 +1,6 @@
 #include "core/lighting/object.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 
@@ -29,8 +30,9 @@ glm::vec3 beam_of(const Sky& sky) {
     return shading::kPi * sky.sun_angular_radius * sky.sun_angular_radius * sky.sun_radiance;
 }
 
-// Adds light that comes from a direction (unit): its irradiance across that direction.
-void add(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light) {
+}  // namespace
+
+void add_light(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light) {
     to.flat_part += light * 0.25f;
     to.x += light * (0.5f * from.x);
     to.y += light * (0.5f * from.y);
@@ -42,8 +44,6 @@ void add(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light) {
     to.zz += light * (0.078125f * (3.0f * from.z * from.z - 1.0f));
     to.xx_yy += light * (0.234375f * (from.x * from.x - from.y * from.y));
 }
-
-}  // namespace
 
 ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                                        double foam) {
@@ -69,11 +69,11 @@ ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& 
             const glm::vec3 d = sky_map_direction(u);
             const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
             const glm::vec3 light = choice.sky ? solid_angle * sky.map.open_radiance(u) : glm::vec3(0.0f);
-            add(made, d, light);
-            add(made, mirrored(d), reflected(d.z) * light + solid_angle * made.water);
+            add_light(made, d, light);
+            add_light(made, mirrored(d), reflected(d.z) * light + solid_angle * made.water);
         }
     if (choice.sun && sky.sun_direction.z > 0.0f)
-        add(made, mirrored(sky.sun_direction), reflected(sky.sun_direction.z) * beam_of(sky));
+        add_light(made, mirrored(sky.sun_direction), reflected(sky.sun_direction.z) * beam_of(sky));
     return made;
 }
 
@@ -90,6 +90,37 @@ glm::vec3 object_of_sun(const ObjectLook& look, const Sky& sky, glm::vec3 to_eye
 glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3 irradiance,
                                  glm::vec3 mirrored) {
     return shading::object_of_surroundings(cosine, glsl(look), irradiance, mirrored);
+}
+
+glm::vec3 mirrored_facet(glm::vec3 to_eye, float roughness, glm::vec2 disc) {
+    const float alpha = shading::varnish_alpha(roughness);
+    // Where facets are stretched to a hemisphere it is seen as a disc, half of which the horizon cuts.
+    const glm::vec3 eye = glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z));
+    const float level2 = eye.x * eye.x + eye.y * eye.y;
+    const glm::vec3 side = level2 > 1e-8f ? glm::vec3(-eye.y, eye.x, 0.0f) / std::sqrt(level2)
+                                          : glm::vec3(1.0f, 0.0f, 0.0f),
+                    rise = glm::cross(eye, side);
+    disc.y = glm::mix(std::sqrt(std::max(1.0f - disc.x * disc.x, 0.0f)), disc.y, 0.5f * (1.0f + eye.z));
+    const glm::vec3 found =
+        disc.x * side + disc.y * rise + std::sqrt(std::max(1.0f - glm::dot(disc, disc), 0.0f)) * eye;
+    return glm::normalize(glm::vec3(alpha * found.x, alpha * found.y, std::max(found.z, 1e-4f)));
+}
+
+float mirrored_by_facet(float facing_facet, float leaving, float roughness) {
+    return shading::varnish_fresnel(facing_facet) *
+           shading::varnish_visible(std::max(leaving, 1e-3f), shading::varnish_alpha(roughness));
+}
+
+float object_reflectance(float cosine, float roughness) {
+    return shading::varnish_reflectance(cosine, roughness);
+}
+
+float mirrored_by_level_water(float cosine) {
+    return shading::fresnel_exact(cosine, shading::kWaterIndex);
+}
+
+glm::vec3 refracted_by_water(glm::vec3 ray, glm::vec3 normal) {
+    return glm::refract(ray, normal, 1.0f / shading::kWaterIndex);
 }
 
 }  // namespace pelagic

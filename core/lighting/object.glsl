@@ -38,34 +38,58 @@ vec3 object_irradiance(vec3 n, ObjectSurroundings light) {
     return max(sum, vec3(0.0f));  // a few harmonics of a strong light ring below 0
 }
 
+// GGX's α.
+float varnish_alpha(float roughness) {
+    return max(square(roughness), kLeastAlpha);
+}
+
 // Smith's masking for GGX, of one direction.
 float varnish_visible(float cosine, float alpha) {
     return 2.0f * cosine / (cosine + sqrt(square(alpha) + (1.0f - square(alpha)) * square(cosine)));
 }
 
-// Of the sun with the mean radiance of its disc, and its irradiance on a plane across its light. Walter et al. 2007.
+// What the varnish reflects of uniform light to an eye: the lobe of object_of_sun() over all directions. A fit to its integral at 24
+// roughnesses and 33 cosines, least squares reweighted until the largest error was smallest: 0.007.
+float varnish_reflectance(float cosine, float roughness) {
+    float c = clamp(cosine, 0.0f, 1.0f);
+    float r = sqrt(varnish_alpha(roughness));
+    float q = c * inversesqrt(square(c) + 9.0f * square(square(r)));  // 0 along the surface, 1 where the lobe is narrower than the view is high
+    float flat_part = 0.8542f + r * (-3.2115f + r * (4.053f - 1.6422f * r));
+    float first = -1.313f + r * (4.5664f + r * (-4.488f + 0.9848f * r));
+    float second = 0.4369f + r * (-0.7698f + r * (-1.0973f + 1.7449f * r));
+    float x = 1.0f - c;
+    return flat_part + q * (first + q * second) +
+           square(square(x)) * x * (0.259f - 0.2754f * r + q * (0.9046f - 1.0367f * r));
+}
+
+// Its mean over a hemisphere, by the cosine; the fit errs by 0.0013.
+float varnish_mean_reflectance(float roughness) {
+    float r = sqrt(varnish_alpha(roughness));
+    return 0.0951f + r * (-0.0544f + r * (-0.0944f + 0.0715f * r));
+}
+
+// Of the sun with the mean radiance of its disc, and its irradiance on a plane across its light. The lobe is that of Walter et al. 2007. What
+// it doesn't send back enters the surface, on its way in and on its way out: so no light is lost, and eye and sun may be exchanged
+// (Kelemen and Szirmay-Kalos 2001, Eq. 5).
 vec3 object_of_sun(vec3 to_eye, vec3 to_sun, vec3 normal, ObjectLook look, vec3 sun, vec3 beam) {
     float lit = dot(normal, to_sun);
     if (!(lit > 0.0f)) return vec3(0.0f);
     float seen = max(dot(normal, to_eye), 1.0e-3f);
-    float alpha = max(square(look.roughness), kLeastAlpha);
+    float alpha = varnish_alpha(look.roughness);
     vec3 facet = normalize(to_eye + to_sun);
     float density = square(alpha) / (kPi * max(square(1.0f + square(dot(facet, normal)) * (square(alpha) - 1.0f)), 1.0e-9f));
     float gloss = density * varnish_fresnel(dot(facet, to_eye)) * varnish_visible(lit, alpha) * varnish_visible(seen, alpha) /
                   (4.0f * seen);
+    float diffuse = (1.0f - varnish_reflectance(seen, look.roughness)) * (1.0f - varnish_reflectance(lit, look.roughness)) /
+                    (1.0f - varnish_mean_reflectance(look.roughness));
     // No more than the disc's radiance: along the surface the lobe has no bound.
-    return look.colour * ((1.0f - varnish_fresnel(seen)) * lit / kPi) * beam + min(gloss * beam, sun);
-}
-
-// What the varnish reflects of uniform light: Schlick's term, with less of a rise to grazing the rougher it is (Lagarde 2011).
-float varnish_reflectance(float cosine, float roughness) {
-    float x = 1.0f - clamp(cosine, 0.0f, 1.0f);
-    return kVarnishStraight + (max(1.0f - roughness, kVarnishStraight) - kVarnishStraight) * (square(square(x)) * x);
+    return look.colour * (diffuse * lit / kPi) * beam + min(gloss * beam, sun);
 }
 
 // Light from all round: `irradiance` on the surface, `mirrored` the mean radiance in the varnish's lobe. cosine: of the view to the normal.
 vec3 object_of_surroundings(float cosine, ObjectLook look, vec3 irradiance, vec3 mirrored) {
-    return look.colour * ((1.0f - varnish_fresnel(cosine)) / kPi) * irradiance + varnish_reflectance(cosine, look.roughness) * mirrored;
+    float reflected = varnish_reflectance(cosine, look.roughness);
+    return look.colour * ((1.0f - reflected) / kPi) * irradiance + reflected * mirrored;
 }
 
 // The mean radiance in the lobe round a mirrored ray: `sky` where that, or its mirror image on the sea, meets the sky.

@@ -1,6 +1,7 @@
 // The light of a body's surface (object.glsl), for C++.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/lighting/lighting.h"
@@ -24,6 +25,8 @@ struct ObjectSurroundings {
 // from the water, of which so much is covered with foam (0 … 1). Terms that are off are black.
 ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                                        double foam);
+// Adds light from a direction (unit): its irradiance across that direction.
+void add_light(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light);
 // On a surface of that unit normal.
 glm::vec3 object_irradiance(const ObjectSurroundings& light, glm::vec3 normal);
 // Radiance to the eye (unit) of the sun of a sky, where nothing hides it.
@@ -31,5 +34,17 @@ glm::vec3 object_of_sun(const ObjectLook& look, const Sky& sky, glm::vec3 to_eye
 // Radiance to the eye of light from all round: the irradiance, and the mean radiance in the varnish's lobe.
 glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3 irradiance,
                                  glm::vec3 mirrored);
+
+// A facet of rough varnish, by the distribution of those that an eye sees (Heitz 2018): unit, as to_eye in axes whose z is the normal.
+// disc: even in the unit disc.
+glm::vec3 mirrored_facet(glm::vec3 to_eye, float roughness, glm::vec2 disc);
+// Which part of the light that it mirrors comes to the eye, by the cosines of the eye to the facet and of the light to the normal. Its
+// mean over such facets is object_reflectance().
+float mirrored_by_facet(float facing_facet, float leaving, float roughness);
+// What the varnish reflects of uniform light. cosine: of the view to the normal.
+float object_reflectance(float cosine, float roughness);
+// What level water mirrors, and where it refracts a ray that falls on it (unit) from the side of the normal.
+float mirrored_by_level_water(float cosine);
+glm::vec3 refracted_by_water(glm::vec3 ray, glm::vec3 normal);
 
 }  // namespace pelagic

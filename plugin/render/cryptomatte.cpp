@@ -33,6 +33,9 @@ std::string quoted(std::string_view text) {
 
 struct Rank {
     float id, share;
+    bool is_before(const Rank& other) const {
+        return share != other.share ? share > other.share : id < other.id;
+    }
 };
 
 }  // namespace
@@ -63,26 +66,31 @@ float matte_id(std::string_view name) {
     return std::bit_cast<float>(bits);
 }
 
-void add_to_ranks(std::span<float, kMatteFloats> ranks, float id, float share) {
-    std::size_t smallest = 0;
+bool add_to_ranks(std::span<float, kMatteFloats> ranks, float id, float share) {
     for (std::size_t i = 0; i < kMatteFloats; i += 2) {
         if (ranks[i + 1] == 0.0f || ranks[i] == id) {
             ranks[i] = id;
             ranks[i + 1] += share;
-            return;
+            return true;
         }
-        if (ranks[i + 1] < ranks[smallest + 1]) smallest = i;
     }
-    if (ranks[smallest + 1] >= share) return;
-    ranks[smallest] = id;
-    ranks[smallest + 1] = share;
+    return false;
+}
+
+void keep_in_ranks(std::span<float, kMatteFloats> ranks, float id, float share) {
+    std::size_t last = 0;
+    for (std::size_t i = 2; i < kMatteFloats; i += 2)
+        if (Rank{ranks[last], ranks[last + 1]}.is_before({ranks[i], ranks[i + 1]})) last = i;
+    if (!Rank{id, share}.is_before({ranks[last], ranks[last + 1]})) return;
+    ranks[last] = id;
+    ranks[last + 1] = share;
 }
 
 void sort_ranks(std::span<float, kMatteFloats> ranks) {
     std::array<Rank, kMatteRanks> sorted{};
     std::memcpy(sorted.data(), ranks.data(), sizeof(sorted));
     std::sort(sorted.begin(), sorted.end(), [](const Rank& a, const Rank& b) {
-        return a.share != b.share ? a.share > b.share : a.id < b.id;
+        return a.is_before(b);
     });
     std::memcpy(ranks.data(), sorted.data(), sizeof(sorted));
 }

@@ -25,8 +25,10 @@ inline const float kSeaMatte = matte_id(kSeaMatteName);
 inline constexpr std::string_view kMatteLayer = "CryptoObject";
 inline constexpr std::size_t kMatteRanks = 6,
                              kMatteFloats = 2 * kMatteRanks;  // identifier, share; no share: none
-// Adds to what a pixel has; of more than six the smallest is lost.
-void add_to_ranks(std::span<float, kMatteFloats> ranks, float id, float share);
+// Adds to what a pixel has of it; false where six others have the ranks.
+bool add_to_ranks(std::span<float, kMatteFloats> ranks, float id, float share);
+// Of a full pixel and one more the last by sort_ranks() is lost.
+void keep_in_ranks(std::span<float, kMatteFloats> ranks, float id, float share);
 // The largest share first, of equal ones the lower identifier.
 void sort_ranks(std::span<float, kMatteFloats> ranks);
 

@@ -64,6 +64,8 @@ class DrawnSea {
 
     // The height [m] at which it rests: a cage's mean, where that is all there is.
     double rest_m() const;
+    // At a place: the cage's own, the highest there, and its mean beside it.
+    double rest_m(glm::dvec2 place_m) const;
 
     // Whether it can be drawn from below as well: an open sea whose water has a body.
     bool has_below() const { return has_body_ && has_grid_ && !half_side_m_ && !cage_; }

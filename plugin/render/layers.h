@@ -113,6 +113,16 @@ static_assert([] {
     return true;
 }());
 
+// Those of objects are the last: shots without any leave them out of the text of their layers (picture_files.cpp).
+static_assert([] {
+    bool of_objects = false;
+    for (const PictureLayerRow& row : kPictureLayers) {
+        if (of_objects && !row.of_objects) return false;
+        of_objects = row.of_objects;
+    }
+    return true;
+}());
+
 // Whether R, G, B are the sum of this and others.
 constexpr bool is_light(const PictureLayerRow& row) {
     return row.light || row.layer == PictureLayer::Object || row.layer == PictureLayer::Reflection;

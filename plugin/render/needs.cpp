@@ -140,10 +140,11 @@ std::size_t pixels_of(const PixelWindow& window) {
 }
 
 // [bytes] of what encode_png() cuts out where there are pixels round the display window.
-std::size_t cut_bytes(glm::ivec2 display, const RenderOptions& options) {
+std::size_t cut_bytes(glm::ivec2 display, const RenderOptions& options, bool has_objects) {
     const PixelWindow data = data_window(display, options), shown = intersection(data, {.high = display});
     if (shown == data) return 0;
-    return pixels_of(shown) * (sizeof(SeaRadiance) + (options.alpha ? sizeof(float) : 0));
+    return pixels_of(shown) * (sizeof(SeaRadiance) + (has_objects ? 2 * sizeof(glm::vec3) : 0) +
+                               (options.alpha ? sizeof(float) : 0));
 }
 
 // [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
@@ -247,7 +248,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                                                                       file_bytes(options, has_objects)) +
                                   kEncodingBytes
                             : picture_bytes(options, has_objects)) +
-            (in_flight ? cut_bytes(scene.camera.resolution, options) : 0),
+            (in_flight ? cut_bytes(scene.camera.resolution, options, has_objects) : 0),
         "ask for a smaller picture (--size)");
     return need;
 }

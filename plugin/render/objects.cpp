@@ -10,17 +10,17 @@
 
 #include "core/base/random.h"
 #include "core/surface/earth.h"
-#include "plugin/render/object_place.h"
 
 namespace pelagic {
 namespace {
 
 constexpr float kPi_f = std::numbers::pi_v<float>;
-constexpr float kF0 = 0.04f;  // of a dielectric of index 1.5, straight on
 
 // Rays of a pixel, over all its samples, and of a sample at least.
 constexpr std::uint32_t kSunRays = 16, kSkyRays = 32, kLeastSunRays = 2, kLeastSkyRays = 4;
-enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss };
+constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
+constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
+enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces, kOfGlossBounces };
 
 // A coordinate system round a unit direction (Duff et al. 2017).
 glm::mat3 axes_round(const glm::vec3& z) {
@@ -34,16 +34,40 @@ glm::vec2 on_disc(glm::vec2 square) {
     return radius * glm::vec2(std::cos(angle), std::sin(angle));
 }
 
-float schlick(float cosine) {
-    const float x = 1.0f - std::clamp(cosine, 0.0f, 1.0f);
-    return kF0 + (1.0f - kF0) * x * x * x * x * x;
-}
+// The mean light of rays, each of which meets a body or is open, where it is known what all would have in the mean if they were open. What
+// chance gives the rays too much or too little of that is taken off as far as they are open, by the share of the other half of them: a
+// share of the same rays would depend on that chance, and the mean be another with few rays. So what nothing hides has no grain, what is
+// closed in is dark, and what comes between has the right mean.
+class MeanLight {
+  public:
+    // light: of `open`, where it is, or of the body. In turns to the two halves: two rays at least.
+    void add(const glm::vec3& open, const glm::vec3& light, bool is_open) {
+        Half& half = halves_[count_++ % 2];
+        ++half.count;
+        half.all += open;
+        half.light += light;
+        half.open += is_open;
+    }
+    glm::vec3 of(const glm::vec3& expected) const {
+        glm::vec3 sum(0.0f);
+        for (std::size_t h = 0; h < 2; ++h) {
+            const Half &half = halves_[h], &other = halves_[1 - h];
+            const float share = static_cast<float>(other.open) / static_cast<float>(other.count);
+            sum += half.light + share * (static_cast<float>(half.count) * expected - half.all);
+        }
+        // Below 0 the halves have disagreed.
+        return glm::max(sum / static_cast<float>(count_), glm::vec3(0.0f));
+    }
+    bool is_any_open() const { return halves_[0].open + halves_[1].open > 0; }
 
-// Of Smith's masking for GGX, one direction.
-float ggx_visible(float cosine, float alpha) {
-    const float a2 = alpha * alpha;
-    return 2.0f * cosine / (cosine + std::sqrt(a2 + (1.0f - a2) * cosine * cosine));
-}
+  private:
+    struct Half {
+        glm::vec3 all{0.0f}, light{0.0f};
+        int count = 0, open = 0;
+    };
+    std::array<Half, 2> halves_;
+    std::size_t count_ = 0;
+};
 
 // Off a surface, by what single precision knows of the place.
 float off_surface_m(const glm::vec3& place) {
@@ -52,14 +76,18 @@ float off_surface_m(const glm::vec3& place) {
 
 }  // namespace
 
-glm::vec2 SampleNumbers::place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const {
+SampleNumbers::Places SampleNumbers::places(std::uint32_t what) const {
     constexpr std::uint64_t kKey =
         0x6f626a65637473;  // "objects": no other use of philox() shares its numbers
     const auto shift = philox({x, y, frame, what}, kKey);
+    return {shift[0], shift[1], index};
+}
+
+glm::vec2 SampleNumbers::Places::of(std::uint32_t n, std::uint32_t rays) const {
     const std::uint32_t at = index * rays + n;
     const auto unit = [](std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
     // R2's two numbers, times 2³².
-    return {unit(shift[0] + at * 3242174889u), unit(shift[1] + at * 2447445413u)};
+    return {unit(shift_x + at * 3242174889u), unit(shift_y + at * 2447445413u)};
 }
 
 LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
@@ -149,16 +177,19 @@ void LitObjects::light(const SeaLight<T>& sea) {
         sea_[lit].resize(light.size());
         std::transform(light.begin(), light.end(), sea_[lit].begin(), radiance_of);
     }
-    // Over a hemisphere, by the cosine: rows are even in z's root.
-    mean_sea_ = glm::vec3(0.0f);
-    float all = 0.0f;
-    for (int row = 0; row < kRows; ++row) {
-        const float root = static_cast<float>(row) / (kRows - 1), part = root * root * root;  // z dz
-        for (int column = 0; column < kColumns; ++column)
-            mean_sea_ += part * sea_[1][row * kColumns + column];
-        all += part * kColumns;
-    }
-    mean_sea_ /= all;
+    surroundings_ = {};
+    constexpr int kSide = 64;  // of a square round the horizon's circle in the sky's map
+    constexpr float kStep = 2.0f / kSide;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const glm::vec2 u(-1.0f + kStep * (static_cast<float>(i) + 0.5f),
+                              -1.0f + kStep * (static_cast<float>(j) + 0.5f));
+            if (glm::dot(u, u) > 1.0f) continue;
+            const glm::vec3 d = sky_map_direction(u), down(d.x, d.y, -d.z);
+            const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
+            add_light(surroundings_, d, solid_angle * this->sky(d));
+            add_light(surroundings_, down, solid_angle * this->sea(-down, true));
+        }
     constexpr float kStep_m = 0.5f, kFarthest_m = 64.0f, kLeast = 0.01f;
     sight_in_water_m_ = kStep_m;
     const auto most = [](const glm::vec3& of) { return std::max({of.x, of.y, of.z}); };
@@ -229,13 +260,41 @@ float LitObjects::sun_share(const glm::vec3& place, const glm::vec3& normal,
     });
     if (!is_possible) return 1.0f;
     const std::uint32_t count = numbers.rays(kSunRays, kLeastSunRays);
+    const SampleNumbers::Places places = numbers.places(kOfSun);
     std::uint32_t seen = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-        const glm::vec2 at = on_disc(numbers.place(kOfSun, k, count));
+        const glm::vec2 at = on_disc(places.of(k, count));
         seen += !rays_->is_blocked(
             {.from = from, .towards = glm::normalize(to_sun_ + at.x * sun_side_ + at.y * sun_rise_)});
     }
     return static_cast<float>(seen) / static_cast<float>(count);
+}
+
+float LitObjects::sun_share(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const {
+    const Surface at = surface(ray, hit);
+    if (beam_ != glm::vec3(0.0f) && !is_sunny(at)) return 0.0f;
+    return sun_share(at.smooth, at.geometric, numbers);
+}
+
+// Normals mean a smooth surface that lies over the triangles of a convex body, and reaches the sun where a triangle faces away from it already.
+// There the sun's rays of such a place begin, or the shadow's edge would have the triangles' steps: by the planes that touch that surface
+// in the corners, as a mean by the same weights as the normals (Hanika 2021). What faces the sun stays where it is: under eaves the sun
+// must not come to a wall that bulges in its normals alone.
+glm::vec3 LitObjects::smooth_lift(const ObjectMeshData& mesh, std::size_t first, const glm::vec3& weights,
+                                  const Body& body, const glm::vec3& geometric) const {
+    glm::vec3 lift(0.0f);
+    if (glm::dot(geometric, to_sun_) >= 0.0f) return lift;
+    std::array<glm::vec3, 3> corner{};
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = body.axes * mesh.points_m[mesh.triangles[first + i]];
+    const glm::vec3 middle = weights.x * corner[0] + weights.y * corner[1] + weights.z * corner[2];
+    for (std::size_t i = 0; i < 3; ++i) {
+        glm::vec3 upright = body.axes * mesh.normals[first + i];
+        const float size = glm::length(upright);
+        if (!(size > 0.0f)) continue;
+        upright *= std::copysign(1.0f / size, glm::dot(upright, geometric));
+        lift += weights[static_cast<int>(i)] * std::max(glm::dot(corner[i] - middle, upright), 0.0f) * upright;
+    }
+    return lift;
 }
 
 LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const {
@@ -244,7 +303,9 @@ LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const
     const std::size_t first = 3 * std::size_t{hit.triangle};
     std::array<glm::dvec3, 3> corner{};
     for (std::size_t i = 0; i < 3; ++i) corner[i] = mesh.points_m[mesh.triangles[first + i]];
-    Surface at{.place = ray.from + hit.distance_m * ray.towards, .body = hit.body};
+    Surface at;
+    at.place = ray.from + hit.distance_m * ray.towards;
+    at.body = hit.body;
     const glm::vec3 weights(1.0f - hit.weights.x - hit.weights.y, hit.weights.x, hit.weights.y);
     // In double: a sliver's area may be nothing in single precision.
     at.geometric = glm::vec3(
@@ -260,9 +321,10 @@ LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const
     if (const float facing = -glm::dot(at.normal, ray.towards); facing < kLeastFacing)
         at.normal = glm::normalize(at.normal - (kLeastFacing - facing) * ray.towards);
     const ObjectMaterial& material = mesh.materials[mesh.material[hit.triangle]];
-    at.colour = body.colour * material.colour;
-    at.glow = body.glow * material.glow;
-    at.roughness = material.roughness;
+    at.look = {.colour = body.colour * material.colour,
+               .roughness = material.roughness,
+               .glow = body.glow * material.glow};
+    at.smooth = at.place + smooth_lift(mesh, first, weights, body, at.geometric);
     return at;
 }
 
@@ -304,97 +366,110 @@ glm::vec3 LitObjects::sea(const glm::vec3& to_eye, bool in_sun) const {
                     glm::mix(at(low + 1, left), at(low + 1, left + 1), right), up);
 }
 
-// Irradiance of sky and sea that nothing hides.
-glm::vec3 LitObjects::ambient(const glm::vec3& normal) const {
-    const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
-    return (0.5f + 0.5f * normal.z) * above + ((0.5f - 0.5f * normal.z) * kPi_f) * mean_sea_;
+bool LitObjects::is_sunny(const Surface& at) const {
+    return beam_ != glm::vec3(0.0f) && glm::dot(at.normal, to_sun_) > 0.0f;
 }
 
-glm::vec3 LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad) const {
-    const glm::vec3 begin = at.place + off_surface_m(at.place) * at.geometric;
-    Ray ray{.from = begin, .towards = from};
+Ray LitObjects::ray_from(const Surface& at, const glm::vec3& towards) const {
+    Ray ray{.from = at.place + off_surface_m(at.place) * at.geometric, .towards = towards};
     // What lies below the water doesn't count: the ray ends there.
-    if (from.z < 0.0f)
-        ray.farthest_m = std::max(begin.z - bodies_[at.body].water_m, 0.0f) / std::max(-from.z, 1e-6f);
-    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m)
-        return estimate(ray, hit);
-    if (from.z >= 0.0f) return sky(from, blur_rad);
-    const glm::vec3 there = begin + ray.farthest_m * from;
-    const bool in_sun =
-        beam_ != glm::vec3(0.0f) &&
-        !is_blocked({.from = there + glm::vec3(0.0f, 0.0f, off_surface_m(there)), .towards = to_sun_});
-    return sea(-from, in_sun);
+    if (towards.z < 0.0f)
+        ray.farthest_m =
+            std::max(ray.from.z - bodies_[at.body].water_m, 0.0f) / std::max(-towards.z, 1e-6f);
+    return ray;
 }
 
-glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit) const {
+// What comes from a direction, and what would without any body.
+LitObjects::Incoming LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad,
+                                          glm::vec2 number) const {
+    const Ray ray = ray_from(at, from);
+    const glm::vec3 open = from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad);
+    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m)
+        return {.open = open, .light = estimate(ray, hit, number), .is_open = false};
+    if (from.z < 0.0f && beam_ != glm::vec3(0.0f)) {
+        const glm::vec3 there = ray.from + ray.farthest_m * from;
+        if (is_blocked({.from = there + glm::vec3(0.0f, 0.0f, off_surface_m(there)), .towards = to_sun_}))
+            return {.open = open, .light = sea(-from, false), .is_open = false};
+    }
+    return {.open = open, .light = open, .is_open = true};
+}
+
+// To the outside of a surface, whichever way its smooth normal leans.
+glm::vec3 LitObjects::outwards(const Surface& at, const glm::vec3& direction) {
+    const float below = glm::dot(direction, at.geometric);
+    return below < 0.0f ? direction - 2.0f * below * at.geometric : direction;
+}
+
+glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 number) const {
     const Surface at = surface(ray, hit);
-    glm::vec3 light = ambient(at.normal);
-    const float facing = glm::dot(at.normal, to_sun_);
-    if (facing > 0.0f && glm::dot(at.geometric, to_sun_) > 0.0f && beam_ != glm::vec3(0.0f) &&
-        !is_blocked({.from = at.place + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
-        light += facing * beam_;
-    return at.colour * light / kPi_f + at.glow;
+    glm::vec3 light(0.0f);
+    const glm::vec3 towards = outwards(
+        at, axes_round(at.normal) * glm::vec3(on_disc(number), std::sqrt(std::max(1.0f - number.x, 0.0f))));
+    if (!is_blocked(ray_from(at, towards))) light = object_irradiance(surroundings_, at.normal);
+    if (is_sunny(at) && !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
+        light += glm::dot(at.normal, to_sun_) * beam_;
+    return at.look.colour * light / kPi_f + at.look.glow;
+}
+
+glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers) const {
+    constexpr float kBlur = 0.15f;  // [rad], by eye: some of what 32 rays of a hemisphere are apart
+    const glm::mat3 axes = axes_round(at.normal);
+    const std::uint32_t count = numbers.rays(kSkyRays, kLeastSkyRays);
+    const SampleNumbers::Places places = numbers.places(kOfSky), bounces = numbers.places(kOfBounces);
+    MeanLight mean;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const glm::vec2 place = places.of(k, count);
+        const Incoming from =
+            incoming(at, outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x))), kBlur,
+                     bounces.of(k, count));
+        mean.add(from.open, from.light, from.is_open);
+    }
+    return kPi_f * mean.of(object_irradiance(surroundings_, at.normal) / kPi_f);
+}
+
+// The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
+glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye, const SampleNumbers& numbers) const {
+    const glm::mat3 axes = axes_round(at.normal);
+    const glm::vec3 eye = glm::transpose(axes) * to_eye;
+    const float roughness = at.look.roughness, blur_rad = roughness * roughness;
+    struct Facet {
+        glm::vec3 from;
+        float weight;
+    };
+    const auto facet = [&](glm::vec2 place) -> Facet {
+        const glm::vec3 upright = axes * mirrored_facet(eye, roughness, on_disc(place));
+        const float facing = glm::dot(to_eye, upright);
+        const glm::vec3 from = outwards(at, glm::normalize(2.0f * facing * upright - to_eye));
+        return {from, mirrored_by_facet(facing, glm::dot(from, at.normal), roughness)};
+    };
+    const std::uint32_t count = numbers.rays(kGlossRays, kLeastGlossRays), facets = kOpenFacets * count;
+    const SampleNumbers::Places of_rays = numbers.places(kOfGloss), bounces = numbers.places(kOfGlossBounces),
+                                of_facets = numbers.places(kOfFacets);
+    MeanLight mean;
+    glm::vec3 seen(0.0f);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const auto [from, weight] = facet(of_rays.of(k, count));
+        const Incoming light = incoming(at, from, blur_rad, bounces.of(k, count));
+        mean.add(weight * light.open, weight * light.light, light.is_open);
+    }
+    if (mean.is_any_open())
+        for (std::uint32_t k = 0; k < facets; ++k) {
+            const auto [from, weight] = facet(of_facets.of(k, facets));
+            seen += weight * (from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad));
+        }
+    return mean.of(seen / static_cast<float>(facets)) /
+           object_reflectance(std::max(glm::dot(at.normal, to_eye), 1e-3f), roughness);
 }
 
 glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const {
     const Surface at = surface(ray, hit);
     const glm::vec3 to_eye = -ray.towards;
-    const float seen = std::max(glm::dot(at.normal, to_eye), 1e-3f);
-    // A perfect mirror would show the sun's disc as a point.
-    const float alpha = std::max(at.roughness * at.roughness, 0.02f);
-    const float diffuse = 1.0f - schlick(seen);
-    glm::vec3 light = at.glow;
-
-    const float facing = glm::dot(at.normal, to_sun_);
-    if (facing > 0.0f && glm::dot(at.geometric, to_sun_) > 0.0f && beam_ != glm::vec3(0.0f)) {
-        const glm::vec3 half = glm::normalize(to_sun_ + to_eye);
-        const float upright = glm::dot(half, at.normal);
-        const float shape = 1.0f + upright * upright * (alpha * alpha - 1.0f);
-        const float density =
-            alpha * alpha / (kPi_f * std::max(shape * shape, 1e-9f));  // GGX, Walter et al. 2007
-        const float gloss = density * schlick(glm::dot(half, to_eye)) * ggx_visible(facing, alpha) *
-                            ggx_visible(seen, alpha) / (4.0f * facing * seen);
-        // No more than the sun's own radiance: where the eye looks along the surface the lobe has no bound.
-        const glm::vec3 mirrored = glm::min(gloss * facing * beam_, sky_->sun_radiance);
-        light += sun_share(at.place, at.geometric, numbers) *
-                 (at.colour * (diffuse * facing / kPi_f) * beam_ + mirrored);
-    }
-
-    const auto above = [&](glm::vec3 direction) {
-        const float below = glm::dot(direction, at.geometric);
-        return below < 0.0f ? direction - 2.0f * below * at.geometric : direction;
-    };
-    const glm::mat3 axes = axes_round(at.normal);
-    const std::uint32_t count = numbers.rays(kSkyRays, kLeastSkyRays);
-    glm::vec3 sum(0.0f);
-    for (std::uint32_t k = 0; k < count; ++k) {
-        constexpr float kBlur = 0.15f;  // [rad], by eye: some of what 32 rays of a hemisphere are apart
-        const glm::vec2 place = numbers.place(kOfSky, k, count), disc = on_disc(place);
-        sum += incoming(at, above(axes * glm::vec3(disc, std::sqrt(1.0f - place.x))), kBlur);
-    }
-    light += (diffuse / static_cast<float>(count)) * at.colour * sum;
-
-    // A facet by the distribution of those that the eye sees (Heitz 2018).
-    const glm::vec3 v = glm::transpose(axes) * to_eye;
-    const glm::vec3 stretched = glm::normalize(glm::vec3(alpha * v.x, alpha * v.y, v.z));
-    const glm::mat3 round = axes_round(stretched);
-    glm::vec2 disc = on_disc(numbers.place(kOfGloss, 0, 1));
-    const float part = 0.5f * (1.0f + stretched.z);
-    // The disc's axis that the facets' hemisphere cuts is upright.
-    const glm::vec3 side = std::abs(stretched.z) < 0.9999f
-                               ? glm::normalize(glm::vec3(-stretched.y, stretched.x, 0.0f))
-                               : round[0];
-    const glm::vec3 rise = glm::cross(stretched, side);
-    disc.y = glm::mix(std::sqrt(std::max(1.0f - disc.x * disc.x, 0.0f)), disc.y, part);
-    const glm::vec3 found =
-        disc.x * side + disc.y * rise + std::sqrt(std::max(1.0f - glm::dot(disc, disc), 0.0f)) * stretched;
-    const glm::vec3 facet =
-        axes * glm::normalize(glm::vec3(alpha * found.x, alpha * found.y, std::max(found.z, 1e-4f)));
-    const glm::vec3 from = above(glm::normalize(2.0f * glm::dot(to_eye, facet) * facet - to_eye));
-    const float weight =
-        schlick(glm::dot(to_eye, facet)) * ggx_visible(std::max(glm::dot(from, at.normal), 1e-3f), alpha);
-    light += weight * incoming(at, from, alpha);
-    return light;
+    glm::vec3 light = at.look.glow;
+    if (is_sunny(at))
+        light += sun_share(at.smooth, at.geometric, numbers) *
+                 object_of_sun(at.look, *sky_, to_eye, at.normal);
+    return light + object_of_surroundings(at.look, std::max(glm::dot(at.normal, to_eye), 1e-3f),
+                                          irradiance(at, numbers), mirrored(at, to_eye, numbers));
 }
 
 glm::vec3 LitObjects::left_at_depth(float way_m) const {
@@ -406,22 +481,19 @@ glm::vec3 LitObjects::radiance_in_water(const Ray& ray, const RayHit& hit) const
     constexpr float kSkySlant = 1.17f, kOfSky = 0.93f;  // the part of the sky's that enters
     const Surface at = surface(ray, hit);
     const float depth_m = bodies_[at.body].water_m - at.place.z;
-    const glm::vec3 to_sun = glm::normalize(
-        glm::vec3(glm::vec2(to_sun_) / kWaterIndex,
-                  std::sqrt(1.0f - (1.0f - to_sun_.z * to_sun_.z) / (kWaterIndex * kWaterIndex))));
+    const glm::vec3 to_sun = -refracted_by_water(-to_sun_, glm::vec3(0.0f, 0.0f, 1.0f));
     const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
     // What comes from the side and from below is by eye.
     glm::vec3 light = (0.6f + 0.4f * at.normal.z) * kOfSky * above * left_at_depth(kSkySlant * depth_m);
     const float facing = glm::dot(at.normal, to_sun);
-    if (facing > 0.0f && glm::dot(at.geometric, to_sun) > 0.0f && beam_ != glm::vec3(0.0f) &&
-        to_sun_.z > 0.0f) {
+    if (facing > 0.0f && beam_ != glm::vec3(0.0f) && to_sun_.z > 0.0f) {
         const bool is_dark =
-            is_blocked({.from = at.place + off_surface_m(at.place) * at.geometric, .towards = to_sun});
+            is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun});
         if (!is_dark)
             light += (facing / to_sun.z * water_entering(*water_, to_sun_)) * sky_->sun_irradiance *
                      left_at_depth(depth_m / to_sun.z);
     }
-    return at.colour * light / kPi_f + at.glow;
+    return at.look.colour * light / kPi_f + at.look.glow;
 }
 
 bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,
@@ -439,13 +511,6 @@ bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye
         const float size = 1.5f * body.radius / distance * (1.0f + glm::length(slope)) / half.z;
         return glm::length(slope - mean) <= farthest + size;
     });
-}
-
-float LitObjects::mirrored_by_water(float cosine) {
-    const float g = std::sqrt(kWaterIndex * kWaterIndex + cosine * cosine - 1.0f);
-    const float across = (g - cosine) / (g + cosine),
-                along = (cosine * (g + cosine) - 1.0f) / (cosine * (g - cosine) + 1.0f);
-    return 0.5f * across * across * (1.0f + along * along);
 }
 
 bool LitObjects::is_near(const glm::vec3& place, float distance_m) const {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x3.hpp>
 #include <glm/vec2.hpp>
@@ -19,7 +20,9 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluate/object_place.h"
 #include "core/lighting/lighting.h"
+#include "core/lighting/object.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "core/waves/frame.h"
@@ -28,8 +31,6 @@
 #include "plugin/render/sea_light.h"
 
 namespace pelagic {
-
-inline constexpr float kWaterIndex = 1.34f;  // as core/lighting/special.glsl has it
 
 // Numbers for the rays of a sample: the same whatever is computed before. Those of a pixel's samples together are spread evenly
 // (Roberts 2018, R2), each pixel's and frame's in their own way (Cranley and Patterson 1976).
@@ -40,8 +41,12 @@ struct SampleNumbers {
     std::uint32_t rays(std::uint32_t of_pixel, std::uint32_t least) const {
         return std::max((of_pixel + all - 1) / all, least);
     }
-    // The n-th of `rays` in the unit square; what: each use has its own.
-    glm::vec2 place(std::uint32_t what, std::uint32_t n, std::uint32_t rays) const;
+    struct Places {
+        std::uint32_t shift_x = 0, shift_y = 0, index = 0;
+        // The n-th of `rays` in the unit square.
+        glm::vec2 of(std::uint32_t n, std::uint32_t rays) const;
+    };
+    Places places(std::uint32_t what) const;  // each use has its own
 };
 
 class LitObjects {
@@ -51,7 +56,8 @@ class LitObjects {
 
     struct Sea {
         glm::dvec2 origin_m{0.0};
-        double curvature_per_m = 0.0, rest_m = 0.0;  // rest_m: where it rests
+        double curvature_per_m = 0.0;
+        RestHeight rest_m;
         bool has_motion = false;  // frames beside this one are asked for, the query has Product::Velocity
     };
     // At a frame, also between two, of a sea that is set to its time. Query 0 is asked for what floats. On all threads.
@@ -67,11 +73,14 @@ class LitObjects {
     bool is_dry(const glm::vec3& place) const;
     // The share of the sun's disc that no body hides from a place, off whose surface `normal` points.
     float sun_share(const glm::vec3& place, const glm::vec3& normal, const SampleNumbers& numbers) const;
+    // The same of a place of a body.
+    float sun_share(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const;
     // What a body sends back along a ray, to an eye in the air, or in the water before a body in it.
     glm::vec3 radiance(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const;
     glm::vec3 radiance_in_water(const Ray& ray, const RayHit& hit) const;
-    // The same for rays that the sea has mirrored: nothing hides the sky from it.
-    glm::vec3 estimate(const Ray& ray, const RayHit& hit) const;
+    // The same for rays that the sea has mirrored: without varnish, and one ray, by a place of the unit square, tells whether sky and sea are
+    // hidden.
+    glm::vec3 estimate(const Ray& ray, const RayHit& hit, glm::vec2 number) const;
     // Whether facets of a sea with these hidden slopes (their variances' sum) mirror some body to the eye, 4 deviations far.
     bool may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,
                          float slope_variance) const;
@@ -79,8 +88,6 @@ class LitObjects {
     bool is_near(const glm::vec3& place, float distance_m) const;
     // From how far a hundredth of a body's light comes through the water [m].
     float sight_in_water_m() const { return sight_in_water_m_; }
-    // Of a level facet, Fresnel's term.
-    static float mirrored_by_water(float cosine);
     // The sky's light that the sea mirrors where no body is.
     glm::vec3 sky(const glm::vec3& direction) const;
 
@@ -111,18 +118,28 @@ class LitObjects {
     };
     struct Surface {
         glm::vec3 place{0.0f}, geometric{0.0f}, normal{0.0f};  // both to the ray's side
-        glm::vec3 colour{0.0f}, glow{0.0f};
-        float roughness = 0.5f;
+        glm::vec3 smooth{0.0f};  // where its sun's rays come, on the smooth surface that the normals mean
+        ObjectLook look;
         int body = 0;
     };
+    struct Incoming {
+        glm::vec3 open{0.0f}, light{0.0f};
+        bool is_open = true;  // both are one
+    };
 
+    glm::vec3 smooth_lift(const ObjectMeshData& mesh, std::size_t first, const glm::vec3& weights, const Body& body,
+                          const glm::vec3& geometric) const;
     Surface surface(const Ray& ray, const RayHit& hit) const;
     bool may_meet(const Ray& ray) const;
     bool is_blocked(const Ray& ray) const;
-    glm::vec3 incoming(const Surface& at, const glm::vec3& from, float blur_rad) const;
+    bool is_sunny(const Surface& at) const;
+    Ray ray_from(const Surface& at, const glm::vec3& towards) const;
+    Incoming incoming(const Surface& at, const glm::vec3& from, float blur_rad, glm::vec2 number) const;
+    static glm::vec3 outwards(const Surface& at, const glm::vec3& direction);
+    glm::vec3 irradiance(const Surface& at, const SampleNumbers& numbers) const;
+    glm::vec3 mirrored(const Surface& at, const glm::vec3& to_eye, const SampleNumbers& numbers) const;
     glm::vec3 sea(const glm::vec3& to_eye, bool in_sun) const;
     glm::vec3 sky(const glm::vec3& direction, float blur_rad) const;
-    glm::vec3 ambient(const glm::vec3& normal) const;
     // Before a place so deep, of what falls on level water.
     glm::vec3 left_at_depth(float way_m) const;
 
@@ -138,7 +155,7 @@ class LitObjects {
     static constexpr int kRows = 12, kColumns = 24;
     std::array<std::vector<glm::vec3>, 2>
         sea_;  // by whether the sun shines on it: rows by the root of to_eye.z, columns by azimuth
-    glm::vec3 mean_sea_{0.0f};
+    ObjectSurroundings surroundings_;  // those two, which nothing hides
     float sight_in_water_m_ = 0.0f;
 };
 

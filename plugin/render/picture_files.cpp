@@ -67,10 +67,10 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
         return most < kLargestHalf ? exr::PixelType::Half : exr::PixelType::Float;
     };
     float most = largest(sky.sun_irradiance + sky.sky_irradiance);
-    // Before the sun itself it is brighter than a white surface.
     double glow_cd_m2 = 0.0;
     for (const SceneObject& object : scene.objects) glow_cd_m2 = std::max(glow_cd_m2, object.glow_cd_m2);
     most += static_cast<float>(1e-3 * glow_cd_m2);
+    // Before the sun itself spray is brighter than a white surface.
     if (has_spray)
         most += (scene.effects.spray_law == SpraySource::Monahan1986 ? kMostOfSpray : kMostOfTornSpray) *
                 largest(sky.sun_radiance) * sky.sun_angular_radius * sky.sun_angular_radius;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <new>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "plugin/render/ray_scene.h"
@@ -33,11 +35,27 @@ struct Taken {
     }
 };
 
+[[noreturn]] void refuse(RTCError error) {
+    switch (error) {
+        case RTC_ERROR_OUT_OF_MEMORY:
+            throw std::bad_alloc();
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            throw std::runtime_error("Embree doesn't run on this CPU: pictures of shots with objects need SSE2");
+        case RTC_ERROR_INVALID_ARGUMENT:
+        case RTC_ERROR_INVALID_OPERATION:
+            throw std::runtime_error("Embree refuses the objects (error " + std::to_string(error) +
+                                     "): please report it with their meshes");
+        default:
+            throw std::runtime_error("Embree fails with its error " + std::to_string(error) +
+                                     ": another version of Embree 3 may do");
+    }
+}
+
 class EmbreeScene final : public RayScene {
   public:
     explicit EmbreeScene(std::span<const ObjectMesh* const> meshes)
         : device_(rtcNewDevice("set_affinity=0,start_threads=0")) {
-        if (!device_) throw std::bad_alloc();
+        if (!device_) refuse(rtcGetDeviceError(nullptr));
         rtcSetDeviceMemoryMonitorFunction(device_.get(), &Taken::count, &taken_);
         scene_ = new_scene();
         for (const ObjectMesh* mesh : meshes) {
@@ -106,7 +124,7 @@ class EmbreeScene final : public RayScene {
     }
 
     void check() const {
-        if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::bad_alloc();
+        if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE) refuse(error);
     }
 
     SceneHandle new_scene() const {
@@ -150,8 +168,6 @@ class EmbreeScene final : public RayScene {
 }  // namespace pelagic
 
 extern "C" __attribute__((visibility("default"))) pelagic::RayScene* pelagic_ray_scene(
-    const pelagic::ObjectMesh* const* meshes, std::size_t count) try {
+    const pelagic::ObjectMesh* const* meshes, std::size_t count) {
     return new pelagic::EmbreeScene(std::span(meshes, count));
-} catch (const std::bad_alloc&) {
-    return nullptr;
 }

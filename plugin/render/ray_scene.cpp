@@ -1,43 +1,27 @@
 #include "plugin/render/ray_scene.h"
 
-#include <dlfcn.h>
-
-#include <new>
 #include <set>
-#include <string>
-#include <system_error>
+
+#include "plugin/files/module.h"
 
 namespace pelagic {
 namespace {
 
-// What this machine lacks, in these words alone: std::system_error adds the system's.
-struct NotLoaded : std::system_error {
-    explicit NotLoaded(std::string text)
-        : system_error(std::make_error_code(std::errc::not_supported)), text_(std::move(text)) {}
-    const char* what() const noexcept override { return text_.c_str(); }
-    std::string text_;
-};
-
 // For as long as the process lives.
 decltype(&pelagic_ray_scene) maker() {
-    static const auto loaded = []() -> decltype(&pelagic_ray_scene) {
-        void* const library = ::dlopen(PELAGIC_RAYS_MODULE, RTLD_NOW | RTLD_LOCAL);
-        void* const symbol = library ? ::dlsym(library, "pelagic_ray_scene") : nullptr;
-        if (!symbol)
-            throw NotLoaded(std::string("Embree can't be loaded: ") + ::dlerror() +
-                            "; pictures of shots with objects need that file of Pelagic's, and Embree 3 "
-                            "(Debian: libembree3-3)");
-        return reinterpret_cast<decltype(&pelagic_ray_scene)>(symbol);
-    }();
+    static const auto loaded = reinterpret_cast<decltype(&pelagic_ray_scene)>(
+        files::load({.file = PELAGIC_RAYS_MODULE,
+                     .symbol = "pelagic_ray_scene",
+                     .what = "Embree",
+                     .needs = "pictures of shots with objects need that file of Pelagic's, and Embree 3 "
+                              "(Debian: libembree3-3)"}));
     return loaded;
 }
 
 }  // namespace
 
 std::unique_ptr<RayScene> make_ray_scene(std::span<const ObjectMesh* const> meshes) {
-    RayScene* const scene = maker()(meshes.data(), meshes.size());
-    if (!scene) throw std::bad_alloc();
-    return std::unique_ptr<RayScene>(scene);
+    return std::unique_ptr<RayScene>(maker()(meshes.data(), meshes.size()));
 }
 
 std::size_t ray_scene_bytes(std::span<const ObjectMesh* const> meshes) {

@@ -33,7 +33,7 @@ struct RayHit {
 class RayScene {
   public:
     virtual ~RayScene() = default;
-    // Where the bodies are: the columns of a turn with a scale, and a place. On all threads. Throws std::bad_alloc.
+    // Where the bodies are: the columns of a turn with a scale, and a place. On all threads. Throws as make_ray_scene().
     virtual void place(std::span<const glm::mat4x3> bodies) = 0;
     // The nearest that a ray meets, of both sides of triangles.
     virtual RayHit nearest(const Ray& ray) const = 0;
@@ -42,7 +42,8 @@ class RayScene {
     virtual std::size_t bytes() const = 0;
 };
 
-// The meshes must outlive the scene. Throws std::system_error where Embree can't be loaded, and std::bad_alloc.
+// The meshes must outlive the scene. Throws std::system_error where Embree can't be loaded, std::bad_alloc where it
+// finds no memory, and std::runtime_error, which says what, for what else it reports.
 std::unique_ptr<RayScene> make_ray_scene(std::span<const ObjectMesh* const> meshes);
 
 // An estimate of RayScene::bytes(), from above.
@@ -50,5 +51,5 @@ std::size_t ray_scene_bytes(std::span<const ObjectMesh* const> meshes);
 
 }  // namespace pelagic
 
-// The module's only symbol: a scene that its caller deletes; null without memory.
+// The module's only symbol: a scene that its caller deletes. Throws as make_ray_scene().
 extern "C" pelagic::RayScene* pelagic_ray_scene(const pelagic::ObjectMesh* const* meshes, std::size_t count);

@@ -21,6 +21,7 @@
 #include "core/evaluate/hulls.h"
 #include "core/lighting/background.h"
 #include "core/lighting/meniscus.h"
+#include "core/lighting/object.h"
 #include "core/plan/hulls.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
@@ -87,7 +88,12 @@ class RendererOf final : public Impl {
         const int n = options_.samples;
         clear(picture);
         cancel_ = watch.cancel;
-        if (sea_.light_frame(frame)) air_ = {};
+        const bool is_other_light = sea_.light_frame(frame);
+        if (is_other_light) air_ = {};
+        if (objects_ && (is_other_light || !scene_.keyed.empty() || !are_objects_lit_)) {
+            objects_->light(sea_);
+            are_objects_lit_ = true;
+        }
         const auto [all, parts] = passes_of(scene_.camera, frame, options_);
         const auto passes = static_cast<int>(all.size());
         // In rising time, so that foam's past is gone through once.
@@ -201,8 +207,9 @@ class RendererOf final : public Impl {
                static_cast<std::size_t>(at.x);
     }
 
-    void clear(Picture& picture) const {
+    void clear(Picture& picture) {
         picture.resolution = data_.size();
+        unranked_.assign(objects_ ? static_cast<std::size_t>(picture.resolution.y) : 0, {});
         picture.low = data_.low;
         picture.display.reset();
         if (data_ != PixelWindow{.high = display_}) picture.display = display_;
@@ -274,11 +281,12 @@ class RendererOf final : public Impl {
             objects_->place(sea_.frame(), pass.frame,
                             {.origin_m = mesh_.points.origin_m,
                              .curvature_per_m = mesh_.points.curvature_per_m,
-                             .rest_m = drawn_.rest_m(),
+                             .rest_m = [&](glm::dvec2 place_m) { return drawn_.rest_m(place_m); },
                              .has_motion = needs_motion(options_.layers)});
-            objects_->light(sea_);
         }
-        if (hulls_) hulls_->place(sea_.frame(), hulls_query(plan()), pass.frame, drawn_.rest_m());
+        if (hulls_)
+            hulls_->place(sea_.frame(), hulls_query(plan()), pass.frame,
+                          [&](glm::dvec2 place_m) { return drawn_.rest_m(place_m); });
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
             const SeaView middle{with_overscan(view_at(scene_.camera, pass.frame), overscan), frame_};
@@ -474,7 +482,7 @@ class RendererOf final : public Impl {
                     hit = {};
                     if (!is_under(i) && objects_->is_dry(place)) {
                         hit = objects_->nearest({.from = place, .towards = ray.towards});
-                        hit.distance_m += sea_m;
+                        if (hit.is_hit()) hit.distance_m += sea_m;
                     }
                 }
             }
@@ -516,6 +524,14 @@ class RendererOf final : public Impl {
             numbers.index = static_cast<std::uint32_t>(pass_.stratum);
         else
             numbers.index = static_cast<std::uint32_t>(in_pixel.y * a_pixel + in_pixel.x);
+        return numbers;
+    }
+
+    // Of a sample that stands for all of its pixel.
+    SampleNumbers numbers_of_middle(int first_row, std::size_t sample) const {
+        SampleNumbers numbers = numbers_of(first_row, sample);
+        numbers.index = 0;
+        numbers.all = 1;
         return numbers;
     }
 
@@ -625,9 +641,11 @@ class RendererOf final : public Impl {
             if (!objects_->may_be_mirrored(place, batch_.seen.to_eye[i], upright,
                                            variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
                 return;
-            constexpr std::uint32_t kFacets = 32, kLeast = 4, kUse = 100;  // of a pixel, of a sample
+            constexpr std::uint32_t kFacets = 64, kLeast = 4, kUse = 100,  // of a pixel, of a sample
+                                    kBounce = 101;
             const SampleNumbers numbers = numbers_of(first_row, sample);
             const std::uint32_t count = numbers.rays(kFacets, kLeast);
+            const SampleNumbers::Places of_facets = numbers.places(kUse), bounces = numbers.places(kBounce);
             std::array<glm::vec2, kFacets> places;
             std::array<MirroredLight, kFacets> mirrored;
             // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell
@@ -637,7 +655,7 @@ class RendererOf final : public Impl {
             const float begin = static_cast<float>(drawn[0] >> 8) * 0x1p-24f;
             const std::uint32_t turn = (numbers.index * (n + 1) + drawn[1] % numbers.all) % numbers.all;
             for (std::uint32_t k = 0; k < count; ++k) {
-                places[k] = numbers.place(kUse, k, count);
+                places[k] = of_facets.of(k, count);
                 places[k].x = (static_cast<float>(k * numbers.all + turn) + begin) /
                               static_cast<float>(count * numbers.all);
             }
@@ -651,7 +669,7 @@ class RendererOf final : public Impl {
                 shown.sky += sky;
                 const RayHit hit = objects_->nearest(ray);
                 if (!hit.is_hit()) continue;
-                shown.mirrored += weight * objects_->estimate(ray, hit);
+                shown.mirrored += weight * objects_->estimate(ray, hit, bounces.of(k, count));
                 shown.hidden += sky;
             }
         });
@@ -672,13 +690,13 @@ class RendererOf final : public Impl {
             const float cosine = glm::dot(upright, to_eye);
             if (!(cosine > 0.02f)) return;
             const Ray ray{.from = place,
-                          .towards = glm::refract(-to_eye, upright, 1.0f / kWaterIndex),
+                          .towards = refracted_by_water(-to_eye, upright),
                           .farthest_m = clear_m};
             const RayHit hit = objects_->nearest(ray);
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);
             const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
-            const glm::vec3 body = (clear * (1.0f - LitObjects::mirrored_by_water(cosine)) * kBehindGlass) *
+            const glm::vec3 body = (clear * (1.0f - mirrored_by_level_water(cosine)) * kBehindGlass) *
                                    left * objects_->radiance_in_water(ray, hit);
             batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
         });
@@ -738,10 +756,12 @@ class RendererOf final : public Impl {
 
     // A Cryptomatte has its largest share first.
     void end_objects(Picture& picture) const {
-        if (std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)]; !mattes.empty())
-            in_parallel(picture.layers.size(), [&](std::size_t pixel) {
-                sort_ranks(std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>());
-            });
+        std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
+        if (mattes.empty()) return;
+        for (const std::vector<Unranked>& row : unranked_)
+            for (const Unranked& of : row) keep_in_ranks(ranks_of(mattes, of.pixel), of.id, of.share);
+        in_parallel(picture.layers.size(),
+                    [&](std::size_t pixel) { sort_ranks(ranks_of(mattes, pixel)); });
     }
 
     // What a pixel's samples of the sea show of bodies, more than without them, in all. Of the sky that they mirror, `sky`, bodies take the
@@ -965,6 +985,21 @@ class RendererOf final : public Impl {
             picture.skyline.insert(picture.skyline.end(), of_row.begin(), of_row.end());
     }
 
+    static std::span<float, kMatteFloats> ranks_of(std::vector<float>& mattes, std::size_t pixel) {
+        return std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>();
+    }
+    // What samples to come may still make more than a rank's. A row of pixels is one thread's.
+    void add_unranked(const Picture& picture, std::size_t pixel, float id, float share) const {
+        std::vector<Unranked>& row = unranked_[pixel / static_cast<std::size_t>(picture.resolution.x)];
+        const auto same = std::find_if(row.begin(), row.end(), [&](const Unranked& of) {
+            return of.pixel == pixel && of.id == id;
+        });
+        if (same != row.end())
+            same->share += share;
+        else
+            row.push_back({pixel, id, share});
+    }
+
     // A pixel's light of bodies, and what it shows of which.
     void add_objects(int row, std::size_t x, int n, float share, Picture& picture, std::size_t pixel) const {
         std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
@@ -982,10 +1017,9 @@ class RendererOf final : public Impl {
                 shown.through += in_sea.through;
                 if (in_sea.sky != glm::vec3(0.0f)) sky += batch_.radiance[at].sky;
                 if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
-                add_to_ranks(
-                    std::span(mattes).subspan(kMatteFloats * pixel).template first<kMatteFloats>(),
-                    is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte,
-                    share);
+                const float id =
+                    is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte;
+                if (!add_to_ranks(ranks_of(mattes, pixel), id, share)) add_unranked(picture, pixel, id, share);
             }
         const glm::vec3 reflection = shown_in_sea(shown, sky);
         for (int c = 0; c < 3; ++c) {
@@ -1041,8 +1075,8 @@ class RendererOf final : public Impl {
                     glm::dvec1(glm::dot(view_.forward, places[1] + origin - view_.position_m)));
                 set(PictureLayer::Position, places[1] + origin);
                 set(PictureLayer::Normal, normal);
-                set(PictureLayer::Shadow, glm::vec1(objects_->sun_share(glm::vec3(places[1]), normal,
-                                                                        numbers_of(first_row, sample))));
+                set(PictureLayer::Shadow,
+                    glm::vec1(objects_->sun_share(ray, hit, numbers_of_middle(first_row, sample))));
                 if (needs_motion(options_.layers)) set_motion(motion.of(places));
                 return;
             }
@@ -1080,7 +1114,7 @@ class RendererOf final : public Impl {
             std::lower_bound(batch_.sea.begin(), batch_.sea.end(), sample) - batch_.sea.begin();
         if (objects_)
             set(PictureLayer::Shadow, glm::vec1(objects_->sun_share(glm::vec3(position), batch_.seen.up[i],
-                                                                    numbers_of(first_row, sample))));
+                                                                    numbers_of_middle(first_row, sample))));
         const std::vector<float>& coverage = sea_.answers().numbers(Product::Coverage);
         set(PictureLayer::Normal, from_level(glm::dvec3(sea_.answers().vectors(Product::Normal)[i]),
                                              glm::dvec3(batch_.seen.up[i])));
@@ -1133,6 +1167,13 @@ class RendererOf final : public Impl {
     Batch<T> batch_;
     std::unique_ptr<LitObjects> objects_;  // of scenes with some
     std::optional<Hulls> hulls_;           // of those that keep water out
+    bool are_objects_lit_ = false;
+    // Shares of a pixel's bodies beyond those that have its ranks, by row.
+    struct Unranked {
+        std::size_t pixel;
+        float id, share;
+    };
+    mutable std::vector<std::vector<Unranked>> unranked_;
     std::vector<float> mattes_;            // by object
     const std::atomic<bool>* cancel_ = nullptr;
 };

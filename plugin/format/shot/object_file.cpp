@@ -1,5 +1,7 @@
 #include "plugin/format/shot/object_file.h"
 
+#include <algorithm>
+
 #include "core/scene/text.h"
 #include "plugin/format/obj/object_obj.h"
 #include "plugin/format/shot/text_file.h"
@@ -18,9 +20,13 @@ std::shared_ptr<const ObjectMesh> load_object(const std::filesystem::path& file)
         throw ObjError("the mesh " + std::string(error.what()), kAccepted);
     }
     const MaterialText material_text = [&](const std::string& beside) -> std::optional<std::string> {
-        if (beside.find('\0') != std::string::npos) return std::nullopt;
+        // A mesh from elsewhere must not name any file of this machine.
+        const std::filesystem::path path(beside);
+        if (beside.find('\0') != std::string::npos || path.is_absolute() ||
+            std::ranges::any_of(path, [](const std::filesystem::path& part) { return part == ".."; }))
+            return std::nullopt;
         try {
-            return read_text_file(file.parent_path() / beside, kMostMaterialBytes);
+            return read_text_file(file.parent_path() / path, kMostMaterialBytes);
         } catch (const TextFileError&) {
             return std::nullopt;
         }

@@ -1,6 +1,5 @@
 #include "plugin/format/vdb/vdb.h"
 
-#include <dlfcn.h>
 #include <malloc.h>
 #include <sys/mman.h>
 
@@ -8,11 +7,11 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "plugin/files/module.h"
 #include "plugin/format/vdb/openvdb_writer.h"
 
 namespace pelagic::vdb {
@@ -44,24 +43,15 @@ void require_room() {
     are_there.count_down();
 }
 
-// What this machine lacks, in these words alone: std::system_error adds the system's.
-struct NotLoaded : std::system_error {
-    explicit NotLoaded(std::string text)
-        : system_error(std::make_error_code(std::errc::not_supported)), text_(std::move(text)) {}
-    const char* what() const noexcept override { return text_.c_str(); }
-    std::string text_;
-};
-
 // For as long as the process lives: OpenVDB's threads can't be taken away.
 const OpenVdbWriter& writer() {
     static const OpenVdbWriter& loaded = []() -> const OpenVdbWriter& {
         require_room();
-        void* const library = ::dlopen(PELAGIC_OPENVDB_WRITER, RTLD_NOW | RTLD_LOCAL);
-        void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
-        if (!symbol)
-            throw NotLoaded(std::string("OpenVDB can't be loaded: ") + ::dlerror() +
-                            "; volumes need that file of Pelagic's, and the OpenVDB that it was built with");
-        return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(symbol)();
+        return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(files::load(
+            {.file = PELAGIC_OPENVDB_WRITER,
+             .symbol = "pelagic_openvdb_writer",
+             .what = "OpenVDB",
+             .needs = "volumes need that file of Pelagic's, and the OpenVDB that it was built with"}))();
     }();
     return loaded;
 }

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -19,11 +20,15 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/build_watch.h"
 #include "core/base/constants.h"
 #include "core/surface/view.h"
+#include "pelagic/cage.h"
 #include "plugin/light/light.h"
 #include "plugin/render/cryptomatte.h"
 #include "plugin/render/picture_files.h"
@@ -670,6 +675,273 @@ TEST(Objects, HaveMattesInTheirFiles) {
         ASSERT_EQ(share[i], expected[1]);
     }
     std::remove(path.c_str());
+}
+
+// A sphere of few triangles with the normals of a round one.
+std::shared_ptr<const ObjectMesh> coarse_sphere(float radius, const glm::vec3& middle) {
+    constexpr int kRound = 10, kHigh = 6;
+    ObjectMeshData mesh;
+    mesh.materials = {{.name = "white", .colour = glm::vec3(0.8f), .roughness = 1.0f}};
+    const auto at = [](int row, int column) {
+        const double high = kPi * row / kHigh, round = 2.0 * kPi * column / kRound;
+        return glm::vec3(glm::dvec3(std::sin(high) * std::cos(round), std::sin(high) * std::sin(round), std::cos(high)));
+    };
+    for (int row = 0; row < kHigh; ++row)
+        for (int column = 0; column < kRound; ++column)
+            for (const auto& corners : {std::array{std::pair(row, column), std::pair(row + 1, column), std::pair(row + 1, column + 1)},
+                                        std::array{std::pair(row, column), std::pair(row + 1, column + 1), std::pair(row, column + 1)}}) {
+                if (corners[0] == corners[1] || (row == 0 && corners[2].first == 0) ||
+                    (row == kHigh - 1 && corners[1].first == kHigh && corners[2].first == kHigh))
+                    continue;
+                for (const auto& [r, c] : corners) {
+                    mesh.triangles.push_back(static_cast<std::uint32_t>(mesh.points_m.size()));
+                    mesh.points_m.push_back(middle + radius * at(r, c));
+                    mesh.normals.push_back(at(r, c));
+                }
+                mesh.material.push_back(0);
+            }
+    return std::make_shared<const ObjectMesh>(std::move(mesh));
+}
+
+// The shadow's edge on a coarse sphere is that of its normals: what they turn to the sun has it, also where its triangle faces away.
+TEST(Objects, HaveTheShadowOfTheirSmoothNormals) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, -12.0, 6.0};
+    scene.camera.look_at_m = {0.0, 0.0, 6.0};
+    scene.camera.fov_deg = 24.0;
+    scene.objects = {object(coarse_sphere(2.0f, {0, 0, 6}))};
+    const Sky sky = sunny_sky(35.0, 0.0, 0.002f);
+    const Picture picture = picture_of(scene, options_of(scene), sky);
+    int sunny = 0, dark = 0, shadowed = 0, lit = 0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        if (!shows_object(picture, i)) continue;
+        const float height = glm::dot(vector_of(picture, PictureLayer::Normal, i), sky.sun_direction),
+                    share = number_of(picture, PictureLayer::Shadow, i);
+        if (height > 0.03f) ++sunny, dark += share < 0.5f;
+        if (height < -0.25f) ++shadowed, lit += share > 0.5f;
+    }
+    EXPECT_GT(sunny, 500);
+    EXPECT_GT(shadowed, 200);
+    EXPECT_LE(dark, sunny / 100);  // without the lift 11 %
+    EXPECT_LE(lit, shadowed / 100);
+}
+
+// Inside of a closed hull there is no light, whatever its walls would send on without walls round them.
+TEST(Objects, AreDarkInTheirClosedHulls) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, -3.0, 4.0};
+    scene.camera.look_at_m = {0.0, 3.0, 4.0};
+    ObjectMaterial white;
+    white.colour = glm::vec3(1.0f);
+    scene.objects = {object(box({-6, -4, 2}, {6, 4, 7}, white))};
+    const Picture picture = picture_of(scene, options_of(scene), sunny_sky(50.0, 90.0));
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        ASSERT_TRUE(shows_object(picture, i));
+        ASSERT_LT(light_of(picture, i).y, 1e-4f) << i;
+    }
+}
+
+// What no body hides has no grain, though the sky isn't uniform; and where something is hidden few rays have the mean of many.
+TEST(Objects, AreAsBrightByFewRaysAsByMany) {
+    Scene scene = calm_scene();
+    scene.camera.resolution = {48, 32};
+    scene.camera.position_m = {0.0, -14.0, 7.8};
+    scene.camera.look_at_m = {0.0, 0.0, 7.8};
+    scene.camera.fov_deg = 12.0;
+    ObjectMaterial rough{.name = "plaster", .colour = glm::vec3(0.7f), .roughness = 0.8f};
+    // Behind the camera: the sea before the wall isn't in its shadow.
+    const Sky sky = daylight_sky({.sun_elevation_deg = 30.0, .sun_azimuth_deg = 250.0}, 64);
+    const auto object_light = [&](int samples, int frame) {
+        const Picture picture = picture_of(scene, options_of(scene, "none", samples), sky, frame);
+        return picture.data[index(PictureLayer::Object)];
+    };
+    scene.objects = {object(box({-9, -3, 5}, {9, 3, 16}, rough))};  // all of the picture
+    const std::vector<float> one = object_light(1, 1), two = object_light(1, 2);
+    double sum = 0.0, apart = 0.0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        sum += static_cast<double>(one[i]);
+        apart += static_cast<double>(std::abs(one[i] - two[i]));
+    }
+    EXPECT_GT(sum, 1.0);
+    EXPECT_LT(apart, 0.015 * sum);  // what its varnish has
+
+    // A roof over it, out of the picture, whose shadow it is in: no edge is to be seen.
+    scene.objects.push_back(object(box({-9, -7, 9}, {9, -3, 10}, rough), "roof"));
+    const auto mean = [](const std::vector<float>& of) {
+        double all = 0.0;
+        for (const float value : of) all += static_cast<double>(value);
+        return all / static_cast<double>(of.size());
+    };
+    const double few = mean(object_light(1, 1)), many = mean(object_light(8, 1));
+    EXPECT_NEAR(few, many, 0.01 * many);
+}
+
+// The shadow's layer is of one sample in the middle: it has as many steps with many samples a pixel as with one.
+TEST(Objects, HaveShadowsAsFineWithManySamples) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {6.0, 0.0, 60.0};
+    scene.camera.look_at_m = {6.0, 0.0, 0.0};
+    scene.camera.fov_deg = 30.0;
+    scene.objects = {object(box({-60, -40, 8}, {0, 40, 10}))};
+    std::set<float> steps;
+    const Picture picture = picture_of(scene, options_of(scene, "shadow", 3), sunny_sky(40.0, 180.0, 0.05f));
+    for (const float share : picture.data[index(PictureLayer::Shadow)]) steps.insert(share);
+    EXPECT_GE(steps.size(), 15u);
+}
+
+// Of seven bodies in a pixel the smallest is left out, in whatever order they come.
+TEST(Objects, HaveTheirLargestMattesInAnyOrder) {
+    std::array<int, 8> order{0, 1, 2, 3, 4, 5, 6, 7};
+    const auto share_of = [](int body) { return 0.02f + 0.03f * static_cast<float>(body); };
+    std::array<float, kMatteFloats> expected{};
+    for (std::size_t rank = 0; rank < kMatteRanks; ++rank) {
+        expected[2 * rank] = static_cast<float>(8 - rank);
+        expected[2 * rank + 1] = share_of(7 - static_cast<int>(rank));
+    }
+    for (int turn = 0; turn < 50; ++turn) {
+        std::array<float, kMatteFloats> ranks{};
+        for (const int body : order) {
+            const float id = static_cast<float>(body + 1);
+            if (!add_to_ranks(ranks, id, share_of(body))) keep_in_ranks(ranks, id, share_of(body));
+        }
+        sort_ranks(ranks);
+        ASSERT_EQ(ranks, expected);
+        std::next_permutation(order.begin(), order.end());
+        std::rotate(order.begin(), order.begin() + 3, order.end());
+    }
+    // Samples that take turns: each by itself is no more than any rank.
+    Scene scene = calm_scene();
+    scene.camera.resolution = {1, 1};
+    scene.camera.position_m = {0.0, -20.0, 5.0};
+    scene.camera.look_at_m = {0.0, 0.0, 5.0};
+    scene.camera.fov_deg = 20.0;
+    for (int i = 0; i < 8; ++i) {
+        const float left = static_cast<float>(i) - 4.0f;
+        scene.objects.push_back(object(box({left, -1, 0}, {left + 1.0f, 1, 10}), "post" + std::to_string(i)));
+    }
+    const auto ranks_of = [&] {
+        return picture_of(scene, options_of(scene, "cryptomatte", 8)).data[index(PictureLayer::Cryptomatte)];
+    };
+    const std::vector<float> forwards = ranks_of();
+    std::reverse(scene.objects.begin(), scene.objects.end());
+    EXPECT_EQ(ranks_of(), forwards);
+    EXPECT_GT(forwards[11], 0.0f);
+}
+
+// A holdout in the water is black with alpha 0, seen from in there.
+TEST(Objects, AsHoldoutsAreLeftOutUnderWater) {
+    Scene scene = calm_scene();
+    scene.water.body = true;
+    scene.camera.position_m = {0.0, -8.0, -2.0};
+    scene.camera.look_at_m = {0.0, 0.0, -2.0};
+    scene.objects = {object(box({-2, -1.5, -2.5}, {2, 1.5, -1.5}, kGlows))};
+    scene.objects[0].glow_cd_m2 = 1e5;
+    scene.objects[0].holdout = true;
+    RenderOptions options = options_of(scene);
+    options.alpha = true;
+    const Picture picture = picture_of(scene, options);
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        ASSERT_EQ(vector_of(picture, PictureLayer::Object, i), glm::vec3(0.0f));
+        if (picture.alpha[i] > 0.0f) continue;
+        ++out;
+        ASSERT_EQ(light_of(picture, i), glm::vec3(0.0f));
+        ASSERT_NEAR(number_of(picture, PictureLayer::Depth, i), 6.5f, 3.0f);
+    }
+    EXPECT_GT(out, 100u);
+}
+
+// Water is kept out of a hull by what lies in it as well: two bodies that lie in one another.
+TEST(Objects, KeepTheWaterOutWithALoad) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {0.0, -6.0, 12.0};
+    scene.camera.look_at_m = {0.0, 0.0, 0.0};
+    scene.camera.fov_deg = 40.0;
+    scene.objects = {object(boxes({{{-3, -2, -1}, {3, 2, 1}, kTop}}, {}), "hull"),
+                     object(box({-1.5, -1, -0.9f}, {1.5, 1, -0.4f}), "load")};
+    const Picture picture = picture_of(scene, options_of(scene));
+    std::size_t load = 0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        const glm::vec3 at = vector_of(picture, PictureLayer::Position, i);
+        if (std::abs(at.x) > 2.9f || std::abs(at.y) > 1.9f) continue;
+        ASSERT_FALSE(picture.sea[i]) << at.x << ' ' << at.y;
+        load += std::abs(at.z + 0.4f) < 1e-3f;
+    }
+    EXPECT_GT(load, 100u);
+}
+
+// A body that floats in a pool lies as high as that one's water rests there, and not as its mean.
+TEST(Objects, FloatOnACageWhereItIsHigh) {
+    Scene scene = calm_scene();
+    CageMesh pool;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) pool.points_m.emplace_back(10.0 * x, 10.0 * y, x == 1 ? 4.0 : 1.0 + 0.5 * x);
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 2; ++x) {
+            const std::int32_t first = 3 * y + x;
+            pool.face_counts.push_back(4);
+            for (const std::int32_t corner : {first, first + 1, first + 4, first + 3}) pool.indices.push_back(corner);
+        }
+    scene.surface.kind = SurfaceKind::Cage;
+    scene.surface.beyond = Beyond::Nothing;
+    scene.surface.cage = std::make_shared<const Cage>(std::move(pool));
+    scene.camera.position_m = {6.0, -14.0, 12.0};
+    scene.camera.look_at_m = {6.0, 0.0, 2.0};
+    scene.camera.fov_deg = 40.0;
+    scene.objects = {object(box({-1, -1, -0.5f}, {1, 1, 1}))};
+    scene.objects[0].floats = true;
+    scene.objects[0].east_m = 6.0;
+    const Picture picture = picture_of(scene, options_of(scene));
+    float top = -1e9f, water = 0.0f, near = 1e9f;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        const glm::vec3 at = vector_of(picture, PictureLayer::Position, i);
+        if (shows_object(picture, i)) top = std::max(top, at.z);
+        if (const float away = glm::length(glm::vec2(at) - glm::vec2(6.0f, 0.0f)); picture.sea[i] && away < near) {
+            near = away;
+            water = at.z;
+        }
+    }
+    ASSERT_LT(near, 2.0f);
+    EXPECT_NEAR(top, water + 1.0f, 0.35f);  // the surface leans
+}
+
+// Suns straight above and in the horizon, and a shutter that is open: finite, and of all of the sun's light no more than there is.
+TEST(Objects, AreFiniteInAnyLightAndMotion) {
+    Scene scene = calm_scene();
+    scene.camera.resolution = {48, 32};
+    scene.sea.wind_speed_mps = 9.0;
+    scene.water.body = true;
+    scene.camera.position_m = {0.0, -14.0, 2.5};
+    scene.camera.look_at_m = {0.0, 0.0, 1.5};
+    scene.objects = {object(boxes({{{-4, -2, -1}, {4, 2, 2}, kTop}}, {.name = "varnish", .roughness = 0.0f}), "hull"),
+                     object(coarse_sphere(1.0f, {5, 0, 0.5f}), "ball")};
+    scene.objects[0].path = "1 -10 0, 25 14 12";
+    scene.objects[1].floats = true;
+    for (const double elevation : {90.0, 0.0, -0.2}) {
+        RenderOptions options = options_of(scene, "all", 2);
+        options.shutter_frames = elevation == 0.0 ? 0.5 : 0.0;
+        const Sky sky = sunny_sky(elevation, 10.0);
+        const Picture picture = picture_of(scene, options, sky, 10);
+        std::size_t seen = 0;
+        for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+            const glm::vec3 light = light_of(picture, i);
+            ASSERT_TRUE(std::isfinite(light.x + light.y + light.z)) << elevation;
+            ASSERT_GE(light.y, -1e-4f);
+            seen += vector_of(picture, PictureLayer::Object, i).y > 0.0f;
+        }
+        EXPECT_GT(seen, 100u);
+        for (const std::vector<float>& layer : picture.data)
+            for (const float value : layer) ASSERT_TRUE(std::isfinite(value));
+    }
+    // As a run that is stopped: at once, and the next picture is whole.
+    const RenderOptions options = options_of(scene);
+    Renderer renderer(scene, options, uniform_sky(), std::array{10});
+    Picture stopped, whole, again;
+    renderer.render(10, whole);
+    const std::atomic<bool> stop = true;
+    EXPECT_THROW(renderer.render(10, stopped, {.cancel = &stop}), BuildCancelled);
+    renderer.render(10, again);
+    EXPECT_EQ(again.data[index(PictureLayer::Object)], whole.data[index(PictureLayer::Object)]);
 }
 
 }  // namespace

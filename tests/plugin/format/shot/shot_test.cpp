@@ -467,6 +467,21 @@ TEST(Shot, BodiesAreReadFromTheirFiles) {
     EXPECT_EQ(scene.objects[0].mesh, scene.objects[1].mesh);
     EXPECT_EQ(scene.objects[0].mesh->data().materials[0].colour, glm::vec3(0.5f, 0.0f, 0.0f));
     EXPECT_EQ(scene.objects[0].file, (folder.path() / "boat.obj").string());
+    // Materials lie beside it, or below: a mesh from elsewhere reads no other file.
+    std::filesystem::create_directory(folder.path() / "in");
+    folder.write("in/paint.mtl", "newmtl red\nKd 0.25 0 0\n");
+    const auto red_of = [&](const std::string& library) {
+        folder.write("other.obj", "mtllib " + library + "\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+        return parse_shot("[[objects]]\nfile = \"other.obj\"\n", file, no_check)
+            .objects[0]
+            .mesh->data()
+            .materials[0]
+            .colour.x;
+    };
+    EXPECT_EQ(red_of("in/paint.mtl"), 0.25f);
+    EXPECT_EQ(red_of("./paint.mtl"), 0.5f);
+    EXPECT_EQ(red_of("in/../paint.mtl"), 0.8f);  // grey
+    EXPECT_EQ(red_of((folder.path() / "paint.mtl").string()), 0.8f);
     EXPECT_EQ(scene.objects[0].called(), "boat");
     EXPECT_TRUE(scene.objects[1].floats);
     EXPECT_EQ(scene.objects[1].colour, glm::dvec3(1.0, 0.5, 0.0));

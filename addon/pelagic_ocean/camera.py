@@ -98,16 +98,21 @@ def pose_of(obj, bpy_scene, depsgraph=None):
 
 
 def needed_keys(poses):
-    """The frames of {frame: Pose} that have to be keys: the others lie on the straight lines between them."""
-    frames = np.array(sorted(poses))
-    numbers = np.array([poses[frame].numbers() for frame in frames.tolist()])
+    """The frames of {frame: Pose} that have to be keys."""
+    return bends({frame: pose.numbers() for frame, pose in poses.items()}, TOLERANCE)
+
+
+def bends(rows, tolerance):
+    """The frames of {frame: numbers} that have to be keys: the others lie on the straight lines between them, as nearly as `tolerance`."""
+    frames = np.array(sorted(rows))
+    numbers = np.array([rows[frame] for frame in frames.tolist()])
     kept, at = [0], 0
     while at < len(frames) - 1:
         to = at + 1  # always possible; then as far as one line goes
         while to + 1 < len(frames):
             share = ((frames[at + 1:to + 1] - frames[at]) / (frames[to + 1] - frames[at]))[:, None]
             line = numbers[at] + share * (numbers[to + 1] - numbers[at])
-            if (np.abs(line - numbers[at + 1:to + 1]) > TOLERANCE).any():
+            if (np.abs(line - numbers[at + 1:to + 1]) > tolerance).any():
                 break
             to += 1
         kept.append(to)

@@ -126,14 +126,38 @@ def _frame_of(obj):
     return obj.parent.matrix_world @ obj.matrix_parent_inverse if obj.parent else Matrix()
 
 
+def _own_rotation(obj):
+    """Of its own delta transforms."""
+    settings = obj.pelagic_float
+    return (settings.own_quaternion if obj.rotation_mode == "QUATERNION" else Euler(settings.own_rotation, _euler_order(obj))).to_matrix()
+
+
+def _calm(evaluated):
+    """A floating object's transform as it lies in calm water, in what _frame_of() leads from."""
+    place = evaluated.location + Vector(evaluated.pelagic_float.own_location)
+    return Matrix.LocRotScale(place, _own_rotation(evaluated) @ _rotation(evaluated), evaluated.scale * evaluated.delta_scale)
+
+
+def calm_matrix(obj, depsgraph):
+    """Where an object would be in calm water: its matrix in the world. Of one that doesn't float, nor what it is parented to, where it is."""
+    evaluated = obj.evaluated_get(depsgraph)
+    if obj.pelagic_float.enabled and not _on_board(obj):
+        return _frame_of(evaluated) @ _calm(evaluated)
+    if _on_board(obj):
+        return calm_matrix(obj.parent, depsgraph) @ obj.parent.evaluated_get(depsgraph).matrix_world.inverted_safe() @ evaluated.matrix_world
+    return evaluated.matrix_world.copy()
+
+
+def is_afloat(obj):
+    """Whether it floats, or what it is parented to does."""
+    return obj.pelagic_float.enabled or _on_board(obj)
+
+
 def _follow(obj, water, depsgraph):
     """Sets the object's delta transforms. Only where they change: each change is another evaluation."""
     evaluated = obj.evaluated_get(depsgraph)
-    settings = evaluated.pelagic_float
-    own_rotation = (settings.own_quaternion if obj.rotation_mode == "QUATERNION"
-                    else Euler(settings.own_rotation, _euler_order(obj))).to_matrix()
-    place = evaluated.location + Vector(settings.own_location)
-    calm = Matrix.LocRotScale(place, own_rotation @ _rotation(evaluated), evaluated.scale * evaluated.delta_scale)
+    settings, own_rotation, calm = evaluated.pelagic_float, _own_rotation(evaluated), _calm(evaluated)
+    place = calm.translation
     parent_to_sea = water.matrix.inverted_safe() @ _frame_of(evaluated)
     rest = parent_to_sea @ calm
     if settings.by_hand:

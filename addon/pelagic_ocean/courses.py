@@ -65,7 +65,7 @@ class PELAGIC_OT_make_wake(NeedsModule, bpy.types.Operator):
     def execute(self, context):
         vessel, sea = context.object, query.first_ocean(context.scene)
         into_sea = sea.matrix_world.inverted_safe()
-        way = [(frame, *(into_sea @ floating.calm_matrix(vessel, depsgraph).translation)[:2]) for frame, depsgraph in camera.frames(context)]
+        way = [(frame, *(into_sea @ floating.calm_matrix(vessel, depsgraph).translation)[:2]) for frame, depsgraph in camera.frames(context, False)]
         keys = keys_through(way)
         if len(keys) < 2:
             self.report({"ERROR"}, "The active object doesn't move in the scene's frames")

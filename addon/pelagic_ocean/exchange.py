@@ -75,7 +75,7 @@ def _animated(context, obj, scene):
         return cages.arrays_of(cage, cages.to_ocean(obj, cage, depsgraph), depsgraph)
 
     now = arrays(context.evaluated_depsgraph_get()) if cage else None
-    for frame, depsgraph in camera.frames(context):
+    for frame, depsgraph in camera.frames(context, has_camera and camera.is_carried(context.scene.camera) or cage is not None and camera.is_carried(cage)):
         if obj.animation_data is not None:
             settings[frame] = ocean.settings_of(obj.evaluated_get(depsgraph))
         if has_camera:

@@ -57,7 +57,7 @@ def put(context, sea, scene, folder):
         return remarks
     ways, shapes = {obj: {} for obj in chosen}, {obj: [] for obj in chosen}
     looked_at = {bpy_scene.frame_start, (bpy_scene.frame_start + bpy_scene.frame_end) // 2, bpy_scene.frame_end}
-    for frame, depsgraph in camera.frames(context):
+    for frame, depsgraph in camera.frames(context, False):
         into_sea = sea.evaluated_get(depsgraph).matrix_world.inverted_safe()
         for obj in chosen:
             ways[obj][frame] = np.array(into_sea @ floating.calm_matrix(obj, depsgraph), float)
@@ -129,12 +129,6 @@ def _free(name, taken):
     return free
 
 
-def _pose(scene, entry, frame):
-    probe = copy.copy(scene)
-    probe.objects = [pelagic.SceneObject(file="", **entry)]
-    return probe.object_pose(0, frame)
-
-
 def _followed(scene, way, now, shape):
     """How a shot's body goes: the keys of its entry; the part of `now`, its matrix at the current frame, that the mesh has (3, 3); and how far
     from its way, {frame: matrix}, it is at most [m]."""
@@ -173,7 +167,8 @@ def _followed(scene, way, now, shape):
             heading_deg = math.degrees(math.atan2(ahead[1], ahead[0]))
         turn = np.array(Matrix.Rotation(-math.radians(heading_deg), 3, "Z"), float)
     for key, value in zip(("east_m", "north_m", "up_m"), from_body[:3, 3]):
-        entry[key] = shortest(round(value, 6)) + 0.0
+        near = abs(value) < 1e-3 and key != "up_m" and bool(entry.keys() & {"vessel", "path"})  # of its way, which is as near
+        entry[key] = 0.0 if near else shortest(round(value, 6)) + 0.0
     entry["heading_deg"] = shortest(round(heading_deg, 6)) + 0.0
     return entry, turn @ from_body[:3, :3], off
 

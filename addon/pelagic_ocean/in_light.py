@@ -38,8 +38,12 @@ def of_scene(bpy_scene):
     return sorted(filter(is_body, bpy_scene.objects), key=lambda obj: obj.name_full)
 
 
+def _changed(settings, _context):
+    settings.id_data.update_tag()  # what floats floats otherwise
+
+
 class PELAGIC_PG_in_light(bpy.types.PropertyGroup):
-    enabled: BoolProperty(name=TITLE, description="A shot that is exported has this object, with what is parented to it: pelagic render "
+    enabled: BoolProperty(name=TITLE, update=_changed, description="A shot that is exported has this object, with what is parented to it: pelagic render "
                                                   "draws it, its shadow and its mirror image")
     proxy: IntProperty(name="Triangles", default=100, min=1, max=100, subtype="PERCENTAGE",
                        description="How many of its triangles a shot has, by Blender's Decimate: all, or a share where the object is far")
@@ -104,13 +108,8 @@ def _is_same(shape, other):
 
 
 def _of_float(obj):
-    if not obj.pelagic_float.enabled:
-        return
-    settings = obj.pelagic_float
-    beyond = [name for name, usual in (("Drift", 0.0), ("Tilt", 1.0), ("Damping", 1.0)) if getattr(settings, name.lower()) != usual]
-    if beyond or settings.by_hand:
-        yield (f"{obj.name} floats in the shot, too, by its own size: there it has no {', '.join(beyond) or 'size by hand'}, "
-               "so that it lies otherwise in a wave")
+    if floating.is_afloat(obj) and not (obj.pelagic_float.enabled and not floating.is_on_board(obj)):
+        yield f"{obj.name} goes with what it is parented to, which floats: in the shot it floats by itself"
 
 
 def _name(name):
@@ -203,7 +202,7 @@ def add(context, shot, name):
         obj.is_holdout = entry.holdout
         obj.pelagic_in_light.enabled = True
         if entry.floats:
-            obj.pelagic_float.enabled, obj.pelagic_float.drift = True, 0.0  # which a shot hasn't
+            obj.pelagic_float.enabled = True
         made.append(obj)
     return made
 

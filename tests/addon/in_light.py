@@ -76,7 +76,6 @@ with checking("a trawler with its wake, put together by clicks, is in the shot: 
     assert bpy.ops.pelagic.make_wake() == {"FINISHED"}
     assert bpy.ops.pelagic.float() == {"FINISHED"}
     assert bpy.ops.pelagic.add_to_sea() == {"FINISHED"}
-    trawler.pelagic_float.drift = 0.0
     eye = scene.camera
     eye.location, eye.data.lens = (24.0, -44.0, 9.0), 40.0
     eye.rotation_mode = "QUATERNION"

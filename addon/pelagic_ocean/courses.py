@@ -7,7 +7,8 @@ import numpy as np
 from . import camera, floating, ocean, query
 from .operators import NeedsModule
 
-ERROR_M = 0.01  # what a smooth path may leave out between its keys
+ERROR_M, ERROR_DEG = 0.01, 0.3  # what a smooth path may be off between its keys
+LEAST_STEP_M = 1e-4  # in a frame, or in a tenth of one: what is slower has no course
 MOST_KEYS = 900  # of the core's 1000
 
 
@@ -29,18 +30,36 @@ def smooth(keys, frames):
             + t * t * ((3 - 2 * t) * places[at + 1] - u * step * speeds[at + 1]))
 
 
-def keys_through(way, error_m=ERROR_M):
-    """Of a way, rows of frame, east and north by rising frames, those that a smooth path through them leaves by this much at most."""
+def _headings(places):
+    """Of steps (n, 2) as complex numbers of length 1; 0 where there is none to speak of."""
+    steps = places[:, 0] + 1j * places[:, 1]
+    lengths = np.abs(steps)
+    return np.where(lengths > LEAST_STEP_M, steps / np.maximum(lengths, LEAST_STEP_M), 0.0)
+
+
+def keys_through(way):
+    """Of a way, rows of frame, east and north by rising frames, those that a smooth path needs that leaves it by ERROR_M, and its course by
+    ERROR_DEG, at most; as many as it may have where it takes more."""
     way = np.asarray(way, float)
+    frames = way[:, 0]
     if np.abs(way[:, 1:] - way[0, 1:]).max() == 0.0:
         return way[:1]
+    middles = 0.5 * (frames[1:] + frames[:-1])
+    wanted = _headings(np.diff(way[:, 1:], axis=0))
     kept = {0, len(way) - 1}
     while True:
         keys = sorted(kept)
-        off = np.hypot(*(smooth(way[keys], way[:, 0]) - way[:, 1:]).T)
-        # Of each span the place that is farthest off.
-        worse = {first + 1 + int(off[first + 1:last].argmax()) for first, last in zip(keys, keys[1:])
-                 if last - first > 1 and off[first + 1:last].max() > error_m}
+        off = np.hypot(*(smooth(way[keys], frames) - way[:, 1:]).T)
+        goes = _headings(smooth(way[keys], middles + 0.05) - smooth(way[keys], middles - 0.05))
+        turned = np.abs(np.angle(goes * np.conj(wanted))) > np.radians(ERROR_DEG)
+        worse = set()
+        for first, last in zip(keys, keys[1:]):
+            if last - first < 2:
+                continue
+            if off[first + 1:last].max() > ERROR_M:
+                worse.add(first + 1 + int(off[first + 1:last].argmax()))
+            elif turned[first:last].any():
+                worse.add((first + last) // 2)
         if not worse or len(kept) + len(worse) > MOST_KEYS:
             return way[keys]
         kept |= worse

@@ -80,7 +80,7 @@ def put(context, sea, scene, folder):
         remarks += _of_float(obj)
         now = np.array(sea.evaluated_get(depsgraph).matrix_world.inverted_safe() @ floating.calm_matrix(obj, depsgraph), float)
         entry, linear, off_m = _followed(scene, ways[obj], now, shape)
-        if off_m > max(ERROR_M, ERROR * np.ptp(shape.points @ linear.T, axis=0).max()):
+        if off_m is not None:
             remarks.append(f"{obj.name} moves as no body of a shot can (it rises, sinks, turns beside its way, or grows): there it is up to "
                            f"{off_m:.2g} m from where it is here, and as at frame {bpy_scene.frame_current}")
         shape.points = shape.points @ linear.T
@@ -129,27 +129,33 @@ def _free(name, taken):
 
 
 def _followed(scene, way, now, shape):
-    """How a shot's body goes: the keys of its entry; the part of `now`, its matrix at the current frame, that the mesh has (3, 3); and how far
-    from its way, {frame: matrix}, it is at most [m]."""
+    """How a shot's body goes: the keys of its entry; the part of its matrix that the mesh has (3, 3), as it is `now`, at the current frame; how far
+    from its way, {frame: matrix}, it is at most [m], or None where that is too little to say."""
     size = np.linalg.norm(np.ptp(shape.points, axis=0)) * np.linalg.norm(now[:3, :3], 2)
     corners = np.array([[shape.points[:, axis].min(), shape.points[:, axis].max()] for axis in range(3)])
     corners = np.array([(*(corners[axis, side >> axis & 1] for axis in range(3)), 1.0) for side in range(8)])
-    frame_now = bpy.context.scene.frame_current_final
+    frame_now, most_m = bpy.context.scene.frame_current_final, max(ERROR_M, ERROR * size)
 
     def of(entry):
         probe = copy.copy(scene)
         probe.objects = [pelagic.SceneObject(file="", **entry)]
-        from_body = np.linalg.inv(probe.object_pose(0, frame_now)) @ now
-        off = max(np.linalg.norm(((probe.object_pose(0, frame) @ from_body - matrix) @ corners.T)[:3], axis=0).max()
-                  for frame, matrix in way.items())
-        return off, from_body
+        poses = {frame: probe.object_pose(0, frame) for frame in way}
+
+        def as_at(frame, matrix):
+            from_body = np.linalg.inv(probe.object_pose(0, frame)) @ matrix
+            return max(np.linalg.norm(((pose @ from_body - way[each]) @ corners.T)[:3], axis=0).max() for each, pose in poses.items()), from_body
+
+        # At a path's ends its course is its first or last chord's: the frame in the middle may fit all of them better.
+        middle = list(way)[len(way) // 2]
+        here, there = as_at(frame_now, now), as_at(middle, way[middle])
+        return there if there[0] < 0.8 * here[0] and there[0] <= most_m else here
 
     rows = [(frame, *matrix[:2, 3]) for frame, matrix in way.items()]
     found = []
     if np.ptp(np.array(rows)[:, 1:], axis=0).max() > 1e-3:
         for index in range(len(scene.waves.vessels)):
             off, from_body = of({"vessel": index + 1})
-            if off <= max(0.1, ERROR * size) and np.hypot(*from_body[:2, 3]) < size:
+            if off <= max(0.1, most_m) and np.hypot(*from_body[:2, 3]) < size:
                 found.append((np.hypot(*from_body[:2, 3]), index + 1, off, from_body))
         if found:
             _, vessel, off, from_body = min(found, key=lambda each: each[0])
@@ -169,7 +175,7 @@ def _followed(scene, way, now, shape):
         near = abs(value) < 1e-3 and key != "up_m" and bool(entry.keys() & {"vessel", "path"})  # of its way, which is as near
         entry[key] = 0.0 if near else shortest(round(value, 6)) + 0.0
     entry["heading_deg"] = shortest(round(heading_deg, 6)) + 0.0
-    return entry, turn @ from_body[:3, :3], off
+    return entry, turn @ from_body[:3, :3], off if off > most_m else None
 
 
 # ---- In

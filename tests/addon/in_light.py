@@ -113,3 +113,154 @@ with checking("the command line renders it, and its silhouette is Cycles'"):
     both = (by_program & by_cycles).sum() / (by_program | by_cycles).sum()
     print(f"    {by_program.sum()} pixels by the program, {by_cycles.sum()} by Cycles, of either both have {both:.4f}")
     assert by_program.sum() > 2000 and both >= 0.97
+
+with checking("imported again it is at the same place, with its wake, afloat and in colour; a round trip keeps it"):
+    fresh_file()
+    assert bpy.ops.pelagic.import_shot(filepath=str(FOLDER / "trawler.toml")) == {"FINISHED"}
+    ship, = in_light.of_scene(bpy.context.scene)
+    assert ship.pelagic_float.enabled and len(ship.material_slots) == len(told)
+    for frame in (1, 48, 96):
+        assert np.abs(box(points_of(ship, frame)) - box(points_in(shot, 0, frame))).max() < 0.02, frame
+    again = exported("again")
+    assert again.objects[0]._replace(file="", name="") == shot.objects[0]._replace(file="", name=""), (again.objects, shot.objects)
+    assert again.waves.vessels == shot.waves.vessels
+    for name, values in shot.object_mesh(0).items():
+        if name == "points_m":
+            assert np.allclose(values, again.object_mesh(0)[name], atol=2e-3)
+
+
+# ---- Hard cases
+
+
+def empty_sea():
+    fresh_file()
+    bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, 24
+    return add_ocean(sea__wind_speed_mps=5.0)
+
+
+def cube(size=(2.0, 1.0, 1.0), location=(0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0)):
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=location, rotation=turn)
+    obj = bpy.context.object
+    obj.scale = size
+    obj.pelagic_in_light.enabled = True
+    bpy.context.view_layer.update()
+    return obj
+
+
+def keyed(obj, path, rows):
+    for frame, value in rows.items():
+        setattr(obj, path, value)
+        obj.keyframe_insert(path, frame=frame)
+
+
+with checking("scales by axes, mirrored ones, a sheared child, turns and a moved sea: all of it is in the mesh, and nothing is off"):
+    sea = empty_sea()
+    sea.location, sea.rotation_euler = (5.0, 2.0, 0.0), (0.0, 0.0, 0.5)
+    mirrored = cube((4.0, -2.0, 1.0), (3.0, 8.0, 0.5), (0.1, -0.3, 0.7))
+    parent = cube((6.0, 2.0, 1.0), (-12.0, 4.0, 0.2), (0.0, 0.0, 0.4))
+    bpy.ops.mesh.primitive_cone_add(radius1=0.4, depth=1.0, location=(0.2, 0.1, 0.9), rotation=(0.3, 0.2, 0.5))
+    mast = bpy.context.object
+    mast.parent = parent
+    mast.scale = 0.3, 0.4, 2.0
+    bpy.context.view_layer.update()
+    assert [sentence for sentence in remarks() if "moved or turned" not in sentence] == []
+    shot = exported("stretched")
+    bodies = {each.name: index for index, each in enumerate(shot.objects)}
+    assert set(bodies) == {mirrored.name, parent.name} and not any(each.path or each.floats for each in shot.objects)
+    into_sea = np.array(sea.matrix_world.inverted())
+    for obj, parts in ((mirrored, [mirrored]), (parent, [parent, mast])):
+        wanted = np.concatenate([points_of(part, 1) for part in parts]) @ into_sea[:3, :3].T + into_sea[:3, 3]
+        assert np.abs(box(wanted) - box(points_in(shot, bodies[obj.name], 1))).max() < 1e-4, obj.name
+        mesh = shot.object_mesh(bodies[obj.name])
+        a, b, c = (mesh["points_m"][mesh["triangles"][:, i]].astype(float) for i in range(3))
+        volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0
+        assert volume > 0.0, "it is seen from outside"
+        facing = np.einsum("ij,ij->i", np.cross(b - a, c - a), mesh["normals"].reshape(-1, 3, 3).mean(1))
+        assert (facing > 0.0).all()
+
+with checking("what moves by itself goes along a path, its bow ahead; a way that bends"):
+    sea = empty_sea()
+    boat = cube((5.0, 2.0, 1.0), turn=(0.0, 0.0, 0.0))
+    boat.rotation_mode = "XYZ"
+    ways = {frame: (0.5 * frame, 8.0 * math.sin(0.04 * frame), 0.3) for frame in range(1, 25)}
+    keyed(boat, "location", ways)
+    keyed(boat, "rotation_euler", {frame: (0.0, 0.0, math.atan2(0.32 * math.cos(0.04 * frame), 0.5)) for frame in ways})
+    said = remarks()
+    assert not said, said
+    shot = exported("bends")
+    body, = shot.objects
+    assert body.path and body.vessel == 0 and math.isclose(body.up_m, 0.3, abs_tol=1e-6)
+    for frame in (1, 12, 24):
+        assert np.abs(box(points_of(boat, frame)) - box(points_in(shot, 0, frame))).max() < 0.03, frame
+
+with checking("a wake's way is its hull's, also where it bends: the boat is the vessel"):
+    select(boat)
+    bpy.ops.pelagic.make_wake()
+    shot = exported("hull")
+    assert (shot.objects[0].vessel, shot.objects[0].path) == (1, "")
+    way = [(frame, *ways[frame][:2]) for frame in ways]
+    keys = np.array([[float(word) for word in key.split()] for key in shot.waves.vessels[0].path.split(",")])
+    print("   ", len(keys), "keys")
+    assert len(keys) < 16 and np.hypot(*(courses.smooth(keys, np.array(list(ways), float)) - np.array(way)[:, 1:]).T).max() <= courses.ERROR_M
+    core = [shot.object_pose(0, frame)[:2, 3] for frame in ways]
+    assert np.allclose(core, courses.smooth(keys, np.array(list(ways), float)), atol=2e-3), "the core's own path"
+
+with checking("said in a sentence: what rises, turns on the spot, changes its shape, has no faces, or has pictures for colours"):
+    sea = empty_sea()
+    turning, lift, soft = cube(location=(0, 0, 0)), cube(location=(9, 0, 0)), cube(location=(18, 0, 0))
+    keyed(turning, "rotation_euler", {1: (0.0, 0.0, 0.0), 24: (0.0, 0.0, 1.5)})
+    keyed(lift, "location", {1: (9.0, 0.0, 0.0), 24: (9.0, 0.0, 3.0)})
+    key = soft.shape_key_add(name="Basis"), soft.shape_key_add(name="Bent")
+    key[1].data[0].co.x += 0.4
+    keyed(key[1], "value", {1: 0.0, 24: 1.0})
+    bpy.ops.object.empty_add()
+    nothing = bpy.context.object
+    nothing.pelagic_in_light.enabled = True
+    hidden = cube(location=(27, 0, 0))
+    hidden.hide_render = True
+    material = bpy.data.materials.new("Painted")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeTexImage").outputs["Color"], next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED").inputs["Base Color"])
+    turning.data.materials.append(material)
+    bpy.context.scene.frame_set(1)
+    said = "\n".join(remarks())
+    for words in (f"{turning.name} moves as no body", f"{lift.name} moves as no body", "3 m from where", f"{soft.name} changes its shape",
+                  f"{nothing.name} has no faces", "Painted"):
+        assert words in said, (words, said)
+    shot = exported("said")
+    assert {each.name for each in shot.objects} == {turning.name, lift.name, soft.name}
+
+with checking("a holdout, names for mattes, fewer triangles, and a list to take them out of"):
+    sea = empty_sea()
+    buoy = cube(location=(0, 5, 0))
+    buoy.is_holdout, buoy.name = True, 'Sea "mark"'
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32)
+    ball = bpy.context.object
+    ball.name = "sea"
+    bpy.ops.pelagic.add_to_sea()
+    ball.pelagic_in_light.proxy = 20
+    shot = exported("odd")
+    by_name = {each.name: index for index, each in enumerate(shot.objects)}
+    assert set(by_name) == {"Sea _mark_", "sea-2"}, by_name
+    assert shot.objects[by_name["Sea _mark_"]].holdout
+    triangles = len(shot.object_mesh(by_name["sea-2"])["triangles"])
+    assert 0.15 < triangles / (2 * 64 * 31) < 0.25, triangles
+    assert "Pelagic Proxy" not in bpy.data.meshes and "Pelagic Proxy" not in bpy.data.objects
+    bpy.ops.pelagic.add_to_sea(name=buoy.name, enabled=False)
+    assert in_light.of_scene(bpy.context.scene) == [ball]
+    ball.select_set(True)
+    bpy.ops.pelagic.add_to_sea(enabled=False)
+    assert not exported("none").objects and not (FOLDER / "none_objects").exists()
+
+with checking("a farm's job has the meshes, and is the same shot from another folder"):
+    bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "job.blend"))
+    ball.pelagic_in_light.enabled = True
+    select(sea)
+    assert bpy.ops.pelagic.write_job() == {"FINISHED"}
+    out = FOLDER / "bakes" / "Ocean"
+    moved = FOLDER / "moved"
+    (out / farm.JOB).rename(moved)
+    shot = pelagic.Scene.from_file(moved / "Ocean.toml")
+    assert shot.objects[0].name == "sea-2" and len(shot.object_mesh(0)["materials"]) == 1 and not (moved / "files").exists()
+    assert (moved / "objects/sea-2.mtl").is_file()

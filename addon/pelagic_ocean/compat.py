@@ -124,6 +124,11 @@ def eevee_volumes_reach_far():
     return bpy.app.version < (4, 2)
 
 
+def has_planar_probes():
+    """Whether EEVEE is the one before 4.2, whose probes of the kind PLANAR mirror the scene in a plane."""
+    return bpy.app.version < (4, 2)
+
+
 def preview_shadings():
     """The kinds of a view's shading over which add-ons can draw behind objects. The EEVEE since 4.2 leaves them no depths: all 0 without
     overlays, all 1 with them (measured in 4.3.2)."""
@@ -203,8 +208,13 @@ def shader(vertex, fragment):
     free_names = "#undef select\n"  # one of Blender's macros, which our text has a function of
     # What a view stores depends on the framebuffer; Blender's own function knows.
     colour = "vec4 host_colour(vec4 display) { return blender_srgb_to_framebuffer_space(display); }\n"
+    return plain_shader(free_names + vertex, free_names + colour + fragment)
+
+
+def plain_shader(vertex, fragment):
+    """The same of a fragment shader that calls nothing of Blender's."""
     try:
-        return gpu.types.GPUShader(free_names + vertex, free_names + colour + fragment)
+        return gpu.types.GPUShader(vertex, fragment)
     except TypeError as error:  # the constructor is gone
         raise RuntimeError("This Blender's gpu module takes no GLSL as it is, which the viewport preview is made of") from error
     except Exception as error:

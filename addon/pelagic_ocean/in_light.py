@@ -14,7 +14,7 @@ import numpy as np
 from bpy.props import BoolProperty, IntProperty, PointerProperty, StringProperty
 from mathutils import Matrix
 
-from . import bodies, camera, compat, courses, floating, ocean
+from . import bodies, camera, catcher, compat, courses, floating, ocean
 from .module import pelagic
 from .panels import PLACES, draw_words
 from .properties import shortest
@@ -266,6 +266,9 @@ class InLightPanel:
             row.label(text=obj.name, icon="HIDE_ON" if obj.hide_render else "OBJECT_DATA", translate=False)
             remove = row.operator(PELAGIC_OT_add_to_sea.bl_idname, text="", icon="X")
             remove.name, remove.enabled = obj.name, False
+        row = layout.row(align=True)
+        catches = row.operator(catcher.PELAGIC_OT_catcher.bl_idname, depress=context.object.is_shadow_catcher)
+        catches.enabled = not context.object.is_shadow_catcher
         if not chosen:
             draw_words(layout, "Shots have no objects: select some, and choose Object, Pelagic, Add to Sea")
 

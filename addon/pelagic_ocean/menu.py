@@ -3,6 +3,7 @@
 
 import bpy
 
+from .catcher import PELAGIC_OT_catcher
 from .courses import PELAGIC_OT_make_wake
 from .farm import PELAGIC_OT_check_farm
 from .floating import PELAGIC_OT_float
@@ -24,6 +25,7 @@ class PELAGIC_MT_object(bpy.types.Menu):
         layout.operator(PELAGIC_OT_add_to_sea.bl_idname)
         layout.operator(PELAGIC_OT_add_to_sea.bl_idname, text="Take from Sea").enabled = False
         layout.operator(PELAGIC_OT_paint_mask.bl_idname)
+        layout.operator(PELAGIC_OT_catcher.bl_idname)
         layout.operator_menu_enum(PELAGIC_OT_sample_heights.bl_idname, "into")
         layout.separator()
         layout.operator(PELAGIC_OT_use_mesh.bl_idname)

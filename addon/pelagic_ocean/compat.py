@@ -124,11 +124,6 @@ def eevee_volumes_reach_far():
     return bpy.app.version < (4, 2)
 
 
-def has_planar_probes():
-    """Whether EEVEE is the one before 4.2, whose probes of the kind PLANAR mirror the scene in a plane."""
-    return bpy.app.version < (4, 2)
-
-
 def preview_shadings():
     """The kinds of a view's shading over which add-ons can draw behind objects. The EEVEE since 4.2 leaves them no depths: all 0 without
     overlays, all 1 with them (measured in 4.3.2)."""

@@ -264,3 +264,41 @@ with checking("a farm's job has the meshes, and is the same shot from another fo
     shot = pelagic.Scene.from_file(moved / "Ocean.toml")
     assert shot.objects[0].name == "sea-2" and len(shot.object_mesh(0)["materials"]) == 1 and not (moved / "files").exists()
     assert (moved / "objects/sea-2.mtl").is_file()
+
+with checking("the catcher: the water's picture times its pass, with the objects over it, is the whole picture; and it can be switched off"):
+    fresh_file()
+    scene = bpy.context.scene
+    sea = add_ocean(sea__wind_speed_mps=3.0, surface__kind="projected-grid", light__sun_elevation_deg=35.0, light__sun_azimuth_deg=140.0)
+    bpy.ops.mesh.primitive_cube_add(size=6.0, location=(0.0, 0.0, 2.0))
+    block = bpy.context.object
+    black = bpy.data.materials.new("Black")
+    black.use_nodes = True
+    node = next(node for node in black.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    node.inputs["Base Color"].default_value, node.inputs["Roughness"].default_value = (0.01, 0.01, 0.01, 1.0), 1.0
+    block.data.materials.append(black)
+    scene.camera.location, scene.camera.rotation_mode = (6.0, -26.0, 9.0), "QUATERNION"
+    scene.camera.rotation_quaternion = (scene.camera.location - Vector((0.0, 0.0, -1.0))).to_track_quat("Z", "Y")
+    small = (80, 60)
+    scene.frame_set(2)
+    whole = cycles_exr(FOLDER / "whole.exr", small, 48)
+    block.hide_render = True
+    water = cycles_exr(FOLDER / "water.exr", small, 48)
+    block.hide_render = False
+    select(sea)
+    assert bpy.ops.pelagic.catcher() == {"FINISHED"}
+    objects = cycles_exr(FOLDER / "objects.exr", small, 48)
+    scene.use_nodes = True
+    tree = scene.node_tree
+    layers, composite = (next(node for node in tree.nodes if node.type == kind) for kind in ("R_LAYERS", "COMPOSITE"))
+    tree.links.new(layers.outputs["Shadow Catcher"], composite.inputs["Image"])
+    caught = cycles_exr(FOLDER / "caught.exr", small, 48)
+    over = objects[..., :3] + (1.0 - objects[..., 3:]) * caught[..., :3] * water[..., :3]
+    bare = objects[..., 3] < 0.01
+    changes = bare & (caught[..., :3].mean(-1) < 0.8)
+    errors = [abs(over[part][:, :3].mean() / whole[part][:, :3].mean() - 1.0) for part in (changes, bare & ~changes)]
+    print(f"    where it catches, {changes.mean():.3f} of the picture: {errors[0]:.3f} off, beside it {errors[1]:.3f}; the water there is "
+          f"{whole[changes][:, :3].mean() / water[changes][:, :3].mean():.2f} of what it is without")
+    assert changes.mean() > 0.03 and errors[0] < 0.1 and errors[1] < 0.05
+    assert whole[changes][:, :3].mean() < 0.8 * water[changes][:, :3].mean()
+    assert bpy.ops.pelagic.catcher(enabled=False) == {"FINISHED"}
+    assert not (sea.is_shadow_catcher or scene.render.film_transparent or bpy.context.view_layer.cycles.use_pass_shadow_catcher)

@@ -24,9 +24,10 @@ decltype(&pelagic_ray_scene) maker() {
         void* const library = ::dlopen(PELAGIC_RAYS_MODULE, RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_ray_scene") : nullptr;
         if (!symbol)
-            throw NotLoaded(std::string("Embree can't be loaded: ") + ::dlerror() +
-                            "; pictures of shots with objects need that file of Pelagic's, which the add-on for Blender is "
-                            "without, and Embree 3 (Debian: libembree3-3)");
+            throw NotLoaded(
+                std::string("Embree can't be loaded: ") + ::dlerror() +
+                "; pictures of shots with objects need that file of Pelagic's, which the add-on for Blender is "
+                "without, and Embree 3 (Debian: libembree3-3)");
         return reinterpret_cast<decltype(&pelagic_ray_scene)>(symbol);
     }();
     return loaded;

@@ -296,9 +296,9 @@ with checking("the catcher: the water's picture times its pass, with the objects
     bare = objects[..., 3] < 0.01
     changes = bare & (caught[..., :3].mean(-1) < 0.8)
     errors = [abs(over[part][:, :3].mean() / whole[part][:, :3].mean() - 1.0) for part in (changes, bare & ~changes)]
-    print(f"    where it catches, {changes.mean():.3f} of the picture: {errors[0]:.3f} off, beside it {errors[1]:.3f}; the water there is "
+    print(f"    where it catches, {changes.mean():.3f} of the picture: {errors[0]:.2g} off, beside it {errors[1]:.2g}; the water there is "
           f"{whole[changes][:, :3].mean() / water[changes][:, :3].mean():.2f} of what it is without")
-    assert changes.mean() > 0.03 and errors[0] < 0.1 and errors[1] < 0.05
+    assert changes.mean() > 0.03 and max(errors) < 0.01  # 0: they have the same samples
     assert whole[changes][:, :3].mean() < 0.8 * water[changes][:, :3].mean()
     assert bpy.ops.pelagic.catcher(enabled=False) == {"FINISHED"}
     assert not (sea.is_shadow_catcher or scene.render.film_transparent or bpy.context.view_layer.cycles.use_pass_shadow_catcher)

@@ -197,7 +197,8 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool has_objects = options.has_objects && !options.for_host && !options.from_below;
     return {query_constants(layout, coverage, options.is_shaped) +
                 lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
-                object_constants(has_objects) + constant_of_shadow(options) + (lives ? foam_constants() : std::string()),
+                object_constants(has_objects) + constant_of_shadow(options) +
+                (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
                 : joined({query_files(),

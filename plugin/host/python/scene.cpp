@@ -290,8 +290,9 @@ py::array_t<double> pose_matrix(const Scene& scene, py::ssize_t index, double fr
     const SceneObject& object = object_at(scene, index);
     // Without a mesh, too: who writes one asks first where it is to be.
     if (object.vessel > static_cast<int>(scene.waves.vessels.size()) || !std::isfinite(frame))
-        throw py::value_error("objects[" + std::to_string(index) + "] has vessel = " + std::to_string(object.vessel) +
-                              " at frame " + std::to_string(frame) + "; accepted: one of waves.vessels, and a number");
+        throw py::value_error("objects[" + std::to_string(index) +
+                              "] has vessel = " + std::to_string(object.vessel) + " at frame " +
+                              std::to_string(frame) + "; accepted: one of waves.vessels, and a number");
     const ObjectPose pose = object_pose(scene, object, frame);
     py::array_t<double> matrix({4, 4});
     auto at = matrix.mutable_unchecked<2>();
@@ -300,8 +301,7 @@ py::array_t<double> pose_matrix(const Scene& scene, py::ssize_t index, double fr
             if (row == 3)
                 at(row, column) = column == 3 ? 1.0 : 0.0;
             else
-                at(row, column) =
-                    column == 3 ? pose.place_m[row] : pose.scale * pose.turn[column][row];
+                at(row, column) = column == 3 ? pose.place_m[row] : pose.scale * pose.turn[column][row];
         }
     return matrix;
 }
@@ -321,7 +321,8 @@ py::dict mesh_of(const Scene& scene, py::ssize_t index) {
     out["points_m"] = rows_of_three(&data.points_m.data()->x, data.points_m.size());
     out["triangles"] = rows_of_three(data.triangles.data(), data.triangles.size() / 3);
     out["normals"] = rows_of_three(&data.normals.data()->x, data.normals.size());
-    out["material"] = py::array_t<std::uint16_t>(static_cast<py::ssize_t>(data.material.size()), data.material.data());
+    out["material"] =
+        py::array_t<std::uint16_t>(static_cast<py::ssize_t>(data.material.size()), data.material.data());
     py::list materials;
     const auto colour = [](const glm::vec3& c) { return py::make_tuple(c.x, c.y, c.z); };
     for (const ObjectMaterial& material : data.materials) {

@@ -17,7 +17,7 @@ bl_info = {
 
 import importlib
 
-PARTS = ("properties", "translations", "play", "look", "drops", "operators", "painted", "presets", "panels", "floating", "sampling", "exchange", "baking",
+PARTS = ("properties", "translations", "play", "look", "drops", "operators", "painted", "presets", "panels", "floating", "courses", "catcher", "in_light", "sampling", "exchange", "baking",
          "baked", "volumes", "native", "farm", "menu", "viewport", "links", "saving")
 
 _registered = []

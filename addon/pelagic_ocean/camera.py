@@ -98,16 +98,21 @@ def pose_of(obj, bpy_scene, depsgraph=None):
 
 
 def needed_keys(poses):
-    """The frames of {frame: Pose} that have to be keys: the others lie on the straight lines between them."""
-    frames = np.array(sorted(poses))
-    numbers = np.array([poses[frame].numbers() for frame in frames.tolist()])
+    """The frames of {frame: Pose} that have to be keys."""
+    return bends({frame: pose.numbers() for frame, pose in poses.items()}, TOLERANCE)
+
+
+def bends(rows, tolerance):
+    """The frames of {frame: numbers} that have to be keys: the others lie on the straight lines between them, as nearly as `tolerance`."""
+    frames = np.array(sorted(rows))
+    numbers = np.array([rows[frame] for frame in frames.tolist()])
     kept, at = [0], 0
     while at < len(frames) - 1:
         to = at + 1  # always possible; then as far as one line goes
         while to + 1 < len(frames):
             share = ((frames[at + 1:to + 1] - frames[at]) / (frames[to + 1] - frames[at]))[:, None]
             line = numbers[at] + share * (numbers[to + 1] - numbers[at])
-            if (np.abs(line - numbers[at + 1:to + 1]) > TOLERANCE).any():
+            if (np.abs(line - numbers[at + 1:to + 1]) > tolerance).any():
                 break
             to += 1
         kept.append(to)
@@ -133,12 +138,18 @@ def set_poses(scene, poses):
         for frame, pose in ((frame, poses[frame]) for frame in kept))
 
 
+def is_carried(obj, known=()):
+    """Whether what floats has a say in where an object is, as far as its parents and its constraints go."""
+    others = [obj.parent] + [getattr(each, "target", None) for each in obj.constraints]
+    return obj.pelagic_float.enabled or any(is_carried(each, (*known, obj)) for each in others if each and each not in known)
+
+
 @contextmanager
-def _oceans_at_rest():
-    """Frames change without the seas': only what carries the camera matters."""
+def _oceans_at_rest(afloat):
+    """Frames change without the seas', and without what floats unless that matters."""
     handlers = bpy.app.handlers.frame_change_post
     before = list(handlers)
-    costly = {f"{__package__}.{name}" for name in ("play", "look", "drops", "viewport", "baked")}
+    costly = {f"{__package__}.{name}" for name in ("play", "look", "drops", "viewport", "baked") + (() if afloat else ("floating",))}
     handlers[:] = [each for each in before if each.__module__ not in costly]
     try:
         yield
@@ -147,12 +158,13 @@ def _oceans_at_rest():
         cages.forget()  # nobody has said which of them have changed meanwhile
 
 
-def frames(context):
-    """Goes through the scene's range: of every frame its number and the depsgraph there. Then the frame is as before."""
+def frames(context, afloat):
+    """Goes through the scene's range: of every frame its number and the depsgraph there. Then the frame is as before. afloat: whether what
+    floats goes along, which takes a sea a frame."""
     bpy_scene = context.scene
     now = bpy_scene.frame_current, bpy_scene.frame_subframe
     try:
-        with _oceans_at_rest():
+        with _oceans_at_rest(afloat):
             for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
                 bpy_scene.frame_set(frame)
                 yield frame, context.evaluated_depsgraph_get()

@@ -49,6 +49,24 @@ def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 
 
+def corner_normals(mesh):
+    """Of a mesh's corners, as they are shaded: float32 (corners, 3)."""
+    normals = np.empty((len(mesh.loops), 3), np.float32)
+    if hasattr(mesh, "corner_normals"):  # since 4.1
+        mesh.corner_normals.foreach_get("vector", normals.ravel())
+    else:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals.ravel())
+    return normals
+
+
+def set_corner_normals(mesh, normals):
+    """normals: float32 (corners, 3), unit."""
+    if hasattr(mesh, "use_auto_smooth"):  # before 4.1
+        mesh.use_auto_smooth = True
+    mesh.normals_split_custom_set(normals.tolist())
+
+
 def creases(mesh):
     """Blender's creases, 0 … 1, of edges and of vertices: float32 (edges,) and (vertices,)."""
     edges, vertices = np.zeros(len(mesh.edges), np.float32), np.zeros(len(mesh.vertices), np.float32)
@@ -185,8 +203,13 @@ def shader(vertex, fragment):
     free_names = "#undef select\n"  # one of Blender's macros, which our text has a function of
     # What a view stores depends on the framebuffer; Blender's own function knows.
     colour = "vec4 host_colour(vec4 display) { return blender_srgb_to_framebuffer_space(display); }\n"
+    return plain_shader(free_names + vertex, free_names + colour + fragment)
+
+
+def plain_shader(vertex, fragment):
+    """The same of a fragment shader that calls nothing of Blender's."""
     try:
-        return gpu.types.GPUShader(free_names + vertex, free_names + colour + fragment)
+        return gpu.types.GPUShader(vertex, fragment)
     except TypeError as error:  # the constructor is gone
         raise RuntimeError("This Blender's gpu module takes no GLSL as it is, which the viewport preview is made of") from error
     except Exception as error:

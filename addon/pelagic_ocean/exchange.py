@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shot files in and out: what was imported comes out as it went in."""
 
+import json
 import math
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import cages, camera, keyed, light, ocean
+from . import bodies, cages, camera, in_light, keyed, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule
 from .properties import BY_PATH
@@ -22,9 +23,10 @@ OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; acc
 # ---- Out
 
 
-def shot_of(context, obj):
+def shot_of(context, obj, meshes=None):
     """The whole shot of an ocean: a pelagic.Scene, and sentences about what it can't say. ValueError for what a
-    shot file can't say at all."""
+    shot file can't say at all. meshes: a folder for those of objects in the sea's light; without one, as for a bake, which they don't
+    change, the shot has none."""
     if obj.pelagic.own_mesh:
         raise ValueError(f"{obj.name}: {OWN_MESH}")
     bpy_scene = context.scene
@@ -52,6 +54,8 @@ def shot_of(context, obj):
         if bpy_scene.render.pixel_aspect_x != bpy_scene.render.pixel_aspect_y:
             remarks.append("a shot can't say that pixels aren't square")
         camera.set_poses(scene, poses)
+    if meshes is not None:
+        remarks += in_light.put(context, obj, scene, meshes)
     problems = scene.validate()
     if problems:
         raise ValueError("\n".join(problems))
@@ -71,7 +75,7 @@ def _animated(context, obj, scene):
         return cages.arrays_of(cage, cages.to_ocean(obj, cage, depsgraph), depsgraph)
 
     now = arrays(context.evaluated_depsgraph_get()) if cage else None
-    for frame, depsgraph in camera.frames(context):
+    for frame, depsgraph in camera.frames(context, has_camera and camera.is_carried(context.scene.camera) or cage is not None and camera.is_carried(cage)):
         if obj.animation_data is not None:
             settings[frame] = ocean.settings_of(obj.evaluated_get(depsgraph))
         if has_camera:
@@ -110,15 +114,25 @@ class PELAGIC_OT_export_shot(NeedsModule, ExportHelper, bpy.types.Operator):
         if obj is None:
             self.report({"ERROR"}, "There is no ocean in this scene")
             return {"CANCELLED"}
+        path = Path(bpy.path.abspath(self.filepath)).absolute()
         try:
-            scene, remarks = shot_of(context, obj)
-            scene.save(bpy.path.abspath(self.filepath))
+            scene, remarks = shot_of(context, obj, path.with_name(f"{path.stem}_objects"))
+            save(scene, path)
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         for remark in remarks:
             self.report({"WARNING"}, remark)
         return {"FINISHED"}
+
+
+def save(scene, path):
+    """The shot's file. Meshes in folders beside it are named from there, so that both can go elsewhere together."""
+    text = scene.shot_text()
+    for file in {Path(each.file) for each in scene.objects}:
+        if file.is_relative_to(path.parent):
+            text = text.replace(json.dumps(str(file), ensure_ascii=False), json.dumps(file.relative_to(path.parent).as_posix(), ensure_ascii=False))
+    bodies.put_file(path, text)
 
 
 def ocean_of(context):
@@ -165,9 +179,7 @@ class PELAGIC_OT_import_shot(ImportHelper, GivesLook, bpy.types.Operator):
         keyed.keyframe(obj, shot)
         if ocean.changing(shot, BY_PATH):
             self.report({"WARNING"}, ocean.changing(shot, BY_PATH))
-        if shot.objects:
-            self.report({"WARNING"}, f"The shot's objects stay outside ({len(shot.objects)}): import their files as OBJ, forward Y and "
-                        "up Z. A shot that is exported from here has none")
+        in_light.add(context, shot, scene.shot.name)
         ocean.select_only(context, obj)
         simulation = self.show(context, obj)
         if simulation.problem:

@@ -19,6 +19,7 @@ from .panels import draw_words
 from .properties import FIELDS, entry_fields
 
 TEXT = "Check for the Farm"
+JOB = "farm"  # the folder of a job, in a bake's
 ADD_ON = "{} {}.{}.{}".format(module.TITLE, *module.VERSION)
 
 
@@ -158,7 +159,7 @@ def program():
 
 def write_job(scene, out):
     """The shot and copies of the files that it names, in `out`/farm, where a bake's check looks at nothing. Returns the shot's file."""
-    folder = out / "farm"
+    folder = out / JOB
     folder.mkdir(parents=True, exist_ok=True)
     copies = {}
 
@@ -166,6 +167,8 @@ def write_job(scene, out):
         file = Path(json.loads(match[0]))  # TOML's strings of one line are JSON's
         if not (file.is_absolute() and file.is_file()):
             return match[0]
+        if file.is_relative_to(folder):  # a body's, written here
+            return json.dumps(file.relative_to(folder).as_posix(), ensure_ascii=False)
         if file not in copies:
             copies[file] = f"files/{len(copies)}/{file.name}"
             (folder / copies[file]).parent.mkdir(parents=True, exist_ok=True)
@@ -187,8 +190,8 @@ class PELAGIC_OT_write_job(NeedsOcean, bpy.types.Operator):
 
     def execute(self, context):
         try:
-            scene, remarks = shot_of(context, context.object)
             out = baking.folder_of(context.object).absolute()
+            scene, remarks = shot_of(context, context.object, out / JOB / "objects")
             shot = write_job(scene, out)
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))

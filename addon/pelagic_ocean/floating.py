@@ -6,8 +6,11 @@ delta transforms, which come on top of its own: keyframes, drivers and parents s
 keep both. It is worked out anew for each frame from the surface at that frame alone, so that frames may come in any
 order. That rules out a hull's own swinging. Its weight and size act as a filter instead: the surface is averaged over
 the object's footprint, `damping` times as wide, and what the object lies on is the plane that fits best. Waves shorter
-than that don't move it. It never turns about its own axis: the orbits of waves have no curl.
+than that don't move it. It never turns about its own axis: the orbits of waves have no curl. An object in the sea's light (in_light.py)
+floats as the shot's body does.
 """
+
+import math
 
 import bpy
 import numpy as np
@@ -17,11 +20,12 @@ from mathutils import Euler, Matrix, Vector
 
 from . import handlers, ocean
 from .module import pelagic
-from .panels import PLACES
+from .panels import PLACES, draw_words
 from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
 SAMPLES = 9  # a side of the footprint
+MOST_LEAN = 0.45  # the slope of what floats in a shot (plugin/render/object_place.cpp)
 GRID = np.stack(np.meshgrid(*2 * [np.linspace(-0.5, 0.5, SAMPLES)]), -1).reshape(-1, 2)
 
 
@@ -100,6 +104,38 @@ def ride(water, rest, size, settings):
             @ Matrix.Translation(-place))
 
 
+def ride_as_body(water, rest, box):
+    """The same of an object in the sea's light, as a shot has it (plugin/render/object_place.cpp): it lies on the plane through the water at 15
+    places of its own box, in waves about as long as it is. box: the least and the most of it along its x axis, as seen from above, and to port."""
+    heading = np.array(rest.col[0].xy)
+    length = np.linalg.norm(heading)
+    heading = heading / length if length > 1e-6 else np.array((1.0, 0.0))
+    axes = np.array((heading, (-heading[1], heading[0])))
+    least, size = box[0], box[1] - box[0]
+    along, across = ((np.arange(count) + 0.5) / count for count in ((5, 3) if size[0] >= size[1] else (3, 5)))
+    places = least + size * np.stack(np.meshgrid(along, across), -1).reshape(-1, 2)
+    place = np.array(rest.translation, float)
+    points = water.carried(places @ axes, tuple(place[:2]), float(size.max() / 3.0))
+    rows = np.column_stack((np.ones(len(points)), points[:, :2] @ axes.T))
+    sums = rows.T @ rows + np.diag((0.0, 1e-9, 1e-9))  # points in one line have no slope across it
+    height, *slopes = np.linalg.solve(sums, rows.T @ points[:, 2])
+    slopes = np.clip(slopes, -MOST_LEAN, MOST_LEAN) @ axes
+    up = Vector((-slopes[0], -slopes[1], 1.0)).normalized()
+    tilt = Vector((0, 0, 1)).rotation_difference(up).to_matrix().to_4x4()
+    return Matrix.Translation(Vector((*place[:2], height)) + rest.translation.z * up) @ tilt @ Matrix.Translation(-rest.translation)
+
+
+def _box(evaluated, rest):
+    """Of ride_as_body(): of the object and what is parented to it."""
+    heading = rest.col[0].xy
+    turn = Matrix.Rotation(-math.atan2(heading.y, heading.x), 4, "Z") if heading.length > 1e-6 * rest.col[0].length else Matrix()
+    from_world = turn @ rest.to_3x3().to_4x4() @ evaluated.matrix_world.inverted_safe()
+    # Of the mesh that the shot has: bodies of their own and what isn't rendered are no part of it.
+    parts = [evaluated, *(child for child in evaluated.children_recursive if not (child.hide_render or child.pelagic_in_light.enabled))]
+    corners = np.array([(from_world @ part.matrix_world @ Vector(corner)).xy[:] for part in parts for corner in part.bound_box])
+    return np.array((corners.min(0), corners.max(0)))
+
+
 def footprint(obj, settings):
     """Length and width on the water in the object's own units, along its x and y axes."""
     corners = np.array(obj.bound_box)
@@ -126,21 +162,47 @@ def _frame_of(obj):
     return obj.parent.matrix_world @ obj.matrix_parent_inverse if obj.parent else Matrix()
 
 
+def _own_rotation(obj):
+    """Of its own delta transforms."""
+    settings = obj.pelagic_float
+    return (settings.own_quaternion if obj.rotation_mode == "QUATERNION" else Euler(settings.own_rotation, _euler_order(obj))).to_matrix()
+
+
+def _calm(evaluated):
+    """A floating object's transform as it lies in calm water, in what _frame_of() leads from."""
+    place = evaluated.location + Vector(evaluated.pelagic_float.own_location)
+    return Matrix.LocRotScale(place, _own_rotation(evaluated) @ _rotation(evaluated), evaluated.scale * evaluated.delta_scale)
+
+
+def calm_matrix(obj, depsgraph):
+    """Where an object would be in calm water: its matrix in the world. Of one that doesn't float, nor what it is parented to, where it is."""
+    evaluated = obj.evaluated_get(depsgraph)
+    if obj.pelagic_float.enabled and not is_on_board(obj):
+        return _frame_of(evaluated) @ _calm(evaluated)
+    if is_on_board(obj):
+        return calm_matrix(obj.parent, depsgraph) @ obj.parent.evaluated_get(depsgraph).matrix_world.inverted_safe() @ evaluated.matrix_world
+    return evaluated.matrix_world.copy()
+
+
+def is_afloat(obj):
+    """Whether it floats, or what it is parented to does."""
+    return obj.pelagic_float.enabled or is_on_board(obj)
+
+
 def _follow(obj, water, depsgraph):
     """Sets the object's delta transforms. Only where they change: each change is another evaluation."""
     evaluated = obj.evaluated_get(depsgraph)
-    settings = evaluated.pelagic_float
-    own_rotation = (settings.own_quaternion if obj.rotation_mode == "QUATERNION"
-                    else Euler(settings.own_rotation, _euler_order(obj))).to_matrix()
-    place = evaluated.location + Vector(settings.own_location)
-    calm = Matrix.LocRotScale(place, own_rotation @ _rotation(evaluated), evaluated.scale * evaluated.delta_scale)
+    settings, own_rotation, calm = evaluated.pelagic_float, _own_rotation(evaluated), _calm(evaluated)
+    place = calm.translation
     parent_to_sea = water.matrix.inverted_safe() @ _frame_of(evaluated)
     rest = parent_to_sea @ calm
-    if settings.by_hand:
-        size = np.array((settings.length, settings.width)) / water.matrix.median_scale
+    if obj.pelagic_in_light.enabled:
+        moved = ride_as_body(water, rest, _box(evaluated, rest))
+    elif settings.by_hand:
+        moved = ride(water, rest, np.array((settings.length, settings.width)) / water.matrix.median_scale, settings)
     else:
-        size = footprint(evaluated, settings) * [rest.col[0].length, rest.col[1].length]
-    moved = parent_to_sea.inverted_safe() @ ride(water, rest, size, settings) @ parent_to_sea
+        moved = ride(water, rest, footprint(evaluated, settings) * [rest.col[0].length, rest.col[1].length], settings)
+    moved = parent_to_sea.inverted_safe() @ moved @ parent_to_sea
     rotation = moved.to_3x3().normalized() @ own_rotation
     deltas = {"delta_location": moved @ place - evaluated.location}
     if obj.rotation_mode == "QUATERNION":
@@ -154,10 +216,10 @@ def _follow(obj, water, depsgraph):
 
 def floats(bpy_scene):
     """The scene's floating objects. What is parented to one goes with it, and doesn't float by itself."""
-    return [obj for obj in bpy_scene.objects if obj.pelagic_float.enabled and not _on_board(obj)]
+    return [obj for obj in bpy_scene.objects if obj.pelagic_float.enabled and not is_on_board(obj)]
 
 
-def _on_board(obj):
+def is_on_board(obj):
     while obj := obj.parent:
         if obj.pelagic_float.enabled:
             return True
@@ -251,7 +313,11 @@ class FloatPanel:
         layout.active = settings.enabled
         if settings.enabled and not settings.ocean and first_ocean(context.scene) is None:
             layout.label(text="There is no ocean in this scene", icon="INFO")
-        for name in ("ocean", "damping", "tilt", "drift", "by_hand"):
+        layout.prop(settings, "ocean")
+        if context.object.pelagic_in_light.enabled:
+            draw_words(layout, "In the sea's light it floats as in a shot: by its own size, in its place")
+            return
+        for name in ("damping", "tilt", "drift", "by_hand"):
             layout.prop(settings, name)
         if settings.by_hand:
             layout.prop(settings, "length")

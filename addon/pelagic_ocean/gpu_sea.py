@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from . import compat
+from .gpu_shadow import Shadow
 from .module import pelagic
 
 COARSE = 3  # cells are as many times larger while the view moves
@@ -126,6 +127,7 @@ class Drawing:
         self._time_s = None
         self._air, self._air_height_m = {}, ()
         self._sky_batch = None
+        self.shadow, self._has_shadow = Shadow(), False
         self._foam_asked = None  # for what, and whether it hasn't come yet
         self.awaits_foam = False
         self.is_under_water = False  # the view that was drawn last, which then stayed empty
@@ -153,11 +155,15 @@ class Drawing:
         """Whether foam has come that no picture shows yet."""
         return self.awaits_foam and not self.sea.is_foam_busy
 
-    def draw(self, region, camera, scene, time_s, exposure, with_sky):
+    def draw(self, region, camera, scene, time_s, exposure, with_sky, throw=(), sea_from_world=None):
         """The sea at a time [s] into the bound framebuffer, where it is nearer than what is there; the sky where nothing
-        is. region: what tells views apart. scene: one that sea and light serve; cells are larger while the view moves."""
+        is. region: what tells views apart. scene: one that sea and light serve; cells are larger while the view moves. throw: Shadow.parts()."""
         cell_px = scene.surface.cell_px
         self._cell_px = cell_px
+        has_shadow = bool(throw) and self.light.uniforms["sun_direction"][2] > 0.0
+        if has_shadow != self._has_shadow:
+            self._has_shadow = has_shadow
+            self._shaders.clear()
         self._prepare(time_s)
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
         if self.is_under_water:
@@ -170,7 +176,7 @@ class Drawing:
         gpu.state.depth_mask_set(True)
         try:
             gpu.state.depth_test_set("LESS")
-            self._draw_sea(region, camera, scene, light)
+            self._draw_sea(region, camera, scene, light, throw, sea_from_world)
             if with_sky:
                 gpu.state.depth_test_set("LESS_EQUAL")
                 self._draw_sky(light)
@@ -181,7 +187,7 @@ class Drawing:
 
     def _prepare(self, time_s):
         if not self._shaders:
-            for name, text in self.sea.shaders(self.light).items():
+            for name, text in self.sea.shaders(self.light, self._has_shadow).items():
                 if text not in self._compiled:
                     self._compiled[text] = compat.shader(*text)
                 self._shaders[name] = self._compiled[text]
@@ -225,9 +231,12 @@ class Drawing:
             self._textures[name] = _texture(pixels)
         self.awaits_foam = self.awaits_foam and not is_done
 
-    def _draw_sea(self, region, camera, scene, light):
+    def _draw_sea(self, region, camera, scene, light, throw, sea_from_world):
         shader = self._shaders["sea"]
         grid = self._grid(region, camera)
+        if self._has_shadow:
+            self.shadow.draw(throw, sea_from_world, grid.origin_m, light["sun_direction"], light["sun_angular_radius"])
+            light = {**light, **self.shadow.uniforms, "view_height_m": light["eye_height_m"]}
         if self.sea.has_living_foam:
             self._follow_foam()
         tables, cycles = self.sea.at_origin(grid.origin_m)
@@ -242,6 +251,8 @@ class Drawing:
             textures["foam_levels"] = _texture(self.sea.foam_levels(grid.origin_m))
         if cycles is not None:
             textures["train_cycles"] = _texture(cycles)
+        if self._has_shadow:
+            textures["sun_blockers"] = self.shadow.texture
         _bind(shader, textures)
         grid.batch.draw(shader)
 

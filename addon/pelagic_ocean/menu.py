@@ -3,10 +3,13 @@
 
 import bpy
 
+from .catcher import PELAGIC_OT_catcher
+from .courses import PELAGIC_OT_make_wake
 from .farm import PELAGIC_OT_check_farm
 from .floating import PELAGIC_OT_float
+from .in_light import PELAGIC_OT_add_to_sea
 from .native import PELAGIC_OT_replace_ocean_modifier
-from .operators import PELAGIC_OT_make_wake, PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
+from .operators import PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
 from .painted import PELAGIC_OT_paint_mask
 from .sampling import PELAGIC_OT_sample_heights
 
@@ -19,7 +22,10 @@ class PELAGIC_MT_object(bpy.types.Menu):
         layout.operator(PELAGIC_OT_float.bl_idname)
         layout.operator(PELAGIC_OT_float.bl_idname, text="Float No More").enabled = False
         layout.operator(PELAGIC_OT_make_wake.bl_idname)
+        layout.operator(PELAGIC_OT_add_to_sea.bl_idname)
+        layout.operator(PELAGIC_OT_add_to_sea.bl_idname, text="Take from Sea").enabled = False
         layout.operator(PELAGIC_OT_paint_mask.bl_idname)
+        layout.operator(PELAGIC_OT_catcher.bl_idname)
         layout.operator_menu_enum(PELAGIC_OT_sample_heights.bl_idname, "into")
         layout.separator()
         layout.operator(PELAGIC_OT_use_mesh.bl_idname)

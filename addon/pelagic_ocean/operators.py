@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from . import cages, compat, look, meshes, ocean, play, query
+from . import cages, compat, look, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import BY_PATH
 
@@ -173,60 +173,6 @@ class PELAGIC_OT_release_mesh(NeedsOcean, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class PELAGIC_OT_make_wake(NeedsModule, bpy.types.Operator):
-    """Let the active object leave a wake: its movement in the scene's frames becomes the path of a vessel of the ocean"""
-
-    bl_idname = "pelagic.make_wake"
-    bl_label = "Make Wake"
-    bl_options = {"REGISTER", "UNDO"}
-
-    MOST_KEYS = 240
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and context.object is not None and not ocean.is_ocean(context.object) \
-            and query.first_ocean(context.scene) is not None
-
-    def execute(self, context):
-        scene, vessel, sea = context.scene, context.object, query.first_ocean(context.scene)
-        now = scene.frame_current
-        step = max(1, -(-(scene.frame_end - scene.frame_start) // self.MOST_KEYS))
-        frames = [*range(scene.frame_start, scene.frame_end, step), scene.frame_end]
-        into_sea = sea.matrix_world.inverted_safe()
-        path = []
-        for frame in frames:
-            scene.frame_set(frame)
-            path.append((frame, *(into_sea @ vessel.matrix_world.translation)[:2]))
-        scene.frame_set(now)
-        if len(path) < 2 or all(key[1:] == path[0][1:] for key in path):
-            self.report({"ERROR"}, "The active object doesn't move in the scene's frames")
-            return {"CANCELLED"}
-        row = sea.pelagic.waves.vessels.add()
-        row.path = path_text(path)
-        length, beam = sorted(vessel.dimensions[:2], reverse=True)
-        if beam > 0.0:  # of a mesh, whose sides may lie along either axis
-            row.length_m, row.beam_m, row.draught_m = length, beam, 0.4 * beam
-        sea.update_tag()
-        return {"FINISHED"}
-
-
-def path_text(path, error_m=0.01):
-    """The keys without those that lie on a straight line between others, to this far [m]."""
-    kept, first = [path[0]], 0
-    while first < len(path) - 1:
-        last = first + 1
-        while last + 1 < len(path) and all(_beside(path[first], path[last + 1], key) <= error_m for key in path[first + 1:last + 1]):
-            last += 1
-        kept.append(path[last])
-        first = last
-    return ", ".join(f"{frame} {x:.9g} {y:.9g}" for frame, x, y in kept)
-
-
-def _beside(a, b, key):
-    share = (key[0] - a[0]) / (b[0] - a[0])
-    return max(abs(a[i] + share * (b[i] - a[i]) - key[i]) for i in (1, 2))
-
-
 class ListOperator(NeedsOcean):
     path: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
@@ -276,7 +222,7 @@ class PELAGIC_OT_list_remove(ListOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (PELAGIC_OT_add_ocean, PELAGIC_OT_use_mesh, PELAGIC_OT_use_cage, PELAGIC_OT_release_mesh, PELAGIC_OT_make_wake, PELAGIC_OT_list_add, PELAGIC_OT_list_remove)
+CLASSES = (PELAGIC_OT_add_ocean, PELAGIC_OT_use_mesh, PELAGIC_OT_use_cage, PELAGIC_OT_release_mesh, PELAGIC_OT_list_add, PELAGIC_OT_list_remove)
 
 
 def _menu(self, _context):

@@ -46,10 +46,11 @@ class Water:
         self._frame = simulation.frame_at(simulation.scene.shot.time_s(frame))
         self.matrix = Matrix((obj.evaluated_get(depsgraph) if depsgraph else obj).matrix_world)
 
-    def carried(self, rest):
-        """Where the water is at this frame that is at rest (n, 2) in a calm sea: (n, 3)."""
+    def carried(self, rest, origin_m=(0.0, 0.0), cell_m=None):
+        """Where the water is at this frame that is at rest (n, 2) in a calm sea: (n, 3), both from the origin. cell_m: without waves that
+        are too short for cells of this size."""
         rest = np.ascontiguousarray(rest, np.float32)
-        return self._frame.evaluate(rest, outputs=("position",))["position"].astype(float)
+        return self._frame.evaluate(rest, origin_m, cell_m=cell_m, outputs=("position",))["position"].astype(float)
 
     def heights(self, places):
         """How high the surface is at places (n, 2): (n,)."""

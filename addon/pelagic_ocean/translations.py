@@ -16,7 +16,7 @@ GERMAN = {
     "Sea": "Seegang", "Waves": "Wellen", "Surface": "Oberfläche", "Effects": "Effekte", "Light": "Licht", "Output": "Ausgabe",
     "Water": "Wasser", "Quality": "Qualität", "Shot": "Aufnahme", "More": "Weiteres", "Presets": "Voreinstellungen", "Floating": "Schwimmt",
     "Pelagic Bake": "Pelagic-Bake", "Pelagic Ocean": "Pelagic-Ozean", "Pelagic Volume": "Pelagic-Volumen",
-    "Viewport Preview": "Vorschau in der Ansicht", "Check for the Farm": "Für die Renderfarm prüfen",
+    "Viewport Preview": "Vorschau in der Ansicht", "In the Sea's Light": "Im Licht der See", "Check for the Farm": "Für die Renderfarm prüfen",
     "Write a Job for the Farm": "Auftrag für die Renderfarm schreiben",
     "The mesh is linked, which plays slowly. Object, Relations, Make Local plays fast":
         "Das Netz ist verknüpft und spielt langsam. Objekt, Relationen, Lokal machen spielt schnell",
@@ -67,6 +67,8 @@ GERMAN = {
     "Pelagic Bake (.json, .usda)": "Pelagic-Bake (.json, .usda)", "Play Pelagic Bake": "Pelagic-Bake abspielen",
     "Float": "Schwimmen lassen", "Float No More": "Nicht mehr schwimmen lassen", "Apply Preset": "Voreinstellung anwenden",
     "Delete Preset": "Voreinstellung löschen", "Save Preset": "Voreinstellung speichern", "Save…": "Speichern …",
+    "Add to Sea": "In die See setzen", "Take from Sea": "Aus der See nehmen", "Triangles": "Dreiecke", "Catches": "Fängt auf",
+    "Shadow and Reflection Catcher": "Fänger für Schatten und Spiegelbild",
     "Make Wake": "Kielwasser machen", "Mask from Painted Mesh": "Maske aus bemaltem Netz", "Release Mesh": "Netz freigeben", "Replace Ocean Modifier": "Ozean-Modifikator ersetzen",
     "Sample Sea Heights": "Wasserstand abtasten", "Use Mesh as Cage of an Ocean": "Netz als Käfig eines Ozeans",
     "Use Mesh as Ocean": "Netz als Ozean",
@@ -91,6 +93,14 @@ GERMAN = {
         "Sonne und Himmel des Ozeans für die Szene: eine Welt, eine Lampe und die Belichtung dafür",
     "Draw the sea in solid and material views as it is lit, to the horizon, and hide its mesh; or stop that":
         "Die See in Ansichten beleuchtet bis zum Horizont zeichnen und ihr Netz verbergen; oder damit aufhören",
+    "Put the selected objects into the sea's light, or take them out: an exported shot has them, with all that is parented to them, and pelagic render draws their shadow and mirror image":
+        "Die ausgewählten Objekte ins Licht der See setzen oder herausnehmen: eine exportierte Aufnahme hat sie mit allem, was an ihnen hängt, und pelagic render zeichnet ihren Schatten und ihr Spiegelbild",
+    "A shot that is exported has this object, with what is parented to it: pelagic render draws it, its shadow and its mirror image":
+        "Eine exportierte Aufnahme hat dieses Objekt mit allem, was daran hängt: pelagic render zeichnet es, seinen Schatten und sein Spiegelbild",
+    "How many of its triangles a shot has, by Blender's Decimate: all, or a share where the object is far":
+        "Wie viele seiner Dreiecke eine Aufnahme hat, durch Blenders Dezimieren: alle, oder einen Teil, wo das Objekt fern ist",
+    "Leave the sea out of Cycles' pictures but for what the scene's objects change on it, their shadow and their mirror image; or show it again":
+        "Von der See in Bildern von Cycles nur zeigen, was die Objekte der Szene auf ihr ändern, Schatten und Spiegelbild; oder sie wieder zeigen",
     "Vertices a side while you work, as a share of what a render has":
         "Punkte je Seite beim Arbeiten, als Anteil an denen eines Renderings",
     # What panels say
@@ -113,6 +123,10 @@ GERMAN = {
         "Der Grund färbt das Wasser. Ein Ausschnitt bis zum Horizont würde ihn selbst zeigen",
     "The floor is near enough to show: for Cycles the water is a volume, which takes longer":
         "Der Grund liegt so nah, dass er zu sehen ist: Für Cycles ist das Wasser ein Volumen, was länger dauert",
+    "Shots have no objects: select some, and choose Object, Pelagic, Add to Sea":
+        "Aufnahmen haben keine Objekte: wähle welche aus und dann Objekt, Pelagic, In die See setzen",
+    "In the sea's light it floats as in a shot: by its own size, in its place":
+        "Im Licht der See schwimmt es wie in einer Aufnahme: nach seiner eigenen Größe, an seinem Platz",
     "Vertices: {}": "Punkte: {}", "Viewport: {} of {} vertices": "Ansicht: {} von {} Punkten",
     "Waiting: a view in Rendered or Wireframe shows the mesh": "Wartet: eine Ansicht als Rendering oder Drahtgitter zeigt das Netz",
     "The view is under water, which can't be drawn: raise it":

@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, handlers, keyed, light, ocean, play
+from . import compat, gpu_shadow, handlers, keyed, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -127,7 +127,8 @@ class Preview:
                             gpu.state.viewport_get()[2:], obj.matrix_world)
             self.drawing.draw(context.region.as_pointer(), camera, scene, scene.shot.time_s(context.scene.frame_current_final),
                               self.drawing.light.exposure(scene, light.stops_by_hand(context.scene)),
-                              context.window_manager.pelagic_preview.show_sky)
+                              context.window_manager.pelagic_preview.show_sky, self.drawing.shadow.parts(context),
+                              obj.matrix_world.inverted_safe())
         if self.is_building or not is_hidden or self.drawing.is_coarse() or self.drawing.awaits_foam:
             _tend_soon()
 
@@ -264,6 +265,12 @@ def _tend():
 
 
 @persistent
+def _see_changes(_bpy_scene, depsgraph):
+    if _preview is not None:
+        gpu_shadow.changed(depsgraph)
+
+
+@persistent
 def _before_save(*_):
     if _preview is not None:
         _preview.show()
@@ -298,7 +305,7 @@ def _before_load(*_):
         gone.close()
 
 
-HANDLERS = (("save_pre", _before_save), ("save_post", _after_save), ("undo_post", _after_undo),
+HANDLERS = (("depsgraph_update_post", _see_changes), ("frame_change_post", _see_changes), ("save_pre", _before_save), ("save_post", _after_save), ("undo_post", _after_undo),
             ("redo_post", _after_undo), ("load_pre", _before_load), ("load_post", _after_undo))
 
 

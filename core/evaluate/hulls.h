@@ -25,11 +25,10 @@ class Hulls {
     explicit Hulls(const Scene& scene);
 
     bool empty() const { return hulls_.empty(); }
-    // At a frame, of a sea that is set to its time; `query` is the plan's hulls_query() (core/plan/hulls.h), which knows_hulls(). rest_m: height at which the
+    // At a frame, of a sea that is set to its time; `query` is the plan's hulls_query() (core/plan/hulls.h), which knows_hulls(). rest_m: heights at which the
     // sea rests. Hulls move with the sea's time: where that stands still (shot.time_scale = 0) they stand.
     template <class T>
-    void place(const Frame<T>& state, std::optional<int> query, double frame,
-               RestHeight rest_m = {});
+    void place(const Frame<T>& state, std::optional<int> query, double frame, RestHeight rest_m = {});
 
     // Along the hull's decks from its outline at the place's height, the nearest one's [m]; negative: dry. Infinite where none is near. Where a hull
     // leans by an angle it is the level one's over its cosine at most, a tenth more at the 24° to which what floats is kept.

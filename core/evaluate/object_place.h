@@ -20,8 +20,8 @@ struct PlacedObject {
 using RestHeight = std::function<double(glm::dvec2)>;
 
 struct ObjectMoment {
-    int query = 0;        // of the sea's plan; asked for what floats
-    double frame = 1.0;   // also between two
+    int query = 0;       // of the sea's plan; asked for what floats
+    double frame = 1.0;  // also between two
     RestHeight rest_m{};
     double late_s = 0.0;  // beside the sea's time; other than 0 asks for Product::Velocity
 };

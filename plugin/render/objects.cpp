@@ -292,7 +292,8 @@ glm::vec3 LitObjects::smooth_lift(const ObjectMeshData& mesh, std::size_t first,
         const float size = glm::length(upright);
         if (!(size > 0.0f)) continue;
         upright *= std::copysign(1.0f / size, glm::dot(upright, geometric));
-        lift += weights[static_cast<int>(i)] * std::max(glm::dot(corner[i] - middle, upright), 0.0f) * upright;
+        lift +=
+            weights[static_cast<int>(i)] * std::max(glm::dot(corner[i] - middle, upright), 0.0f) * upright;
     }
     return lift;
 }
@@ -374,8 +375,7 @@ Ray LitObjects::ray_from(const Surface& at, const glm::vec3& towards) const {
     Ray ray{.from = at.place + off_surface_m(at.place) * at.geometric, .towards = towards};
     // What lies below the water doesn't count: the ray ends there.
     if (towards.z < 0.0f)
-        ray.farthest_m =
-            std::max(ray.from.z - bodies_[at.body].water_m, 0.0f) / std::max(-towards.z, 1e-6f);
+        ray.farthest_m = std::max(ray.from.z - bodies_[at.body].water_m, 0.0f) / std::max(-towards.z, 1e-6f);
     return ray;
 }
 
@@ -406,7 +406,8 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     const glm::vec3 towards = outwards(
         at, axes_round(at.normal) * glm::vec3(on_disc(number), std::sqrt(std::max(1.0f - number.x, 0.0f))));
     if (!is_blocked(ray_from(at, towards))) light = object_irradiance(surroundings_, at.normal);
-    if (is_sunny(at) && !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
+    if (is_sunny(at) &&
+        !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
         light += glm::dot(at.normal, to_sun_) * beam_;
     return at.look.colour * light / kPi_f + at.look.glow;
 }
@@ -428,7 +429,8 @@ glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers
 }
 
 // The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
-glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye, const SampleNumbers& numbers) const {
+glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye,
+                               const SampleNumbers& numbers) const {
     const glm::mat3 axes = axes_round(at.normal);
     const glm::vec3 eye = glm::transpose(axes) * to_eye;
     const float roughness = at.look.roughness, blur_rad = roughness * roughness;
@@ -466,8 +468,8 @@ glm::vec3 LitObjects::radiance(const Ray& ray, const RayHit& hit, const SampleNu
     const glm::vec3 to_eye = -ray.towards;
     glm::vec3 light = at.look.glow;
     if (is_sunny(at))
-        light += sun_share(at.smooth, at.geometric, numbers) *
-                 object_of_sun(at.look, *sky_, to_eye, at.normal);
+        light +=
+            sun_share(at.smooth, at.geometric, numbers) * object_of_sun(at.look, *sky_, to_eye, at.normal);
     return light + object_of_surroundings(at.look, std::max(glm::dot(at.normal, to_eye), 1e-3f),
                                           irradiance(at, numbers), mirrored(at, to_eye, numbers));
 }

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x3.hpp>
 #include <glm/vec2.hpp>
@@ -127,8 +126,8 @@ class LitObjects {
         bool is_open = true;  // both are one
     };
 
-    glm::vec3 smooth_lift(const ObjectMeshData& mesh, std::size_t first, const glm::vec3& weights, const Body& body,
-                          const glm::vec3& geometric) const;
+    glm::vec3 smooth_lift(const ObjectMeshData& mesh, std::size_t first, const glm::vec3& weights,
+                          const Body& body, const glm::vec3& geometric) const;
     Surface surface(const Ray& ray, const RayHit& hit) const;
     bool may_meet(const Ray& ray) const;
     bool is_blocked(const Ray& ray) const;

@@ -9,12 +9,13 @@ namespace {
 
 // For as long as the process lives.
 decltype(&pelagic_ray_scene) maker() {
-    static const auto loaded = reinterpret_cast<decltype(&pelagic_ray_scene)>(
-        files::load({.file = PELAGIC_RAYS_MODULE,
-                     .symbol = "pelagic_ray_scene",
-                     .what = "Embree",
-                     .needs = "pictures of shots with objects need that file of Pelagic's, and Embree 3 "
-                              "(Debian: libembree3-3)"}));
+    static const auto loaded = reinterpret_cast<decltype(&pelagic_ray_scene)>(files::load(
+        {.file = PELAGIC_RAYS_MODULE,
+         .symbol = "pelagic_ray_scene",
+         .what = "Embree",
+         .needs =
+             "pictures of shots with objects need that file of Pelagic's, which the add-on for Blender is "
+             "without, and Embree 3 (Debian: libembree3-3)"}));
     return loaded;
 }
 

@@ -15,7 +15,7 @@ from harness import *  # noqa: F403
 from mathutils import Euler, Vector
 
 package = enable()
-from pelagic_ocean import compat, ocean, viewport
+from pelagic_ocean import compat, in_light, ocean, viewport
 from pelagic_ocean.module import pelagic
 
 FOLDER = Path(tempfile.mkdtemp())
@@ -390,6 +390,40 @@ def steps():
         bpy.data.objects.remove(bpy.data.objects["The sea"])
         settle()
         assert not viewport.is_on() and not viewport._problem, viewport._problem
+
+    with checking("an object in the sea's light throws its shadow, where the program's preview has it"):
+        bpy.context.scene.frame_set(1)
+        bpy.context.scene.frame_start = bpy.context.scene.frame_end = 1
+        with in_view():
+            obj = add_ocean(quality__level="draft", sea__wind_speed_mps=3.0, light__sun_elevation_deg=25.0, light__sun_azimuth_deg=180.0, water__type="turbid")
+            bpy.ops.mesh.primitive_cube_add(size=CUBE_M, location=(-4.0, 0.0, 0.5 * CUBE_M))
+            block = bpy.context.object
+        _, area = view3d()
+        area.spaces.active.show_gizmo = area.spaces.active.overlay.show_overlays = False
+        options.show_sky = True
+        look(-14.0, 14.0, 34.0)
+        viewport.turn_on(obj)
+        plain = picture()
+        block.pelagic_in_light.enabled = True
+        with_shadow, here = picture(), seen_from_here(obj)
+        assert not viewport._preview.problem, viewport._preview.problem
+        theirs = programs_picture(here)
+        with in_view():
+            assert in_light.put(bpy.context, obj, here, FOLDER / "bodies") == []
+        theirs_with = programs_picture(here)
+        # To the right of the block, where no mirror image of it is.
+        row, column = place_of((0.0, 0.0, 0.0))
+        part = np.s_[row - 12:row + 12, column:]
+        mine, program = (a[part].mean(2) / b[part].mean(2) < 0.97 for a, b in ((with_shadow, plain), (theirs_with, theirs)))
+        print(f"    {mine.sum()} pixels here, {program.sum()} by the program, {(mine & program).sum()} in both")
+        assert mine.sum() > 30 and (mine & program).sum() > 0.7 * (mine | program).sum()
+        assert (change_of(with_shadow, plain)[:, :column // 2] < 2 / 255).all()
+        block.location.x += 200.0
+        bpy.context.view_layer.update()
+        assert (change_of(picture(), plain)[part] < 2 / 255).all(), "it goes along"
+        viewport.turn_off()
+        for each in (block, obj):
+            bpy.data.objects.remove(each)
 
     with checking("the add-on goes while it is on"):
         with in_view():

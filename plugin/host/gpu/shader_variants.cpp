@@ -54,14 +54,20 @@ constexpr const char* kCrests = "plugin/host/gpu/crests.glsl";
 const char* sky_alone_file(bool has_objects) {
     return has_objects ? "plugin/host/gpu/sky_with_objects.glsl" : "plugin/host/gpu/sky_alone.glsl";
 }
-const char* sun_file(bool has_objects) {
-    return has_objects ? "plugin/host/gpu/sun_shadow.glsl" : "plugin/host/gpu/sun_alone.glsl";
+std::vector<std::string_view> sun_files(bool has_shadow, bool for_host = false) {
+    if (!has_shadow) return {"plugin/host/gpu/sun_alone.glsl"};
+    return {for_host ? "plugin/host/gpu/host_shadow_compare.glsl" : "plugin/host/gpu/shadow_compare.glsl",
+            "plugin/host/gpu/sun_shadow.glsl"};
 }
 // Of pictures with objects alone, so that others have the variants that they had.
 std::string object_constants(bool has_objects) {
     return has_objects ? constant("kObjects", true) + constant("kObjectBoxes", kObjectBoxes) +
                              "const float kIsObject = " + std::to_string(kIsObject) + ";\n"
                        : std::string();
+}
+// A key beside the files, by which programs are told apart.
+std::string constant_of_shadow(const DrawOptions& options) {
+    return options.for_host && options.has_shadow ? constant("kHostShadow", true) : std::string();
 }
 const char* points_file(const DrawOptions& options) {
     return is_lit_afterwards(options) ? "plugin/host/gpu/sea_points_texture.glsl"
@@ -191,7 +197,8 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool has_objects = options.has_objects && !options.for_host && !options.from_below;
     return {query_constants(layout, coverage, options.is_shaped) +
                 lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
-                object_constants(has_objects) + (lives ? foam_constants() : std::string()),
+                object_constants(has_objects) + constant_of_shadow(options) +
+                (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
                 : joined({query_files(),
@@ -204,7 +211,9 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
                      "core/lighting/air.glsl"},
                     spray_files(lighting),
-                    {"core/lighting/place.glsl", sun_file(has_objects), "plugin/host/gpu/rays.glsl"},
+                    {"core/lighting/place.glsl"},
+                    sun_files(options.for_host ? options.has_shadow : has_objects, options.for_host),
+                    {"plugin/host/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/host/gpu/false_colour.glsl", points_file(options),
                      shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
@@ -248,7 +257,7 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
                     lighting_files(),
                     {"core/lighting/object.glsl", "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
                     spray_files(lighting),
-                    {sun_file(true)},
+                    sun_files(true),
                     output_files(options),
                     {"plugin/host/gpu/object_fragment.glsl"}})};
 }

@@ -1,7 +1,6 @@
 // The share of the sun's disc that no object hides from a place, by a map of the objects' depth towards the sun. The shadow's edge is as
 // wide as the disc makes it behind what hides it there: the mean of what does (Fernando 2005).
-uniform sampler2DShadow sun_shadow;
-uniform sampler2D sun_blockers;  // the same map
+// shadow_compare.glsl has the map.
 uniform mat4 shadow_from_grid;   // to 0 … 1
 uniform vec4 shadow_reach;       // across, upwards, and into depth [m]; the tangent of the disc's radius
 uniform float shadow_off;        // of depth
@@ -35,6 +34,6 @@ float sun_share(vec3 place) {
     vec2 edge = max(shadow_reach.w * (behind_m - sum / hidden * shadow_reach.z) * unit, texel);
     float seen = 0.0;
     for (int i = 0; i < kShadowProbes; ++i)
-        seen += textureLod(sun_shadow, vec3(at.xy + shadow_probe(i) * edge, depth), 0.0);
+        seen += shadow_seen(vec3(at.xy + shadow_probe(i) * edge, depth));
     return seen / float(kShadowProbes);
 }

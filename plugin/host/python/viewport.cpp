@@ -223,8 +223,8 @@ class GpuSea {
             [&] { return surface_above_camera(frame_, view, projected_grid_options(*prepared_)); });
     }
 
-    py::dict shaders(const GpuLight& light) const {
-        DrawOptions options{.lighting = lighting_, .for_host = true};
+    py::dict shaders(const GpuLight& light, bool shadows) const {
+        DrawOptions options{.lighting = lighting_, .has_shadow = shadows, .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
         options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
@@ -560,7 +560,7 @@ void add_viewport(py::module_& module) {
             "The height z [m] of the surface above the view's place, at the time that was set; None for a view "
             "in the air, the only one that can be drawn.")
         .def(
-            "shaders", &GpuSea::shaders, py::arg("light"),
+            "shaders", &GpuSea::shaders, py::arg("light"), py::arg("shadows") = false,
             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
             "Equal for seas with as many cascades and footprints.\n\n"
             "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "

@@ -171,6 +171,28 @@ class Scene(unittest.TestCase):
         scene.objects = ()
         self.assertEqual(str(scene), str(pelagic.Scene()))
 
+    def test_where_bodies_are_and_what_they_are_of(self):
+        boat = str(Path(__file__).parents[4] / "tests/plugin/format/shot/data/folder/boat.obj")
+        scene = pelagic.Scene()
+        scene.objects = [pelagic.SceneObject(boat, name="still", east_m=3.0, north_m=-2.0, up_m=0.5, heading_deg=90.0, scale=2.0),
+                         pelagic.SceneObject("", name="none", path="1 0 0, 11 30 40", interpolation="linear")]
+        pose = scene.object_pose(0, 7.5)
+        np.testing.assert_allclose(pose @ (1.0, 0.0, 0.0, 1.0), (3.0, 0.0, 0.5, 1.0), atol=1e-12)
+        goes = scene.object_pose(1, 6.0)  # without a mesh, half way, its bow ahead
+        np.testing.assert_allclose(goes[:3, 3], (15.0, 20.0, 0.0), atol=1e-9)
+        np.testing.assert_allclose(goes[:3, 0], (0.6, 0.8, 0.0), atol=1e-9)
+        mesh = scene.object_mesh(0)
+        self.assertEqual((mesh["points_m"].shape[1], mesh["triangles"].shape[1], mesh["normals"].shape), (3, 3, (mesh["triangles"].size, 3)))
+        self.assertEqual(len(mesh["material"]), len(mesh["triangles"]))
+        self.assertLess(mesh["triangles"].max(), len(mesh["points_m"]))
+        self.assertTrue(all(set(each) == {"name", "colour", "roughness", "glow"} for each in mesh["materials"]))
+        self.assertEqual(scene.object_mesh(1), {})
+        for call in (lambda: scene.object_pose(2, 1.0), lambda: scene.object_mesh(-1)):
+            self.assertRaises(IndexError, call)
+        scene.objects = [pelagic.SceneObject("", vessel=1)]
+        self.assertRaisesRegex(ValueError, "vessel = 1", scene.object_pose, 0, 1.0)
+        self.assertRaises(ValueError, scene.object_pose, 0, float("nan"))
+
     def test_keys_are_described(self):
         keys = {key["path"]: key for key in pelagic.keys()}
         wind = keys["sea.wind_speed_mps"]

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes of Blender's as a shot's bodies: what a shot file can say of their shape and their materials, as Wavefront OBJ and MTL."""
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from . import compat
+
+SHAPES = {"MESH", "CURVE", "SURFACE", "FONT"}  # what has faces
+GREY = ("grey", (0.8, 0.8, 0.8), 0.5, (0.0, 0.0, 0.0))  # of faces without a material: name, colour, roughness, light [kcd/m²]
+
+
+@dataclass
+class Shape:
+    """Triangles: points (n, 3) [m], corners (t, 3) into them, normals of corners (t, 3, 3), material of each, into materials."""
+
+    points: np.ndarray
+    corners: np.ndarray
+    normals: np.ndarray
+    material: np.ndarray
+    materials: list = field(default_factory=list)
+
+
+def members(obj, is_another):
+    """What belongs to a body: the object and all that is parented to it, but what is a body of its own or isn't rendered."""
+    found, left = [], [obj]
+    while left:
+        each = left.pop()
+        found.append(each)
+        left += [child for child in each.children if not (child.hide_render or is_another(child))]
+    return found
+
+
+def shape_of(parts, depsgraph, into):
+    """The Shape of some objects, with their modifiers and the collections that they stand for, as evaluated; into: a matrix from the world
+    to the shape's coordinates. And sentences about what of their materials it leaves out."""
+    made, materials, remarks = [], {}, {}
+    for part in parts:
+        if part.type in SHAPES:
+            evaluated = part.evaluated_get(depsgraph)
+            made.append(_arrays(evaluated, into @ evaluated.matrix_world, materials, remarks))
+    names = {part.name_full for part in parts}
+    for instance in depsgraph.object_instances:
+        if instance.is_instance and instance.parent and instance.parent.original.name_full in names and instance.object.type in SHAPES:
+            made.append(_arrays(instance.object, into @ instance.matrix_world, materials, remarks))
+    made = [arrays for arrays in made if arrays is not None]
+    if not made:
+        return None, []
+    starts = np.cumsum([0] + [len(arrays[0]) for arrays in made[:-1]])
+    points, corners, normals, material = ([arrays[i] for arrays in made] for i in range(4))
+    return Shape(np.concatenate(points), np.concatenate([each + start for each, start in zip(corners, starts)]), np.concatenate(normals),
+                 np.concatenate(material), list(materials)), [f"{what}: {', '.join(sorted(names))}" for what, names in remarks.items()]
+
+
+def _arrays(evaluated, matrix, materials, remarks):
+    """(points, corners, normals, material) of an evaluated object; None where it has no faces."""
+    mesh = evaluated.to_mesh()
+    try:
+        if mesh is None or not mesh.polygons:
+            return None
+        mesh.calc_loop_triangles()
+        points, loops = np.empty((len(mesh.vertices), 3), np.float32), np.empty((len(mesh.loop_triangles), 3), np.int32)
+        mesh.vertices.foreach_get("co", points.ravel())
+        mesh.loop_triangles.foreach_get("loops", loops.ravel())
+        slot, vertices = np.empty(len(loops), np.int32), np.empty(len(mesh.loops), np.int32)
+        mesh.loop_triangles.foreach_get("material_index", slot)
+        mesh.loops.foreach_get("vertex_index", vertices)
+        normals = compat.corner_normals(mesh)[loops]
+        slots = [each.material for each in evaluated.material_slots] or [None]
+        index = [materials.setdefault(_material(each, remarks), len(materials)) for each in slots]
+    finally:
+        evaluated.to_mesh_clear()
+    linear = np.array(matrix, float)[:3, :3]
+    points = points @ linear.T + np.array(matrix, float)[:3, 3]
+    size = np.linalg.det(linear)
+    if abs(size) < 1e-12:
+        return None  # flat: it hasn't an inside
+    normals = normals @ np.linalg.inv(linear)
+    lengths = np.linalg.norm(normals, axis=2, keepdims=True)
+    normals = normals / np.where(lengths > 0.0, lengths, 1.0)
+    corners = vertices[loops]
+    if size < 0.0:  # mirrored
+        corners, normals = corners[:, ::-1], normals[:, ::-1]
+    return points, corners, normals, np.array(index)[np.clip(slot, 0, len(index) - 1)]
+
+
+# ---- Materials
+
+
+def _shader(material):
+    """The node that the material's surface is."""
+    if not material.use_nodes:
+        return None
+    outputs = [node for node in material.node_tree.nodes if node.type == "OUTPUT_MATERIAL"]
+    output = next((node for node in outputs if node.is_active_output), None)
+    links = output.inputs["Surface"].links if output else ()
+    return links[0].from_node if links else None
+
+
+def _input(node, *names):
+    return next((node.inputs[name] for name in names if name in node.inputs), None)
+
+
+def _material(material, remarks):
+    """(name, colour, roughness, light in kcd/m²); remarks: what is left out → names of materials."""
+    if material is None:
+        return GREY
+    node = _shader(material)
+
+    def leave(what):
+        remarks.setdefault(what, set()).add(material.name)
+
+    def value(socket, otherwise):
+        if socket is None:
+            return otherwise
+        if socket.is_linked:
+            leave("pictures and nodes of a material stay behind, it has the plain value that is in the field")
+        return socket.default_value
+
+    glow, colour, roughness = (0.0, 0.0, 0.0), tuple(material.diffuse_color[:3]), material.roughness
+    if node is not None and node.type == "BSDF_PRINCIPLED":
+        colour, roughness = tuple(value(_input(node, "Base Color"), colour)[:3]), value(_input(node, "Roughness"), roughness)
+        strength = value(_input(node, "Emission Strength"), 0.0)
+        light = value(_input(node, "Emission Color", "Emission"), (0.0, 0.0, 0.0, 1.0))
+        glow = tuple(max(0.0, strength * each) for each in light[:3])
+        clear = _input(node, "Transmission Weight", "Transmission")
+        alpha = _input(node, "Alpha")
+        if clear is not None and (clear.is_linked or clear.default_value > 0.0) or alpha is not None and (alpha.is_linked or alpha.default_value < 1.0):
+            leave("a shot's bodies are opaque")
+        metal = _input(node, "Metallic")
+        if metal is not None and (metal.is_linked or metal.default_value > 0.0):
+            leave("a shot's bodies aren't of metal")
+    elif node is not None and node.type == "BSDF_DIFFUSE":
+        colour, roughness = tuple(value(node.inputs["Color"], colour)[:3]), 1.0
+    elif node is not None and node.type == "EMISSION":
+        strength = value(node.inputs["Strength"], 1.0)
+        colour, roughness, glow = (0.0, 0.0, 0.0), 1.0, tuple(max(0.0, strength * each) for each in value(node.inputs["Color"], (1.0,) * 4)[:3])
+    elif node is not None:
+        leave("of materials a shot has Principled BSDF, Diffuse BSDF and Emission; of others their colour in the viewport")
+    name = " ".join(material.name.split())
+    return (name, tuple(min(max(float(each), 0.0), 1.0) for each in colour), min(max(float(roughness), 0.0), 1.0), tuple(map(float, glow)))
+
+
+# ---- Fewer triangles
+
+
+def proxy(context, shape, percent):
+    """The Shape with this share of its triangles, by Blender's own Decimate; without normals (0, 3, 3): whoever reads it makes them smooth."""
+    mesh = bpy.data.meshes.new("Pelagic Proxy")
+    mesh.from_pydata(shape.points.tolist(), [], shape.corners.tolist())
+    for _ in shape.materials:
+        mesh.materials.append(None)
+    mesh.polygons.foreach_set("material_index", shape.material.astype(np.int32))
+    obj = bpy.data.objects.new(mesh.name, mesh)
+    context.scene.collection.objects.link(obj)
+    try:
+        decimate = obj.modifiers.new("Decimate", "DECIMATE")
+        decimate.ratio, decimate.use_collapse_triangulate = percent / 100.0, True
+        evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
+        few = evaluated.data
+        few.calc_loop_triangles()
+        points, corners = np.empty((len(few.vertices), 3), np.float32), np.empty((len(few.loop_triangles), 3), np.int32)
+        few.vertices.foreach_get("co", points.ravel())
+        few.loop_triangles.foreach_get("vertices", corners.ravel())
+        material = np.empty(len(corners), np.int32)
+        few.loop_triangles.foreach_get("material_index", material)
+    finally:
+        bpy.data.objects.remove(obj)
+        bpy.data.meshes.remove(mesh)
+    return Shape(points.astype(float), corners, np.empty((0, 3, 3)), material, shape.materials)
+
+
+# ---- Files
+
+
+def _rows(start, numbers, decimals):
+    return "".join(f"{start} " + " ".join(f"{number:.{decimals}g}" for number in row) + "\n" for row in numbers.tolist())
+
+
+def write(shape, file):
+    """OBJ and MTL, as the core reads them (plugin/format/obj): z up, metres. Returns the light of its brightest material [kcd/m²]."""
+    light = max((max(glow) for *_, glow in shape.materials), default=0.0)
+    lines = ["# Written by Pelagic's add-on for Blender: metres, z up, bow along +x.\n"]
+    for name, colour, roughness, glow in shape.materials:
+        lines.append(f"newmtl {name}\nKd " + " ".join(f"{each:.6g}" for each in colour) + f"\nPr {roughness:.6g}\n"
+                     + ("Ke " + " ".join(f"{each / light:.6g}" for each in glow) + "\n" if max(glow) > 0.0 else ""))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    put_file(file.with_suffix(".mtl"), "".join(lines))
+    out = [lines[0], f"mtllib {file.with_suffix('.mtl').name}\n", _rows("v", shape.points, 7)]
+    order = np.argsort(shape.material, kind="stable")
+    corners, material = shape.corners[order] + 1, shape.material[order]
+    if len(shape.normals):
+        normals, which = np.unique(np.round(shape.normals[order].reshape(-1, 3), 5) + 0.0, axis=0, return_inverse=True)
+        out.append(_rows("vn", normals, 5))
+        pairs = np.stack((corners, which.reshape(-1, 3) + 1), 2).reshape(-1, 6)
+    else:
+        out.append("s 1\n")
+        pairs = None
+    for index, (name, *_) in enumerate(shape.materials):
+        of = material == index
+        if not of.any():
+            continue
+        out.append(f"usemtl {name}\n")
+        if pairs is None:
+            out += [f"f {a} {b} {c}\n" for a, b, c in corners[of].tolist()]
+        else:
+            out += [f"f {a}//{i} {b}//{j} {c}//{k}\n" for a, i, b, j, c, k in pairs[of].tolist()]
+    put_file(file, "".join(out))
+    return light
+
+
+def put_file(file, text):
+    """The file is the old one until the new one is whole."""
+    beside = file.with_name(file.name + ".part")
+    beside.write_text(text, encoding="utf-8", newline="\n")
+    beside.replace(file)
+
+
+# ---- Into Blender
+
+
+def mesh_of(name, told, colour, glow_cd_m2):
+    """A Blender mesh of Scene.object_mesh(), its materials times the body's own colour and light."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(told["points_m"].tolist(), [], told["triangles"].tolist())
+    mesh.polygons.foreach_set("material_index", told["material"].astype(np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(told["triangles"]), bool))
+    for each in told["materials"]:
+        mesh.materials.append(_made(each, colour, glow_cd_m2))
+    compat.set_corner_normals(mesh, told["normals"])
+    mesh.update()
+    return mesh
+
+
+def _made(told, colour, glow_cd_m2):
+    material = bpy.data.materials.new(told["name"])
+    material.use_nodes = True
+    node = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    seen = tuple(mine * times for mine, times in zip(told["colour"], colour))
+    node.inputs["Base Color"].default_value = material.diffuse_color = (*seen, 1.0)
+    node.inputs["Roughness"].default_value = material.roughness = told["roughness"]
+    _input(node, "Emission Color", "Emission").default_value = (*told["glow"], 1.0)
+    node.inputs["Emission Strength"].default_value = glow_cd_m2 / 1000.0 if any(told["glow"]) else 0.0
+    return material

@@ -89,9 +89,7 @@ void keep_in_ranks(std::span<float, kMatteFloats> ranks, float id, float share) 
 void sort_ranks(std::span<float, kMatteFloats> ranks) {
     std::array<Rank, kMatteRanks> sorted{};
     std::memcpy(sorted.data(), ranks.data(), sizeof(sorted));
-    std::sort(sorted.begin(), sorted.end(), [](const Rank& a, const Rank& b) {
-        return a.is_before(b);
-    });
+    std::sort(sorted.begin(), sorted.end(), [](const Rank& a, const Rank& b) { return a.is_before(b); });
     std::memcpy(ranks.data(), sorted.data(), sizeof(sorted));
 }
 

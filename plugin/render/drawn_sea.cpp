@@ -182,14 +182,16 @@ double DrawnSea::rest_m(glm::dvec2 place_m) const {
     std::optional<double> highest_m;
     for (std::size_t t = 0; t + 2 < coarse_triangles_.size(); t += 3) {
         std::array<glm::dvec2, 3> corner;
-        for (std::size_t i = 0; i < 3; ++i) corner[i] = glm::dvec2(coarse_.rest_m[coarse_triangles_[t + i]]) - place;
+        for (std::size_t i = 0; i < 3; ++i)
+            corner[i] = glm::dvec2(coarse_.rest_m[coarse_triangles_[t + i]]) - place;
         std::array<double, 3> weight{};  // twice the area across from each corner
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 a = corner[(i + 1) % 3], b = corner[(i + 2) % 3];
             weight[i] = a.x * b.y - a.y * b.x;
         }
         const double area = weight[0] + weight[1] + weight[2];
-        if (area == 0.0 || std::ranges::any_of(weight, [&](double part) { return part / area < 0.0; })) continue;
+        if (area == 0.0 || std::ranges::any_of(weight, [&](double part) { return part / area < 0.0; }))
+            continue;
         double height_m = 0.0;
         for (std::size_t i = 0; i < 3; ++i)
             height_m += weight[i] / area * static_cast<double>(coarse_.height_m[coarse_triangles_[t + i]]);

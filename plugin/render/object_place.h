@@ -17,8 +17,8 @@ struct PlacedObject {
 };
 
 struct ObjectMoment {
-    int query = 0;        // of the sea's plan; asked for what floats
-    double frame = 1.0;   // also between two
+    int query = 0;       // of the sea's plan; asked for what floats
+    double frame = 1.0;  // also between two
     // The height at which the sea rests at a place; null: 0.
     std::function<double(glm::dvec2)> rest_m{};
     double late_s = 0.0;  // beside the sea's time; other than 0 asks for Product::Velocity

@@ -40,7 +40,8 @@ struct Taken {
         case RTC_ERROR_OUT_OF_MEMORY:
             throw std::bad_alloc();
         case RTC_ERROR_UNSUPPORTED_CPU:
-            throw std::runtime_error("Embree doesn't run on this CPU: pictures of shots with objects need SSE2");
+            throw std::runtime_error(
+                "Embree doesn't run on this CPU: pictures of shots with objects need SSE2");
         case RTC_ERROR_INVALID_ARGUMENT:
         case RTC_ERROR_INVALID_OPERATION:
             throw std::runtime_error("Embree refuses the objects (error " + std::to_string(error) +

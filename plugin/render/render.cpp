@@ -635,7 +635,7 @@ class RendererOf final : public Impl {
                                            variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
                 return;
             constexpr std::uint32_t kFacets = 64, kLeast = 4, kUse = 100,  // of a pixel, of a sample
-                                    kBounce = 101;
+                kBounce = 101;
             const SampleNumbers numbers = numbers_of(first_row, sample);
             const std::uint32_t count = numbers.rays(kFacets, kLeast);
             const SampleNumbers::Places of_facets = numbers.places(kUse), bounces = numbers.places(kBounce);
@@ -682,15 +682,14 @@ class RendererOf final : public Impl {
             const glm::vec3 to_eye = batch_.seen.to_eye[i];
             const float cosine = glm::dot(upright, to_eye);
             if (!(cosine > 0.02f)) return;
-            const Ray ray{.from = place,
-                          .towards = refracted_by_water(-to_eye, upright),
-                          .farthest_m = clear_m};
+            const Ray ray{
+                .from = place, .towards = refracted_by_water(-to_eye, upright), .farthest_m = clear_m};
             const RayHit hit = objects_->nearest(ray);
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);
             const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
-            const glm::vec3 body = (clear * (1.0f - mirrored_by_level_water(cosine)) * kBehindGlass) *
-                                   left * objects_->radiance_in_water(ray, hit);
+            const glm::vec3 body = (clear * (1.0f - mirrored_by_level_water(cosine)) * kBehindGlass) * left *
+                                   objects_->radiance_in_water(ray, hit);
             batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
         });
     }
@@ -747,14 +746,14 @@ class RendererOf final : public Impl {
         return is_object(sample) ? !objects_->is_holdout(batch_.body[sample]) : is_sea(sample);
     }
 
-    // A Cryptomatte has its largest share first.
+    // No pixel's light is below 0 (LitObjects::radiance()). A Cryptomatte has its largest share first.
     void end_objects(Picture& picture) const {
+        for (float& light : picture.data[index(PictureLayer::Object)]) light = std::max(light, 0.0f);
         std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
         if (mattes.empty()) return;
         for (const std::vector<Unranked>& row : unranked_)
             for (const Unranked& of : row) keep_in_ranks(ranks_of(mattes, of.pixel), of.id, of.share);
-        in_parallel(picture.layers.size(),
-                    [&](std::size_t pixel) { sort_ranks(ranks_of(mattes, pixel)); });
+        in_parallel(picture.layers.size(), [&](std::size_t pixel) { sort_ranks(ranks_of(mattes, pixel)); });
     }
 
     // What a pixel's samples of the sea show of bodies, more than without them, in all. Of the sky that they mirror, `sky`, bodies take the
@@ -984,9 +983,8 @@ class RendererOf final : public Impl {
     // What samples to come may still make more than a rank's. A row of pixels is one thread's.
     void add_unranked(const Picture& picture, std::size_t pixel, float id, float share) const {
         std::vector<Unranked>& row = unranked_[pixel / static_cast<std::size_t>(picture.resolution.x)];
-        const auto same = std::find_if(row.begin(), row.end(), [&](const Unranked& of) {
-            return of.pixel == pixel && of.id == id;
-        });
+        const auto same = std::find_if(row.begin(), row.end(),
+                                       [&](const Unranked& of) { return of.pixel == pixel && of.id == id; });
         if (same != row.end())
             same->share += share;
         else
@@ -1012,7 +1010,8 @@ class RendererOf final : public Impl {
                 if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
                 const float id =
                     is_object(at) ? mattes_[static_cast<std::size_t>(batch_.body[at].body)] : kSeaMatte;
-                if (!add_to_ranks(ranks_of(mattes, pixel), id, share)) add_unranked(picture, pixel, id, share);
+                if (!add_to_ranks(ranks_of(mattes, pixel), id, share))
+                    add_unranked(picture, pixel, id, share);
             }
         const glm::vec3 reflection = shown_in_sea(shown, sky);
         for (int c = 0; c < 3; ++c) {
@@ -1166,7 +1165,7 @@ class RendererOf final : public Impl {
         float id, share;
     };
     mutable std::vector<std::vector<Unranked>> unranked_;
-    std::vector<float> mattes_;            // by object
+    std::vector<float> mattes_;  // by object
     const std::atomic<bool>* cancel_ = nullptr;
 };
 

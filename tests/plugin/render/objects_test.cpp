@@ -725,7 +725,7 @@ TEST(Objects, HaveTheShadowOfTheirSmoothNormals) {
     }
     EXPECT_GT(sunny, 500);
     EXPECT_GT(shadowed, 200);
-    EXPECT_LE(dark, sunny / 100);  // without the lift 11 %
+    EXPECT_LE(dark, sunny / 100);
     EXPECT_LE(lit, shadowed / 100);
 }
 

@@ -30,8 +30,7 @@ glm::vec3 beam_of(const Sky& sky) {
     return shading::kPi * sky.sun_angular_radius * sky.sun_angular_radius * sky.sun_radiance;
 }
 
-}  // namespace
-
+// Adds light that comes from a direction (unit): its irradiance across that direction.
 void add_light(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light) {
     to.flat_part += light * 0.25f;
     to.x += light * (0.5f * from.x);
@@ -44,6 +43,8 @@ void add_light(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light) {
     to.zz += light * (0.078125f * (3.0f * from.z * from.z - 1.0f));
     to.xx_yy += light * (0.234375f * (from.x * from.x - from.y * from.y));
 }
+
+}  // namespace
 
 ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                                        double foam) {

@@ -25,8 +25,6 @@ struct ObjectSurroundings {
 // from the water, of which so much is covered with foam (0 … 1). Terms that are off are black.
 ObjectSurroundings object_surroundings(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                                        double foam);
-// Adds light from a direction (unit): its irradiance across that direction.
-void add_light(ObjectSurroundings& to, glm::vec3 from, glm::vec3 light);
 // On a surface of that unit normal.
 glm::vec3 object_irradiance(const ObjectSurroundings& light, glm::vec3 normal);
 // Radiance to the eye (unit) of the sun of a sky, where nothing hides it.

@@ -21,8 +21,7 @@ struct NotLoaded : std::system_error {
 void* load(const Module& module) {
     void* const library = ::dlopen(module.file, RTLD_NOW | RTLD_LOCAL);
     void* const symbol = library ? ::dlsym(library, module.symbol) : nullptr;
-    if (!symbol)
-        throw NotLoaded(module.what + " can't be loaded: " + ::dlerror() + "; " + module.needs);
+    if (!symbol) throw NotLoaded(module.what + " can't be loaded: " + ::dlerror() + "; " + module.needs);
     return symbol;
 }
 

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
+#include <utility>
 
 #include "core/base/random.h"
 #include "core/surface/earth.h"
@@ -19,8 +20,9 @@ constexpr float kPi_f = std::numbers::pi_v<float>;
 // Rays of a pixel, over all its samples, and of a sample at least.
 constexpr std::uint32_t kSunRays = 16, kSkyRays = 32, kLeastSunRays = 2, kLeastSkyRays = 4;
 constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
+constexpr float kBlur = 0.15f;  // [rad] of the sky, by eye: some of what 32 rays of a hemisphere are apart
 constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
-enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces, kOfGlossBounces };
+enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces, kOfGlossBounces, kOtherHalf };
 
 // A coordinate system round a unit direction (Duff et al. 2017).
 glm::mat3 axes_round(const glm::vec3& z) {
@@ -34,13 +36,13 @@ glm::vec2 on_disc(glm::vec2 square) {
     return radius * glm::vec2(std::cos(angle), std::sin(angle));
 }
 
-// The mean light of rays, each of which meets a body or is open, where it is known what all would have in the mean if they were open. What
-// chance gives the rays too much or too little of that is taken off as far as they are open, by the share of the other half of them: a
-// share of the same rays would depend on that chance, and the mean be another with few rays. So what nothing hides has no grain, what is
-// closed in is dark, and what comes between has the right mean.
+// The mean light of rays, each of which meets a body or is open, where it is known what all would have in the mean if they were open. Half
+// of them take turns with the other half, whose numbers know nothing of theirs. What chance gives a half too much or too little is taken
+// off where all of the other half are open: asked of the same rays that would depend on this chance, and few rays had another mean than
+// many. So what nothing hides has no grain, and what is closed in is dark.
 class MeanLight {
   public:
-    // light: of `open`, where it is, or of the body. In turns to the two halves: two rays at least.
+    // light: of `open`, where it is, or of the body. Two rays at least.
     void add(const glm::vec3& open, const glm::vec3& light, bool is_open) {
         Half& half = halves_[count_++ % 2];
         ++half.count;
@@ -52,11 +54,10 @@ class MeanLight {
         glm::vec3 sum(0.0f);
         for (std::size_t h = 0; h < 2; ++h) {
             const Half &half = halves_[h], &other = halves_[1 - h];
-            const float share = static_cast<float>(other.open) / static_cast<float>(other.count);
-            sum += half.light + share * (static_cast<float>(half.count) * expected - half.all);
+            sum += half.light;
+            if (other.open == other.count) sum += static_cast<float>(half.count) * expected - half.all;
         }
-        // Below 0 the halves have disagreed.
-        return glm::max(sum / static_cast<float>(count_), glm::vec3(0.0f));
+        return sum / static_cast<float>(count_);  // below 0 where the halves disagree: others make up for it
     }
     bool is_any_open() const { return halves_[0].open + halves_[1].open > 0; }
 
@@ -67,6 +68,13 @@ class MeanLight {
     };
     std::array<Half, 2> halves_;
     std::size_t count_ = 0;
+};
+// The numbers of such rays, of which there is an even count.
+struct TwoHalves {
+    std::array<SampleNumbers::Places, 2> half;
+    TwoHalves(const SampleNumbers& numbers, std::uint32_t use)
+        : half{numbers.places(use), numbers.places(use + kOtherHalf)} {}
+    glm::vec2 of(std::uint32_t k, std::uint32_t rays) const { return half[k % 2].of(k / 2, rays / 2); }
 };
 
 // Off a surface, by what single precision knows of the place.
@@ -177,19 +185,7 @@ void LitObjects::light(const SeaLight<T>& sea) {
         sea_[lit].resize(light.size());
         std::transform(light.begin(), light.end(), sea_[lit].begin(), radiance_of);
     }
-    surroundings_ = {};
-    constexpr int kSide = 64;  // of a square round the horizon's circle in the sky's map
-    constexpr float kStep = 2.0f / kSide;
-    for (int j = 0; j < kSide; ++j)
-        for (int i = 0; i < kSide; ++i) {
-            const glm::vec2 u(-1.0f + kStep * (static_cast<float>(i) + 0.5f),
-                              -1.0f + kStep * (static_cast<float>(j) + 0.5f));
-            if (glm::dot(u, u) > 1.0f) continue;
-            const glm::vec3 d = sky_map_direction(u), down(d.x, d.y, -d.z);
-            const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
-            add_light(surroundings_, d, solid_angle * this->sky(d));
-            add_light(surroundings_, down, solid_angle * this->sea(-down, true));
-        }
+    find_irradiance();
     constexpr float kStep_m = 0.5f, kFarthest_m = 64.0f, kLeast = 0.01f;
     sight_in_water_m_ = kStep_m;
     const auto most = [](const glm::vec3& of) { return std::max({of.x, of.y, of.z}); };
@@ -198,6 +194,46 @@ void LitObjects::light(const SeaLight<T>& sea) {
 }
 template void LitObjects::light(const SeaLight<float>&);
 template void LitObjects::light(const SeaLight<double>&);
+
+// By the normal, of the sky and sea that rays see. The nine numbers of ObjectSurroundings err by some per cent where the sun glitters on the
+// sea: the rays' means would have other light than what they stand for.
+void LitObjects::find_irradiance() {
+    constexpr int kSide = 64;  // of a square round the horizon's circle in the sky's map
+    constexpr float kStep = 2.0f / kSide;
+    std::vector<std::pair<glm::vec3, glm::vec3>> all;  // direction, light across it
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const glm::vec2 u(-1.0f + kStep * (static_cast<float>(i) + 0.5f),
+                              -1.0f + kStep * (static_cast<float>(j) + 0.5f));
+            if (glm::dot(u, u) > 1.0f) continue;
+            const glm::vec3 d = sky_map_direction(u), down(d.x, d.y, -d.z);
+            const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
+            all.emplace_back(d, solid_angle * sky(d, kBlur));
+            all.emplace_back(down, solid_angle * sea(-down, true));
+        }
+    irradiance_.clear();
+    for (int row = 0; row < kNormalRows; ++row)
+        for (int column = 0; column < kNormalColumns; ++column) {
+            const float high = kPi_f * static_cast<float>(row) / (kNormalRows - 1),
+                        round = 2.0f * kPi_f * static_cast<float>(column) / kNormalColumns;
+            const glm::vec3 normal(std::sin(high) * std::cos(round), std::sin(high) * std::sin(round),
+                                   std::cos(high));
+            glm::vec3 sum(0.0f);
+            for (const auto& [from, light] : all) sum += std::max(glm::dot(from, normal), 0.0f) * light;
+            irradiance_.push_back(sum);
+        }
+}
+
+glm::vec3 LitObjects::open_irradiance(const glm::vec3& normal) const {
+    const float row = std::acos(std::clamp(normal.z, -1.0f, 1.0f)) / kPi_f * (kNormalRows - 1);
+    float column = std::atan2(normal.y, normal.x) / (2.0f * kPi_f) * kNormalColumns;
+    if (!(column >= 0.0f)) column += kNormalColumns;
+    const int low = std::clamp(static_cast<int>(row), 0, kNormalRows - 2), left = static_cast<int>(column);
+    const auto at = [&](int r, int c) { return irradiance_[r * kNormalColumns + c % kNormalColumns]; };
+    const float down = row - static_cast<float>(low), right = column - static_cast<float>(left);
+    return glm::mix(glm::mix(at(low, left), at(low, left + 1), right),
+                    glm::mix(at(low + 1, left), at(low + 1, left + 1), right), down);
+}
 
 bool LitObjects::may_meet(const Ray& ray) const {
     return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
@@ -405,7 +441,7 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     glm::vec3 light(0.0f);
     const glm::vec3 towards = outwards(
         at, axes_round(at.normal) * glm::vec3(on_disc(number), std::sqrt(std::max(1.0f - number.x, 0.0f))));
-    if (!is_blocked(ray_from(at, towards))) light = object_irradiance(surroundings_, at.normal);
+    if (!is_blocked(ray_from(at, towards))) light = open_irradiance(at.normal);
     if (is_sunny(at) &&
         !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
         light += glm::dot(at.normal, to_sun_) * beam_;
@@ -413,10 +449,10 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
 }
 
 glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers) const {
-    constexpr float kBlur = 0.15f;  // [rad], by eye: some of what 32 rays of a hemisphere are apart
     const glm::mat3 axes = axes_round(at.normal);
-    const std::uint32_t count = numbers.rays(kSkyRays, kLeastSkyRays);
-    const SampleNumbers::Places places = numbers.places(kOfSky), bounces = numbers.places(kOfBounces);
+    const std::uint32_t count = 2 * ((numbers.rays(kSkyRays, kLeastSkyRays) + 1) / 2);
+    const TwoHalves places(numbers, kOfSky);
+    const SampleNumbers::Places bounces = numbers.places(kOfBounces);
     MeanLight mean;
     for (std::uint32_t k = 0; k < count; ++k) {
         const glm::vec2 place = places.of(k, count);
@@ -425,7 +461,7 @@ glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers
                      bounces.of(k, count));
         mean.add(from.open, from.light, from.is_open);
     }
-    return kPi_f * mean.of(object_irradiance(surroundings_, at.normal) / kPi_f);
+    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f);
 }
 
 // The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
@@ -444,8 +480,10 @@ glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye,
         const glm::vec3 from = outwards(at, glm::normalize(2.0f * facing * upright - to_eye));
         return {from, mirrored_by_facet(facing, glm::dot(from, at.normal), roughness)};
     };
-    const std::uint32_t count = numbers.rays(kGlossRays, kLeastGlossRays), facets = kOpenFacets * count;
-    const SampleNumbers::Places of_rays = numbers.places(kOfGloss), bounces = numbers.places(kOfGlossBounces),
+    const std::uint32_t count = 2 * ((numbers.rays(kGlossRays, kLeastGlossRays) + 1) / 2),
+                        facets = kOpenFacets * count;
+    const TwoHalves of_rays(numbers, kOfGloss);
+    const SampleNumbers::Places bounces = numbers.places(kOfGlossBounces),
                                 of_facets = numbers.places(kOfFacets);
     MeanLight mean;
     glm::vec3 seen(0.0f);

@@ -74,6 +74,8 @@ class LitObjects {
     float sun_share(const glm::vec3& place, const glm::vec3& normal, const SampleNumbers& numbers) const;
     // The same of a place of a body.
     float sun_share(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const;
+    // Light by rays of chance may be below 0, as their mean isn't: a picture cuts that off from a pixel's whole alone, or few rays would be too
+    // bright.
     // What a body sends back along a ray, to an eye in the air, or in the water before a body in it.
     glm::vec3 radiance(const Ray& ray, const RayHit& hit, const SampleNumbers& numbers) const;
     glm::vec3 radiance_in_water(const Ray& ray, const RayHit& hit) const;
@@ -135,6 +137,8 @@ class LitObjects {
     Ray ray_from(const Surface& at, const glm::vec3& towards) const;
     Incoming incoming(const Surface& at, const glm::vec3& from, float blur_rad, glm::vec2 number) const;
     static glm::vec3 outwards(const Surface& at, const glm::vec3& direction);
+    void find_irradiance();
+    glm::vec3 open_irradiance(const glm::vec3& normal) const;
     glm::vec3 irradiance(const Surface& at, const SampleNumbers& numbers) const;
     glm::vec3 mirrored(const Surface& at, const glm::vec3& to_eye, const SampleNumbers& numbers) const;
     glm::vec3 sea(const glm::vec3& to_eye, bool in_sun) const;
@@ -154,7 +158,9 @@ class LitObjects {
     static constexpr int kRows = 12, kColumns = 24;
     std::array<std::vector<glm::vec3>, 2>
         sea_;  // by whether the sun shines on it: rows by the root of to_eye.z, columns by azimuth
-    ObjectSurroundings surroundings_;  // those two, which nothing hides
+    static constexpr int kNormalRows = 25, kNormalColumns = 48;
+    std::vector<glm::vec3>
+        irradiance_;  // of sky and sea that nothing hides: rows from up to down, columns by azimuth
     float sight_in_water_m_ = 0.0f;
 };
 

@@ -225,6 +225,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
              " layers " + layers_text(source.scene, options_.layers) + (lighting.spray ? " spray" : "") +
+             (source.scene.objects.empty() ? "" : " objects " + std::to_string(kObjectsRevision)) +
              window_text(source.scene.camera.resolution, options_));
     if (plan.from->weather) {
         hash.add(weather_plan_text(plan, true));

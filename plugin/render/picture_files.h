@@ -41,6 +41,8 @@ struct PictureContext {
 // Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.
 // tests/plugin/bake/golden_test.cpp notices bits that change without it.
 inline constexpr int kPictureRevision = 22;
+// The same for pictures of shots with objects alone.
+inline constexpr int kObjectsRevision = 2;
 
 // What the two files of a frame are made of: the keys on which pictures depend, the camera's pose, the resolved plan,
 // the sky's picture, the samples, terms and lookups of the light, the shutter, alpha, the layers, and the exposure.

@@ -753,8 +753,9 @@ class RendererOf final : public Impl {
         return is_object(sample) ? !objects_->is_holdout(batch_.body[sample]) : is_sea(sample);
     }
 
-    // A Cryptomatte has its largest share first.
+    // No pixel's light is below 0 (LitObjects::radiance()). A Cryptomatte has its largest share first.
     void end_objects(Picture& picture) const {
+        for (float& light : picture.data[index(PictureLayer::Object)]) light = std::max(light, 0.0f);
         std::vector<float>& mattes = picture.data[index(PictureLayer::Cryptomatte)];
         if (mattes.empty()) return;
         for (const std::vector<Unranked>& row : unranked_)

@@ -186,7 +186,9 @@ void LiveSea::compute_frames() {
     };
     const auto objects_in = [&](double at) {
         return std::make_shared<const std::vector<DrawnObject>>(drawn_objects(
-            *frame, tried->scene, {.query = tried->query, .frame = at, .rest_m = [&](glm::dvec2 place) { return tried->drawn->rest_m(place); }}));
+            *frame, tried->scene, {.query = tried->query, .frame = at, .rest_m = [&](glm::dvec2 place) {
+                                       return tried->drawn->rest_m(place);
+                                   }}));
     };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {

@@ -298,7 +298,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     if (!planned.scene.objects.empty())
         renderer.set_objects(
             drawn_objects(state, planned.scene,
-                          {.frame = static_cast<double>(planned.frame), .rest_m = [&](glm::dvec2 place) { return planned.drawn->rest_m(place); }}),
+                          {.frame = static_cast<double>(planned.frame),
+                           .rest_m = [&](glm::dvec2 place) { return planned.drawn->rest_m(place); }}),
             object_surroundings(lighting, sky, water, law_coverage(planned.scene)));
     if (lighting.spray && !from_below) {
         const bool are_near = are_drops_near(planned.scene, view);

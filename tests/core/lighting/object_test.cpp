@@ -58,13 +58,14 @@ TEST(ObjectsLight, OfVarnishIsTheMeanOverItsFacets) {
             double sum = 0.0;
             for (int i = 0; i < kFacets; ++i) {
                 const float radius = std::sqrt(unit(random)), angle = 6.2831853f * unit(random);
-                const glm::vec3 facet = mirrored_facet(
-                    to_eye, roughness, {radius * std::cos(angle), radius * std::sin(angle)});
+                const glm::vec3 facet =
+                    mirrored_facet(to_eye, roughness, {radius * std::cos(angle), radius * std::sin(angle)});
                 ASSERT_NEAR(glm::length(facet), 1.0f, 1e-5f);
                 const float facing = glm::dot(to_eye, facet), leaving = 2.0f * facing * facet.z - to_eye.z;
                 if (leaving > 0.0f) sum += static_cast<double>(mirrored_by_facet(facing, leaving, roughness));
             }
-            const double error = std::abs(sum / kFacets - static_cast<double>(object_reflectance(seen, roughness)));
+            const double error =
+                std::abs(sum / kFacets - static_cast<double>(object_reflectance(seen, roughness)));
             largest = std::max(largest, error);
             EXPECT_LT(error, 0.007 + 0.003) << roughness << ' ' << seen;  // the fit's, and chance's
         }

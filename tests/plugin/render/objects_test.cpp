@@ -684,12 +684,15 @@ std::shared_ptr<const ObjectMesh> coarse_sphere(float radius, const glm::vec3& m
     mesh.materials = {{.name = "white", .colour = glm::vec3(0.8f), .roughness = 1.0f}};
     const auto at = [](int row, int column) {
         const double high = kPi * row / kHigh, round = 2.0 * kPi * column / kRound;
-        return glm::vec3(glm::dvec3(std::sin(high) * std::cos(round), std::sin(high) * std::sin(round), std::cos(high)));
+        return glm::vec3(
+            glm::dvec3(std::sin(high) * std::cos(round), std::sin(high) * std::sin(round), std::cos(high)));
     };
     for (int row = 0; row < kHigh; ++row)
         for (int column = 0; column < kRound; ++column)
-            for (const auto& corners : {std::array{std::pair(row, column), std::pair(row + 1, column), std::pair(row + 1, column + 1)},
-                                        std::array{std::pair(row, column), std::pair(row + 1, column + 1), std::pair(row, column + 1)}}) {
+            for (const auto& corners : {std::array{std::pair(row, column), std::pair(row + 1, column),
+                                                   std::pair(row + 1, column + 1)},
+                                        std::array{std::pair(row, column), std::pair(row + 1, column + 1),
+                                                   std::pair(row, column + 1)}}) {
                 if (corners[0] == corners[1] || (row == 0 && corners[2].first == 0) ||
                     (row == kHigh - 1 && corners[1].first == kHigh && corners[2].first == kHigh))
                     continue;
@@ -722,7 +725,7 @@ TEST(Objects, HaveTheShadowOfTheirSmoothNormals) {
     }
     EXPECT_GT(sunny, 500);
     EXPECT_GT(shadowed, 200);
-    EXPECT_LE(dark, sunny / 100);  // without the lift 11 %
+    EXPECT_LE(dark, sunny / 100);
     EXPECT_LE(lit, shadowed / 100);
 }
 
@@ -875,12 +878,14 @@ TEST(Objects, FloatOnACageWhereItIsHigh) {
     Scene scene = calm_scene();
     CageMesh pool;
     for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) pool.points_m.emplace_back(10.0 * x, 10.0 * y, x == 1 ? 4.0 : 1.0 + 0.5 * x);
+        for (int x = -1; x <= 1; ++x)
+            pool.points_m.emplace_back(10.0 * x, 10.0 * y, x == 1 ? 4.0 : 1.0 + 0.5 * x);
     for (int y = 0; y < 2; ++y)
         for (int x = 0; x < 2; ++x) {
             const std::int32_t first = 3 * y + x;
             pool.face_counts.push_back(4);
-            for (const std::int32_t corner : {first, first + 1, first + 4, first + 3}) pool.indices.push_back(corner);
+            for (const std::int32_t corner : {first, first + 1, first + 4, first + 3})
+                pool.indices.push_back(corner);
         }
     scene.surface.kind = SurfaceKind::Cage;
     scene.surface.beyond = Beyond::Nothing;
@@ -896,7 +901,8 @@ TEST(Objects, FloatOnACageWhereItIsHigh) {
     for (std::size_t i = 0; i < picture.layers.size(); ++i) {
         const glm::vec3 at = vector_of(picture, PictureLayer::Position, i);
         if (shows_object(picture, i)) top = std::max(top, at.z);
-        if (const float away = glm::length(glm::vec2(at) - glm::vec2(6.0f, 0.0f)); picture.sea[i] && away < near) {
+        if (const float away = glm::length(glm::vec2(at) - glm::vec2(6.0f, 0.0f));
+            picture.sea[i] && away < near) {
             near = away;
             water = at.z;
         }
@@ -913,8 +919,9 @@ TEST(Objects, AreFiniteInAnyLightAndMotion) {
     scene.water.body = true;
     scene.camera.position_m = {0.0, -14.0, 2.5};
     scene.camera.look_at_m = {0.0, 0.0, 1.5};
-    scene.objects = {object(boxes({{{-4, -2, -1}, {4, 2, 2}, kTop}}, {.name = "varnish", .roughness = 0.0f}), "hull"),
-                     object(coarse_sphere(1.0f, {5, 0, 0.5f}), "ball")};
+    scene.objects = {
+        object(boxes({{{-4, -2, -1}, {4, 2, 2}, kTop}}, {.name = "varnish", .roughness = 0.0f}), "hull"),
+        object(coarse_sphere(1.0f, {5, 0, 0.5f}), "ball")};
     scene.objects[0].path = "1 -10 0, 25 14 12";
     scene.objects[1].floats = true;
     for (const double elevation : {90.0, 0.0, -0.2}) {

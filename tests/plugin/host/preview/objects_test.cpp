@@ -342,7 +342,8 @@ TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {
     EXPECT_NE(ShaderVariant::of_sea(layout, options, 256).fragment().text().find("sun_shadow"),
               std::string::npos);
     // A host's own objects shadow the sea by a texture that doesn't compare.
-    DrawOptions host{.for_host = true};
+    DrawOptions host;
+    host.for_host = true;
     const auto text_of_host = [&] { return ShaderVariant::of_sea(layout, host, 256).fragment().text(); };
     EXPECT_EQ(text_of_host().find("sun_blockers"), std::string::npos);
     host.has_shadow = true;

@@ -18,7 +18,7 @@ from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, PointerProperty
 from mathutils import Euler, Matrix, Vector
 
-from . import handlers, ocean
+from . import bodies, handlers, ocean
 from .module import pelagic
 from .panels import PLACES, draw_words
 from .query import Water, first_ocean
@@ -125,14 +125,14 @@ def ride_as_body(water, rest, box):
     return Matrix.Translation(Vector((*place[:2], height)) + rest.translation.z * up) @ tilt @ Matrix.Translation(-rest.translation)
 
 
-def _box(evaluated, rest):
-    """Of ride_as_body(): of the object and what is parented to it."""
+def _box(obj, rest, depsgraph):
+    """Of ride_as_body(): of the object and what is parented to it, as the mesh that a shot has (in_light.py)."""
     heading = rest.col[0].xy
     turn = Matrix.Rotation(-math.atan2(heading.y, heading.x), 4, "Z") if heading.length > 1e-6 * rest.col[0].length else Matrix()
-    from_world = turn @ rest.to_3x3().to_4x4() @ evaluated.matrix_world.inverted_safe()
-    # Of the mesh that the shot has: bodies of their own and what isn't rendered are no part of it.
-    parts = [evaluated, *(child for child in evaluated.children_recursive if not (child.hide_render or child.pelagic_in_light.enabled))]
-    corners = np.array([(from_world @ part.matrix_world @ Vector(corner)).xy[:] for part in parts for corner in part.bound_box])
+    from_world = turn @ rest.to_3x3().to_4x4() @ obj.evaluated_get(depsgraph).matrix_world.inverted_safe()
+    parts = [part.evaluated_get(depsgraph) for part in bodies.members(obj, lambda other: other.pelagic_in_light.enabled)
+             if part.type in bodies.SHAPES]
+    corners = np.array([(from_world @ part.matrix_world @ Vector(corner)).xy[:] for part in parts for corner in part.bound_box] or [(0.0, 0.0)])
     return np.array((corners.min(0), corners.max(0)))
 
 
@@ -197,7 +197,7 @@ def _follow(obj, water, depsgraph):
     parent_to_sea = water.matrix.inverted_safe() @ _frame_of(evaluated)
     rest = parent_to_sea @ calm
     if obj.pelagic_in_light.enabled:
-        moved = ride_as_body(water, rest, _box(evaluated, rest))
+        moved = ride_as_body(water, rest, _box(obj, rest, depsgraph))
     elif settings.by_hand:
         moved = ride(water, rest, np.array((settings.length, settings.width)) / water.matrix.median_scale, settings)
     else:

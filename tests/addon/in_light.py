@@ -161,7 +161,7 @@ with checking("scales by axes, mirrored ones, a sheared child, turns and a moved
     bpy.ops.mesh.primitive_cone_add(radius1=0.4, depth=1.0, location=(0.2, 0.1, 0.9), rotation=(0.3, 0.2, 0.5))
     mast = bpy.context.object
     mast.parent = parent
-    mast.scale = 0.3, 0.4, 2.0
+    mast.scale = -0.3, 0.4, 2.0
     bpy.context.view_layer.update()
     assert [sentence for sentence in remarks() if "moved or turned" not in sentence] == []
     shot = exported("stretched")
@@ -177,6 +177,21 @@ with checking("scales by axes, mirrored ones, a sheared child, turns and a moved
         assert volume > 0.0, "it is seen from outside"
         facing = np.einsum("ij,ij->i", np.cross(b - a, c - a), mesh["normals"].reshape(-1, 3, 3).mean(1))
         assert (facing > 0.0).all()
+
+with checking("an empty with parts floats by their box, as the shot's one body does"):
+    sea = empty_sea()
+    bpy.ops.object.empty_add(location=(4.0, 3.0, 0.0))
+    root = bpy.context.object
+    parts = [cube((6.0, 3.0, 1.0), (9.0, 3.0, 0.0)), cube((4.0, 3.0, 1.0), (-3.0, 3.0, 0.0))]
+    for part in parts:
+        part.parent, part.matrix_parent_inverse, part.pelagic_in_light.enabled = root, root.matrix_world.inverted(), False
+    root.pelagic_in_light.enabled = root.pelagic_float.enabled = True
+    bpy.context.view_layer.update()
+    shot = exported("parts")
+    least, most = (edge(shot.object_mesh(0)["points_m"][:, :2], axis=0) for edge in (np.min, np.max))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    assert shot.objects[0].floats and np.allclose(floating._box(root, floating.calm_matrix(root, depsgraph), depsgraph), (least, most), atol=1e-3)
+    assert np.allclose((least, most), ((-9.0, -1.5), (8.0, 1.5)), atol=1e-3)
 
 with checking("what moves by itself goes along a path, its bow ahead; a way that bends"):
     sea = empty_sea()

@@ -391,16 +391,19 @@ def steps():
         settle()
         assert not viewport.is_on() and not viewport._problem, viewport._problem
 
+    fresh_file()  # one view, and nothing in it
+    yield lambda: True
     with checking("an object in the sea's light throws its shadow, where the program's preview has it"):
-        bpy.context.scene.frame_set(1)
         bpy.context.scene.frame_start = bpy.context.scene.frame_end = 1
+        with in_view():
+            bpy.ops.screen.screen_full_area(use_hide_panels=True)
         with in_view():
             obj = add_ocean(quality__level="draft", sea__wind_speed_mps=3.0, light__sun_elevation_deg=25.0, light__sun_azimuth_deg=180.0, water__type="turbid")
             bpy.ops.mesh.primitive_cube_add(size=CUBE_M, location=(-4.0, 0.0, 0.5 * CUBE_M))
             block = bpy.context.object
         _, area = view3d()
         area.spaces.active.show_gizmo = area.spaces.active.overlay.show_overlays = False
-        options.show_sky = True
+        bpy.context.window_manager.pelagic_preview.show_sky = True
         look(-14.0, 14.0, 34.0)
         viewport.turn_on(obj)
         plain = picture()

@@ -569,7 +569,11 @@ void add_viewport(py::module_& module) {
             "pixels' rays: vec3 view_forward, view_right, view_up (the latter two times the tangent that a "
             "pixel covers), vec2 view_centre [px] from the bottom left, view_pixel_tangent. The sky is one "
             "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
-            "plane.")
+            "plane.\n\n"
+            "shadows: the host's own objects shadow the sea. It draws their depth towards the sun, 0 … 1, into a texture sun_blockers (1 "
+            "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth), vec4 "
+            "shadow_reach (its width, height and depth [m], the tangent of the sun's radius), shadow_off (of depth), and view_height_m as "
+            "eye_height_m.")
         .def_property_readonly(
             "uniforms", &GpuSea::uniforms,
             "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "

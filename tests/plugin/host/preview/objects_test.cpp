@@ -341,6 +341,14 @@ TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {
     options.has_objects = true;
     EXPECT_NE(ShaderVariant::of_sea(layout, options, 256).fragment().text().find("sun_shadow"),
               std::string::npos);
+    // A host's own objects shadow the sea by a texture that doesn't compare.
+    DrawOptions host;
+    host.for_host = true;
+    const auto text_of_host = [&] { return ShaderVariant::of_sea(layout, host, 256).fragment().text(); };
+    EXPECT_EQ(text_of_host().find("sun_blockers"), std::string::npos);
+    host.has_shadow = true;
+    EXPECT_NE(text_of_host().find("sun_blockers"), std::string::npos);
+    EXPECT_EQ(text_of_host().find("sampler2DShadow"), std::string::npos);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
 SAMPLES = 9  # a side of the footprint
-MOST_LEAN = 0.45  # the slope of what floats in a shot (plugin/render/object_place.cpp)
+MOST_LEAN = 0.45  # the slope of what floats in a shot (core/evaluate/object_place.cpp)
 GRID = np.stack(np.meshgrid(*2 * [np.linspace(-0.5, 0.5, SAMPLES)]), -1).reshape(-1, 2)
 
 
@@ -105,7 +105,7 @@ def ride(water, rest, size, settings):
 
 
 def ride_as_body(water, rest, box):
-    """The same of an object in the sea's light, as a shot has it (plugin/render/object_place.cpp): it lies on the plane through the water at 15
+    """The same of an object in the sea's light, as a shot has it (core/evaluate/object_place.cpp): it lies on the plane through the water at 15
     places of its own box, in waves about as long as it is. box: the least and the most of it along its x axis, as seen from above, and to port."""
     heading = np.array(rest.col[0].xy)
     length = np.linalg.norm(heading)

@@ -338,13 +338,12 @@ std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& v
                 const KeyValue& each = (*entries)[i].values[k].second;
                 if (const auto* number = std::get_if<NumberKeys>(&each);
                     number && (number->keys.empty() || !inner.may_have_keys))
-                    return Problem{key.path + '[' + std::to_string(i) + "]." + inner.name,
-                                   value_text(inner, each),
-                                   inner.may_have_keys
-                                       ? "has no keys in it"
-                                       : "is a number's keys, and this key can't have any" +
-                                             why_no_keys(inner.path),
-                                   inner.accepted};
+                    return Problem{
+                        key.path + '[' + std::to_string(i) + "]." + inner.name, value_text(inner, each),
+                        inner.may_have_keys
+                            ? "has no keys in it"
+                            : "is a number's keys, and this key can't have any" + why_no_keys(inner.path),
+                        inner.accepted};
             }
     const auto is_unknown = [&](const std::string& word) {
         return std::find(key.choices.begin(), key.choices.end(), word) == key.choices.end();

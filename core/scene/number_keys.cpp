@@ -74,7 +74,8 @@ std::string why_no_keys(std::string_view path) {
     if (path == "sea.gust_size_m") return ": patches far away would race over the sea as they grow";
     if (path == "waves.choppiness" || path == "waves.lean_deg" || path == "waves.second_order")
         return ": where waves break, what that leaves and all bounds are those of one displacement";
-    if (path.find("[]") != std::string_view::npos || path.starts_with("shot.") || path.starts_with("quality.") || path.starts_with("output."))
+    if (path.find("[]") != std::string_view::npos || path.starts_with("shot.") ||
+        path.starts_with("quality.") || path.starts_with("output."))
         return ": it is one for the whole shot";
     return " yet";
 }

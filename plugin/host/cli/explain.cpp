@@ -138,10 +138,10 @@ void print_keyed(const Scene& scene) {
         const Key& key = key_of(number.path);
         std::cout << number.path << " has "
                   << count_text(static_cast<long>(number.keys.keys.size()), "key", "keys") << ", "
-                  << word_of(number.keys.interpolation) << ": " << value_text(key, number_of(first, number.path))
-                  << " at frame " << scene.shot.first_frame << ", "
-                  << value_text(key, number_of(last, number.path))
-                  << " at frame " << scene.shot.last_frame << ".\n";
+                  << word_of(number.keys.interpolation) << ": "
+                  << value_text(key, number_of(first, number.path)) << " at frame " << scene.shot.first_frame
+                  << ", " << value_text(key, number_of(last, number.path)) << " at frame "
+                  << scene.shot.last_frame << ".\n";
     }
     if (!scene.keyed.empty())
         std::cout << "Pictures meter each frame's light; where the sky changes each bakes its own"

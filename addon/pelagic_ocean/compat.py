@@ -144,6 +144,12 @@ def blend_by_samples(material):
         material.blend_method, material.shadow_method = "HASHED", "NONE"
 
 
+def blend_by_threshold(material):
+    """Lets EEVEE leave out a material where it is transparent, and nowhere else. Since 4.2 it does."""
+    if not hasattr(material, "surface_render_method"):
+        material.blend_method = "CLIP"
+
+
 def reads_volumes_once():
     """Whether a volume's file that was read shows as it was then until Blender ends, though it is written anew: measured so in
     4.3.2 and 5.2.2, and in 3.4.1 not."""

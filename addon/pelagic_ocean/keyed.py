@@ -133,6 +133,8 @@ def keys_of(settings):
     """Of settings by frame: {path: keys} of numbers that change and may have keys, and the paths of what else changes."""
     keys, others = {}, []
     for field, *values in zip(FIELDS, *settings.values()):
+        if all(value == values[0] for value in values):
+            continue
         numbers = numbers_in(field, values[0]) if field in SETTINGS and _are_alike(field, values) else []
         for number in numbers:
             frames, of_number, is_angle = list(settings), [number.of(value) for value in values], number.field.key["is_angle"]

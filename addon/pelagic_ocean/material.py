@@ -36,6 +36,7 @@ def cut_hulls(material):
     nodes, links = material.node_tree.nodes, material.node_tree.links
     if HULLS in nodes:
         return
+    compat.blend_by_threshold(material)
     dry, inside, nothing = (nodes.new(kind) for kind in ("ShaderNodeAttribute", "ShaderNodeMath", "ShaderNodeBsdfTransparent"))
     dry.attribute_name = "dry"
     inside.name = inside.label = HULLS

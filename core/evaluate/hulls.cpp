@@ -132,8 +132,9 @@ void Hulls::meet(const Frame<T>& state, std::optional<int> query, const Points<T
     const auto rest_at = [&](std::size_t i) {
         return rest_m_ ? rest_m_(points.origin_m + glm::dvec2(points.rest_m[i])) : 0.0;
     };
-    // Of places at rest the water may be elsewhere.
-    const double slack_m = positions_m.empty() ? state.sea().plan().from->extent.reach_m : 0.0;
+    // Of places at rest the water may be elsewhere, and the hull higher or lower.
+    const Extent& extent = state.sea().plan().from->extent;
+    const double slack_m = positions_m.empty() ? std::hypot(extent.reach_m, extent.height_m) : 0.0;
     std::vector<char> is_near(points.count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {

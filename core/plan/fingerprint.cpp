@@ -129,7 +129,10 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
         const bool is_of_camera = output.has_surface && !plan.surface->is_constant();
         hash.add(weather_plan_text(plan, is_of_camera || output.volume));
     }
-    if (output.meets_hulls) hash.add(hulls_text(scene)).add(hulls_text(plan));
+    if (output.meets_hulls) {
+        const bool has_foam = output.row->kind == OutputKind::Mesh || output.row->kind == OutputKind::Map;
+        hash.add(hulls_text(scene, has_foam)).add(hulls_text(plan));
+    }
     return hash.text();
 }
 

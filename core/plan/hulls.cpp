@@ -14,14 +14,15 @@ namespace pelagic {
 static constexpr const char* kHullsQuery = "hulls";
 
 double contact_level_m(double foam_m) {
-    return first_level_m(foam_m);
+    constexpr double kFinest_m = 0.05;  // finer water tells a hull nothing that is seen
+    return first_level_m(std::max(foam_m, kFinest_m));
 }
 
 std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
     std::set<double> levels_m;
     for (const std::size_t i : hulls_of(scene)) {
         const SceneObject& object = scene.objects[i];
-        if (!has_places) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
+        if (!has_places && object.foam > 0.0) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
         if (!object.floats) continue;
         const double below_m = level_below_m(floating_cell_m(object));
         levels_m.insert({below_m, 2.0 * below_m});

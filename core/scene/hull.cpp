@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -373,22 +372,19 @@ double Hull::above_bottom_m(const glm::dvec3& place) const {
 
 std::shared_ptr<const Hull> hull_of(const ObjectMesh& mesh) {
     static std::mutex mutex;
-    static std::map<std::string, std::weak_ptr<const Hull>> known;
-    static std::deque<std::shared_ptr<const Hull>> last;
+    static auto& known = *new std::map<std::string, std::weak_ptr<const Hull>>;  // by the meshes' content
     {
         const std::lock_guard lock(mutex);
+        if (mesh.hull_) return mesh.hull_;
         if (const auto found = known.find(mesh.content()); found != known.end())
-            if (auto hull = found->second.lock()) return hull;
+            if (auto hull = found->second.lock()) return mesh.hull_ = std::move(hull);
     }
     // Without the lock: a thread that waits inside for the others may be given work that asks for the same.
-    const auto made = std::make_shared<const Hull>(mesh);
+    auto made = std::make_shared<const Hull>(mesh);
     const std::lock_guard lock(mutex);
     std::erase_if(known, [](const auto& of) { return of.second.expired(); });
     known[mesh.content()] = made;
-    constexpr std::size_t kKept = 4;
-    last.push_back(made);
-    if (last.size() > kKept) last.pop_front();
-    return made;
+    return mesh.hull_ = std::move(made);
 }
 
 std::vector<std::size_t> hulls_of(const Scene& scene) {
@@ -399,14 +395,14 @@ std::vector<std::size_t> hulls_of(const Scene& scene) {
     return hulls;
 }
 
-std::string hulls_text(const Scene& scene) {
+std::string hulls_text(const Scene& scene, bool has_foam) {
     std::string text;
     for (const std::size_t i : hulls_of(scene)) {
         const SceneObject& object = scene.objects[i];
         text += "hull 1 " + object.mesh->content();
         for (const double value :
              {object.east_m, object.north_m, object.up_m, object.heading_deg, object.pitch_deg,
-              object.roll_deg, object.scale, object.floats ? 1.0 : 0.0, object.foam})
+              object.roll_deg, object.scale, object.floats ? 1.0 : 0.0, has_foam ? object.foam : 0.0})
             text += ' ' + number_text(value);
         std::string path = object.path;
         CameraInterpolation interpolation = object.interpolation;

@@ -54,13 +54,13 @@ class Hull {
     std::vector<float> bottom_m_;    // row, column
 };
 
-// Made once of a mesh's content, and kept while somebody has it; the last few for a while longer. Any thread.
+// Made once of a mesh, which keeps it; equal meshes share it. Any thread.
 std::shared_ptr<const Hull> hull_of(const ObjectMesh& mesh);
 
 // The objects that keep water out, in their order: indices into Scene::objects.
 std::vector<std::size_t> hulls_of(const Scene& scene);
-// What the sea's files have of them: where they are and what they are like, but not how they look. Empty where none keeps water out.
-std::string hulls_text(const Scene& scene);
+// What the sea's files have of them: where they are and what they are like, but not how they look; has_foam: and their foam. Empty where none keeps water out.
+std::string hulls_text(const Scene& scene, bool has_foam);
 
 // What all of them hold [bytes].
 std::size_t hulls_bytes(const Scene& scene);

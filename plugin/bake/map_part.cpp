@@ -436,11 +436,17 @@ class MapPart final : public OutputPart {
               &ages_s = slot.values.numbers(Product::FoamAge);
         if (ages_s.empty()) return {};
         const std::vector<float>& total = slot.values.numbers(Product::Coverage);
+        // Of what is as little as rounding the quotient below would be any age.
+        constexpr double kLives = 10.0;  // of a wake's foam: e⁻¹⁰ is left
+        const auto oldest_s =
+            static_cast<float>(std::max(plan_.foam ? plan_.foam->window_s : 0.0, kLives * kWakeBeaten_s));
         std::vector<glm::vec3> left(total.size());  // the residual's share of the rest, its times total age
         for (std::size_t i = 0; i < total.size(); ++i) {
             const float active = breaking[i], rest = 1.0f - active;
             const float residual = rest > 0.0f ? (total[i] - active) / rest : 0.0f;
-            const float age_s = total[i] > active ? ages_s[i] * total[i] / (total[i] - active) : 0.0f;
+            const float age_s = total[i] > active
+                                    ? std::min(ages_s[i] * total[i] / (total[i] - active), oldest_s)
+                                    : 0.0f;
             left[i] = {residual, residual * age_s, 0.0f};
         }
         std::vector<std::vector<glm::vec3>> levels;
@@ -465,11 +471,16 @@ class MapPart final : public OutputPart {
                    std::vector<std::vector<glm::vec3>>& foam) const {
         const auto add_level = [&](std::size_t level, std::span<const glm::vec3> hulls) {
             for (std::size_t i = 0; i < hulls.size(); ++i) {
-                texels[level][i].x = beside_hulls(texels[level][i].x, hulls[i]);
+                float& whole = texels[level][i].x;
+                const float before = whole;
+                whole = beside_hulls(whole, hulls[i]);
                 if (foam.empty()) continue;
                 glm::vec3& parts = foam[level][i];
                 parts.x = beside_hulls(parts.x, hulls[i]);
+                const float old_share = before > 0.0f ? parts.y / before : 0.0f;
                 parts.y *= hulls[i].x - hulls[i].y;
+                // Of all foam: what is new makes it younger.
+                if (old_share > 0.0f && whole > 0.0f) parts.z *= parts.y / whole / old_share;
             }
         };
         add_level(0, slot.hulls);

@@ -1,5 +1,6 @@
 // The mesh: a layer for each frame, as a crate or as text, and beside them the layers that say what varies.
 #include <algorithm>
+#include <limits>
 #include <array>
 #include <cmath>
 #include <span>
@@ -212,7 +213,7 @@ class MeshPart final : public OutputPart {
         if (!at.normal.empty()) points.rest_normal = {at.normal.data()};
         state.runner.run(sea, output_.query, points, slot.values, watch);
         raise_by(slot.values.vectors(Product::Position), at.height_m);
-        if (meets_hulls()) meet_hulls(sea.frame(), frame, points, slot);
+        if (meets_hulls()) meet_hulls(sea.frame(), frame, points, at, slot);
         if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
         if (at.curvature_per_m != 0.0)
             lay_on_earth(at, slot.origin_m, slot.values);
@@ -223,10 +224,25 @@ class MeshPart final : public OutputPart {
 
     // Positions are still those of the flat sea, relative to the points' origin.
     template <class T>
-    void meet_hulls(const Frame<T>& sea, int frame, const Points<T>& points, MeshSlot& slot) {
+    void meet_hulls(const Frame<T>& sea, int frame, const Points<T>& points, const RestPoints<T>& at,
+                    MeshSlot& slot) {
+        RestHeight rest_m;
+        if (!at.height_m.empty())
+            rest_m = [&](glm::dvec2 place_m) {  // the nearest point's
+                std::size_t nearest = 0;
+                double least = std::numeric_limits<double>::infinity();
+                for (std::size_t i = 0; i < at.rest_m.size(); ++i) {
+                    const glm::dvec2 way = at.origin_m + glm::dvec2(at.rest_m[i]) - place_m;
+                    if (const double square = glm::dot(way, way); square < least) {
+                        least = square;
+                        nearest = i;
+                    }
+                }
+                return static_cast<double>(at.height_m[nearest]);
+            };
         slot.wet.resize(points.count);
         std::vector<float> foam(asks(Product::Coverage) ? points.count : 0);
-        hulls_at(sea, frame)
+        hulls_at(sea, frame, std::move(rest_m))
             .meet(sea, hulls_query(), points, query().cell_m.front(),
                   {slot.values.vectors(Product::Position), slot.values.vectors(Product::Velocity)},
                   {slot.wet, foam});

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/effects/sea_at_time.h"
@@ -82,11 +83,11 @@ class OutputPart {
 
   protected:
     const Scene& scene() const { return plan_.from->scene; }
-    // Those of a frame: of the sea at its time; only where meets_hulls().
+    // Those of a frame: of the sea at its time; only where meets_hulls(). rest_m must last as long as they are asked.
     template <class T>
-    const Hulls& hulls_at(const Frame<T>& sea, int frame) {
+    const Hulls& hulls_at(const Frame<T>& sea, int frame, RestHeight rest_m = {}) {
         if (!hulls_) hulls_.emplace(scene());
-        hulls_->place(sea, hulls_query(), frame);
+        hulls_->place(sea, hulls_query(), frame, std::move(rest_m));
         return *hulls_;
     }
     std::optional<int> hulls_query() const { return pelagic::hulls_query(plan_); }

@@ -5,12 +5,20 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pelagic/version.h"
 
 namespace pelagic {
+
+class Hull;  // where a mesh keeps the water out (core/scene/hull.h)
+inline namespace PELAGIC_VERSION_NAMESPACE {
+class ObjectMesh;
+}
+std::shared_ptr<const Hull> hull_of(const ObjectMesh& mesh);
+
 inline namespace PELAGIC_VERSION_NAMESPACE {
 
 // What a part of a body is made of; colours are linear Rec. 709.
@@ -52,6 +60,9 @@ class ObjectMesh {
     glm::dvec3 least_m_{0.0}, most_m_{0.0};
     std::string content_;
     std::vector<std::string> notes_;
+
+    friend std::shared_ptr<const Hull>(::pelagic::hull_of)(const ObjectMesh& mesh);
+    mutable std::shared_ptr<const Hull> hull_;
 };
 
 }  // namespace PELAGIC_VERSION_NAMESPACE

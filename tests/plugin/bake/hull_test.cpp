@@ -169,6 +169,22 @@ Scene at_sea() {
     return scene;
 }
 
+// However many there are: a plan asks for them a dozen times.
+TEST(Hull, IsKeptByItsMesh) {
+    std::vector<std::shared_ptr<const ObjectMesh>> meshes;
+    std::vector<std::weak_ptr<const Hull>> hulls;
+    for (int i = 0; i < 9; ++i) {
+        meshes.push_back(barge({4.0f + 0.1f * static_cast<float>(i), 2.0f, 1.0f}));
+        hulls.emplace_back(hull_of(*meshes.back()));
+    }
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(hull_of(*meshes[i]), hulls[i].lock()) << i;
+    const auto equal = barge({4.0f, 2.0f, 1.0f});
+    EXPECT_EQ(hull_of(*equal), hulls[0].lock());
+    meshes.clear();
+    EXPECT_TRUE(hulls[1].expired());
+    EXPECT_FALSE(hulls[0].expired());
+}
+
 TEST(Hulls, AreWherePicturesHaveThem) {
     for (const bool floats : {false, true}) {
         Scene scene = at_sea();
@@ -369,6 +385,113 @@ TEST_F(HullBakes, LeaveWaterAndFoamOutOfThem) {
     EXPECT_GT(gone, 0.0);
 }
 
+// What is lifted by the waves is still looked for in maps, whose texels know where they rest alone.
+TEST_F(HullBakes, FindsAHullThatHeavesInMaps) {
+    Scene scene = at_sea();
+    scene.objects[0] = {.name = "buoy", .file = "b.obj", .mesh = barge({1.0f, 1.0f, 1.0f}), .floats = true};
+    scene.waves.choppiness = 0.05;
+    scene.shot.fps = 2.0;
+    scene.shot.last_frame = 12;
+    scene.sea.wind_speed_mps = 22.0;
+    scene.output.mesh = MeshFormat::None;
+    scene.output.maps = {MapKind::Whitecaps};
+    scene.output.map_resolution = 96;
+    const fs::path folder = baked(scene, {}, "out");
+    Scene empty = scene;
+    empty.objects.clear();
+    const fs::path plain = baked(empty, {}, "plain");
+    for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame) {
+        const std::string file = "maps/sea.whitecaps." + std::string(4 - std::to_string(frame).size(), '0') +
+                                 std::to_string(frame) + ".exr";
+        const Plane with = read_level(folder / file, "R", 0), without = read_level(plain / file, "R", 0);
+        int changed = 0;
+        for (int j = 0; j < with.n; ++j)
+            for (int i = 0; i < with.n; ++i) changed += with.at(i, j) != without.at(i, j);
+        EXPECT_GT(changed, 4) << frame;
+    }
+}
+
+// A cage lies as high as it is drawn, and so does what floats in it.
+TEST_F(HullBakes, FloatOnACageThatIsRaised) {
+    const auto cage_at = [](double height_m) {
+        CageMesh mesh;
+        constexpr int kFaces = 8;
+        for (int y = 0; y <= kFaces; ++y)
+            for (int x = 0; x <= kFaces; ++x)
+                mesh.points_m.emplace_back(6.0 * (x - 0.5 * kFaces), 6.0 * (y - 0.5 * kFaces), height_m);
+        for (int y = 0; y < kFaces; ++y)
+            for (int x = 0; x < kFaces; ++x) {
+                const int corner = y * (kFaces + 1) + x;
+                mesh.face_counts.push_back(4);
+                mesh.indices.insert(mesh.indices.end(),
+                                    {corner, corner + 1, corner + kFaces + 2, corner + kFaces + 1});
+            }
+        return std::make_shared<const Cage>(std::move(mesh));
+    };
+    const auto dry_at = [&](double height_m, const char* into) {
+        Scene scene = at_sea();
+        scene.surface.kind = SurfaceKind::Cage;
+        scene.surface.cage = cage_at(height_m);
+        const std::vector<float> wet = numbers(mesh(baked(scene, {1}, into)), "primvars:wet");
+        return std::ranges::count(wet, 0.0f);
+    };
+    const auto at_rest = dry_at(0.0, "low");
+    EXPECT_GT(at_rest, 20);
+    EXPECT_NEAR(static_cast<double>(dry_at(20.0, "high")), static_cast<double>(at_rest), 2.0);
+}
+
+// Contact foam is new: the foam's age, a mean, gets less where it is, and what was old there is no more than before.
+TEST_F(HullBakes, ContactFoamMakesFoamYounger) {
+    Scene scene = at_sea();
+    scene.sea.wind_speed_mps = 20.0;
+    scene.effects.foam_decay_s = 4.0;
+    scene.output.mesh = MeshFormat::None;
+    scene.output.maps = {MapKind::Whitecaps};
+    scene.output.map_resolution = 96;
+    Scene without = scene;
+    without.objects[0].foam = 0.0;
+    const fs::path folder = baked(scene, {2}, "out"), plain = baked(without, {2}, "plain");
+    const auto level = [](const fs::path& of, const char* name) {
+        return read_level(of / "maps/sea.whitecaps.0002.exr", name, 0);
+    };
+    const Plane foam = level(folder, "R"), before = level(plain, "R"), age = level(folder, "foamAge"),
+                age_before = level(plain, "foamAge");
+    int younger = 0;
+    for (int j = 0; j < foam.n; ++j)
+        for (int i = 0; i < foam.n; ++i) {
+            const double old = static_cast<double>(foam.at(i, j)) * static_cast<double>(age.at(i, j)),
+                         old_before = static_cast<double>(before.at(i, j)) *
+                                      static_cast<double>(age_before.at(i, j));
+            ASSERT_LE(old, old_before * 1.01 + 1e-3) << i << ' ' << j;
+            younger += foam.at(i, j) > 2.0f * before.at(i, j) && age_before.at(i, j) > 0.1f &&
+                       age.at(i, j) < 0.6f * age_before.at(i, j);
+        }
+    EXPECT_GT(younger, 5);
+}
+
+// A wake's foam that is next to none beside what breaks: its age is a quotient of roundings, and was 141,034 s, which no half holds.
+TEST_F(HullBakes, AWakesFoamHasAnAgeInMaps) {
+    Scene scene = at_sea();
+    scene.objects.clear();
+    scene.sea.wind_speed_mps = 16.0;
+    scene.shot.first_frame = 1;
+    scene.surface.size_m = 100.0;
+    scene.waves.vessels = {{.path = "1 -20 0, 200 30 0"}};
+    scene.waves.vessels[0].length_m = 26.0;
+    scene.waves.vessels[0].beam_m = 7.0;
+    scene.waves.vessels[0].draught_m = 3.0;
+    scene.effects.foam_decay_s = Scene{}.effects.foam_decay_s;
+    scene.output.mesh = MeshFormat::None;
+    scene.output.maps = {MapKind::Whitecaps};
+    scene.output.map_resolution = 256;
+    const fs::path folder = baked(scene, {1}, "wake");
+    for (int level = 0; level < 5; ++level) {
+        const Plane age = read_level(folder / "maps/sea.whitecaps.0001.exr", "foamAge", level);
+        for (int j = 0; j < age.n; ++j)
+            for (int i = 0; i < age.n; ++i) ASSERT_LE(age.at(i, j), 901.0f) << level;
+    }
+}
+
 TEST(HullDrops, StartInNone) {
     Scene scene = at_sea();
     scene.sea.wind_speed_mps = 22.0;
@@ -447,13 +570,14 @@ TEST(HullFingerprints, HaveThemWhereTheyChangeSomething) {
     scene.output.volumes = {VolumeKind::LevelSet, VolumeKind::Spray};
     const auto with = fingerprints(scene);
     const auto expect_other = [&](const char* what, const std::function<void(SceneObject&)>& change,
-                                  bool is_other) {
+                                  bool is_other, bool is_of_foam = false) {
         Scene changed = scene;
         change(changed.objects[0]);
         const auto now = fingerprints(changed);
         ASSERT_EQ(now.size(), with.size());
         for (std::size_t i = 0; i < with.size(); ++i) {
-            const bool is_of_all = with[i].first == "map displacement" || with[i].first == "map normal";
+            const bool is_of_all = with[i].first == "map displacement" || with[i].first == "map normal" ||
+                                   (is_of_foam && with[i].first.starts_with("volume"));
             EXPECT_EQ(now[i].second != with[i].second, is_other && !is_of_all)
                 << what << ", " << with[i].first;
         }
@@ -461,7 +585,7 @@ TEST(HullFingerprints, HaveThemWhereTheyChangeSomething) {
     expect_other(
         "place", [](SceneObject& o) { o.east_m = 1.0; }, true);
     expect_other(
-        "foam", [](SceneObject& o) { o.foam = 0.5; }, true);
+        "foam", [](SceneObject& o) { o.foam = 0.5; }, true, true);
     expect_other(
         "floats", [](SceneObject& o) { o.floats = false; }, true);
     expect_other(

@@ -287,12 +287,14 @@ TEST_F(Pictures, RenderRefusesWhatItCannotDoBeforeItBegins) {
         refused({"render", "small.toml", std::string("--samples=") + samples}, 2, {"--samples"});
     refused({"render", "small.toml", "--sky-quality", "ten"}, 2,
             {"\"ten\"", "accepted: one, nine, integral"});
-    for (const char* overscan : {"", "51%", "-1", "1.5", "49", "10 %", "nan%"})
+    for (const char* overscan : {"51%", "-1", "1.5", "49", "10 %", "nan%"})
         refused({"render", "small.toml", std::string("--overscan=") + overscan}, 2,
                 {"overscan", "accepted: "});
     refused({"render", "small.toml", "--overscan", "14"}, 2, {"overscan of 14,14", "24,13, is accepted"});
-    for (const char* region : {"", "0,0,9", "0,0,9,9,9", "0,0,49,27", "-1,0,9,9", "9,9,9,12", "a,b,c,d"})
+    for (const char* region : {"0,0,9", "0,0,9,9,9", "0,0,49,27", "-1,0,9,9", "9,9,9,12", "a,b,c,d"})
         refused({"render", "small.toml", std::string("--region=") + region}, 2, {"region", "accepted"});
+    for (const char* window : {"--overscan", "--region"})
+        refused({"render", "small.toml", std::string(window) + '='}, 2, {window, "missing"});
     for (const char* stops : {"31", "-31", "nan", "inf"})
         refused({"render", "small.toml", std::string("--exposure=") + stops}, 2, {"exposure", "-30 to 30"});
     for (const char* frames : {"0", "5", "3-1", "x"})

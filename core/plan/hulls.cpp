@@ -22,7 +22,7 @@ std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
     std::set<double> levels_m;
     for (const std::size_t i : hulls_of(scene)) {
         const SceneObject& object = scene.objects[i];
-        if (!has_places && object.foam > 0.0) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
+        if (!has_places) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
         if (!object.floats) continue;
         const double below_m = level_below_m(floating_cell_m(object));
         levels_m.insert({below_m, 2.0 * below_m});

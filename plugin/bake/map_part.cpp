@@ -444,9 +444,8 @@ class MapPart final : public OutputPart {
         for (std::size_t i = 0; i < total.size(); ++i) {
             const float active = breaking[i], rest = 1.0f - active;
             const float residual = rest > 0.0f ? (total[i] - active) / rest : 0.0f;
-            const float age_s = total[i] > active
-                                    ? std::min(ages_s[i] * total[i] / (total[i] - active), oldest_s)
-                                    : 0.0f;
+            const float age_s =
+                total[i] > active ? std::min(ages_s[i] * total[i] / (total[i] - active), oldest_s) : 0.0f;
             left[i] = {residual, residual * age_s, 0.0f};
         }
         std::vector<std::vector<glm::vec3>> levels;

@@ -1,8 +1,8 @@
 // The mesh: a layer for each frame, as a crate or as text, and beside them the layers that say what varies.
 #include <algorithm>
-#include <limits>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core/scene/names.h"

@@ -338,7 +338,8 @@ void write_materialx_surface(Page& page, const Stage& stage, const std::string& 
     }
     if (slopes) write_microfacets(network);
     if (stage.attributes.wet) {
-        network.node("Wet", "ND_geompropvalue_float", "float", {{"string", "geomprop", "\"wet\""}, {"float", "default", "1"}});
+        network.node("Wet", "ND_geompropvalue_float", "float",
+                     {{"string", "geomprop", "\"wet\""}, {"float", "default", "1"}});
         network.node("Opacity", "ND_ifgreatereq_color3", "color3f",
                      {{"float", "value1", "Wet", true},
                       {"float", "value2", "0.5"},

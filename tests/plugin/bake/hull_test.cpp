@@ -460,9 +460,11 @@ TEST_F(HullBakes, ContactFoamMakesFoamYounger) {
     for (int j = 0; j < foam.n; ++j)
         for (int i = 0; i < foam.n; ++i) {
             const double old = static_cast<double>(foam.at(i, j)) * static_cast<double>(age.at(i, j)),
-                         old_before = static_cast<double>(before.at(i, j)) *
-                                      static_cast<double>(age_before.at(i, j));
-            ASSERT_LE(old, old_before * 1.01 + 1e-3) << i << ' ' << j << ' ' << foam.at(i, j) << ' ' << before.at(i, j) << ' ' << age.at(i, j) << ' ' << age_before.at(i, j);
+                         old_before =
+                             static_cast<double>(before.at(i, j)) * static_cast<double>(age_before.at(i, j));
+            ASSERT_LE(old, old_before * 1.01 + 1e-3)
+                << i << ' ' << j << ' ' << foam.at(i, j) << ' ' << before.at(i, j) << ' ' << age.at(i, j)
+                << ' ' << age_before.at(i, j);
             younger += foam.at(i, j) > 2.0f * before.at(i, j) && age_before.at(i, j) > 0.1f &&
                        age.at(i, j) < 0.6f * age_before.at(i, j);
         }

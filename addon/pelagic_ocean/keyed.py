@@ -242,6 +242,19 @@ def of_numbers(settings, paths):
     return {number.path: number.of(settings[PLACE[number.setting.path]]) for number in numbers_of(settings) if number.path in paths}
 
 
+def remove_row(obj, path, row):
+    """Takes what animates an entry of a list away with it, and leaves the later ones theirs. path: the list's, "sea.swell"."""
+    for curves in (compat.curves(obj), obj.animation_data.drivers if obj.animation_data else []):
+        for curve in list(curves):
+            entry = ENTRY.fullmatch(curve.data_path)
+            if entry is None or entry[1] != f"pelagic.{path}" or int(entry[2]) < row:
+                continue
+            if int(entry[2]) == row:
+                curves.remove(curve)
+            else:
+                curve.data_path = f"{entry[1]}[{int(entry[2]) - 1}].{entry[3]}"
+
+
 def keyframe(obj, shot):
     """Gives an ocean the F-curves of a shot's numbers that have keys."""
     for number, of_shot in numbers_with_keys(shot):

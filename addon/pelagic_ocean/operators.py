@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from . import cages, compat, look, meshes, ocean, play
+from . import cages, compat, keyed, look, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import BY_PATH
 
@@ -218,6 +218,7 @@ class PELAGIC_OT_list_remove(ListOperator, bpy.types.Operator):
         if not 0 <= self.index < len(rows):
             return {"CANCELLED"}
         rows.remove(self.index)
+        keyed.remove_row(context.object, self.path, self.index)
         context.object.update_tag()
         return {"FINISHED"}
 

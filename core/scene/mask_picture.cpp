@@ -69,6 +69,7 @@ MaskPicture::MaskPicture(int width, int height, std::vector<float> shares)
 std::shared_ptr<const MaskCells> MaskPicture::cells(glm::ivec2 count) const {
     count = {std::clamp(count.x, 1, size_.x), std::clamp(count.y, 1, size_.y)};
     const std::lock_guard<std::mutex> lock(lock_);
+    std::erase_if(made_, [](const auto& each) { return each.second.expired(); });
     std::weak_ptr<const MaskCells>& kept = made_[{count.x, count.y}];
     if (auto known = kept.lock()) return last_ = std::move(known);
     auto made = std::make_shared<MaskCells>();

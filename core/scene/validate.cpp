@@ -545,8 +545,7 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
             refuse("changes with the sea's time, which stands still",
                    "a number, or a shot.time_scale of at least " + number_text(kSlowest));
         if (effects.whitecaps && effects.spray && effects.spray_drops)
-            refuse("changes, and drops of spray fly with one wind",
-                   "a number, or effects.spray_drops = false");
+            refuse("changes, and drops of spray fly in one sea", "a number, or effects.spray_drops = false");
         if (!scene.waves.heroes.empty())
             refuse("changes, and hero waves stand in one sea", "a number, or no waves.heroes");
         return;

@@ -19,8 +19,8 @@ struct SpraySlot final : OutputSlot {
     std::vector<float> heights_m, breaking;
     std::vector<glm::vec3> shares;
     std::vector<float> lifts_m;
-    SprayLaw law;  // of the moment
-    double wind_mps = 0.0;
+    SprayLaw law;                        // of the moment
+    double wind_mps = 0.0, top_m = 0.0;  // top_m: of the spray, over the sea
     std::string file;
 };
 
@@ -33,9 +33,7 @@ double mean_profile(double scale_m, double from_m, double to_m) {
 
 class SprayPart final : public VolumePart {
   public:
-    SprayPart(const Plan& plan, const PlannedOutput& output)
-        : VolumePart(plan, output),
-          top_m_(spray_top_m(spray_law(scene(), plan.from->extent.significant_height_m))) {
+    SprayPart(const Plan& plan, const PlannedOutput& output) : VolumePart(plan, output) {
         const int columns = voxels_a_side(scene());
         const double half_m = 0.5 * size_m();
         for (int i = 0; i < columns; ++i) {
@@ -92,6 +90,7 @@ class SprayPart final : public VolumePart {
         const SprayVeil veil(sea);
         const PreparedScene& now = *sea.sea().plan().from;
         slot.law = spray_law(now.scene, now.extent.significant_height_m);
+        slot.top_m = spray_top_m(slot.law);
         slot.wind_mps = now.scene.sea.wind_speed_mps;
         std::vector<glm::dvec3> shares;
         std::vector<double> cells_m, lifts_m;
@@ -177,7 +176,7 @@ class SprayPart final : public VolumePart {
                 if (extinction_per_m(slot, x, y) == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 low = std::min(low, static_cast<int>(std::floor(height_m / voxel_m())));
-                high = std::max(high, static_cast<int>(std::floor((height_m + top_m_) / voxel_m())));
+                high = std::max(high, static_cast<int>(std::floor((height_m + slot.top_m) / voxel_m())));
             }
         if (low > high) return;
         const auto block_of = [](int voxel) {
@@ -206,7 +205,7 @@ class SprayPart final : public VolumePart {
                     const double from_m = (first.z + k) * voxel_m() - height_m, to_m = from_m + voxel_m();
                     const auto value =
                         static_cast<float>(mean_over(slot.law, extinction, from_m, to_m, lift_m));
-                    if (!(value > 0.0f) || from_m > top_m_) continue;
+                    if (!(value > 0.0f) || from_m > slot.top_m) continue;
                     const std::size_t at = vdb::index_in_block(i, j, k);
                     thick.active[at] = moved.active[at] = true;
                     thick.values[at] = value;
@@ -238,7 +237,7 @@ class SprayPart final : public VolumePart {
                 if (extinction == glm::dvec3(0.0)) continue;
                 const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
                 const double top_m =
-                    (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
+                    (std::floor((height_m + slot.top_m) / voxel_m()) + 1.0) * voxel_m() - height_m;
                 spray.optical_thickness += mean_over(slot.law, extinction, 0.0, top_m,
                                                      static_cast<double>(slot.lifts_m[y * columns() + x])) *
                                            top_m;
@@ -248,7 +247,6 @@ class SprayPart final : public VolumePart {
         return spray;
     }
 
-    double top_m_;                            // over the sea, at the shot's highest
     std::vector<double> middles_m_, widths_;  // of columns along a side, within the square; widths in voxels
     mutable std::mutex encoding_;
 };

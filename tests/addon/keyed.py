@@ -215,6 +215,20 @@ with checking("a swell and a band's gain with keyframes: the core's sea, out of 
     again, _ = exported(bpy.context.object)
     assert {number.path: dict(keys["keys"]) for number, keys in keyed.numbers_with_keys(again)} == wanted
 
+with checking("an entry that is removed takes its keyframes along, and the later ones keep theirs"):
+    obj = ocean_of(last=20)
+    for _ in range(3):
+        bpy.ops.pelagic.list_add(path="sea.swell")
+    for row, ends in ((0, (1.0, 2.0)), (2, (0.5, 3.0))):
+        for frame, height in zip((1, 20), ends):
+            obj.pelagic.sea.swell[row].height_m = height
+            obj.keyframe_insert(f"pelagic.sea.swell[{row}].height_m", frame=frame)
+    bpy.ops.pelagic.list_remove(path="sea.swell", index=0)
+    assert [curve.data_path for curve in compat.curves(obj)] == ["pelagic.sea.swell[1].height_m"]
+    assert abs(curve_of(obj, "sea.swell[1].height_m").evaluate(20) - 3.0) < 1e-6
+    bpy.ops.pelagic.list_remove(path="sea.swell", index=1)
+    assert not len(compat.curves(obj))
+
 for file in ("rising.toml", "sunset.toml"):
     with checking(f"{file} comes in with its keys, and goes out with them"):
         fresh_file()

@@ -607,8 +607,8 @@ class Preview {
     void show_objects() {
         const auto ready = sea_.newest_objects();
         if (!ready || !sky_) return renderer_.set_objects({}, {});
-        renderer_.set_objects(*ready, object_surroundings(controls_.draw.lighting, sky_->sky, water_,
-                                                          law_coverage(controls_.scene)));
+        renderer_.set_objects(
+            *ready, object_surroundings(controls_.draw.lighting, sky_->sky, water_, law_coverage(now_)));
     }
 
     // The spray before the last camera for which it is ready, and its drops.
@@ -617,7 +617,7 @@ class Preview {
         const std::shared_ptr<const Spray> ready = sea_.newest_spray();
         if (!ready || !sky_) return;
         Spray spray = *ready;
-        light_spray(spray, controls_.draw.lighting, sky_->sky, water_, law_coverage(controls_.scene));
+        light_spray(spray, controls_.draw.lighting, sky_->sky, water_, law_coverage(now_));
         // Drops fly on while later ones are computed, as long as that is nearly their way.
         constexpr double kLongest_s = 0.5;
         const std::shared_ptr<const LiveDrops> drops = sea_.newest_drops();

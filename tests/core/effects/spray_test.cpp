@@ -117,7 +117,6 @@ TEST(Spray, TheTearingHasTheMeanOne) {
     }
 }
 
-// Threads' generations take turns without a jump, and close a loop.
 // Of a wind that rises: as much as the moment's, torn by a noise that has come as far as the wind has blown.
 TEST(Spray, OfAWindThatChangesIsThatOfTheMoment) {
     for (const auto interpolation : {CameraInterpolation::Linear, CameraInterpolation::Smooth}) {
@@ -172,6 +171,7 @@ TEST(Spray, OfAWindThatChangesIsThatOfTheMoment) {
     }
 }
 
+// Threads' generations take turns without a jump, and close a loop.
 TEST(Spray, GenerationsTakeTurns) {
     for (const double loop_s : {0.0, 10.0}) {
         Scene scene = spray_scene(20.0);

@@ -449,7 +449,7 @@ TEST(Weather, IsRefusedWhereTheSeaIsOne) {
         std::string::npos);
     EXPECT_NE(problem([](Scene& scene) {
                   scene.effects.spray = scene.effects.spray_drops = true;
-              }).find("drops of spray fly with one wind"),
+              }).find("drops of spray fly in one sea"),
               std::string::npos);
     EXPECT_NE(problem([](Scene& scene) {
                   scene.waves.model = WaveModel::Trochoid;

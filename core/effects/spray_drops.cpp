@@ -13,6 +13,7 @@
 #include "core/evaluate/prepared_query.h"
 #include "core/plan/hulls.h"
 #include "core/plan/spray.h"
+#include "core/plan/weather.h"
 #include "core/plan/wind_profile.h"
 #include "core/waves/loop.h"
 #include "core/waves/whitecaps.h"
@@ -256,10 +257,10 @@ template <class T>
 void SprayDrops<T>::leave_out_of_hulls(std::vector<Parcel>& parcels, double time_s) {
     const Plan& plan = frame_->sea().plan();
     const Shot& shot = plan.from->scene.shot;
-    // The frame that shows this time; one of a sea that stands still is like the others.
-    const double frame = shot.time_scale > 0.0
-                             ? 1.0 + (time_s - shot.time_offset_s) / shot.time_scale * shot.fps
-                             : static_cast<double>(shot.first_frame);
+    // No frame shows a time of a sea that stands still: drops then start beside hulls as they are in the first, though one with a
+    // path of its own goes on.
+    const double frame =
+        shot.time_scale > 0.0 ? frame_at(shot, time_s) : static_cast<double>(shot.first_frame);
     hulls_->place(*frame_, hulls_query(plan), frame);
     std::erase_if(parcels, [&](const Parcel& parcel) { return hulls_->distance_m(parcel.from_m) < 0.0; });
 }

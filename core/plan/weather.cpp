@@ -49,11 +49,11 @@ std::string numbers_text(const Scene& scene, double frame) {
     return text;
 }
 
+}  // namespace
+
 double frame_at(const Shot& shot, double t_s) {
     return 1.0 + (t_s - shot.time_offset_s) / shot.time_scale * shot.fps;
 }
-
-}  // namespace
 
 Weather::Blend Weather::at(double t_s) const {
     const auto after = std::upper_bound(keys.begin(), keys.end(), t_s,

@@ -40,6 +40,9 @@ struct Weather {
     Blend at(double t_s) const;
 };
 
+// The frame that shows a time of the sea, also between two; shot.time_scale > 0.
+double frame_at(const Shot& shot, double t_s);
+
 // What a shot with weather is at a time: its plain numbers and its spectrum. Else the same as is given.
 std::shared_ptr<const PreparedScene> prepared_at(const std::shared_ptr<const PreparedScene>& shot,
                                                  double t_s);

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <span>
 
 #include <glm/vec3.hpp>

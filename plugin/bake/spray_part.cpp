@@ -88,10 +88,9 @@ class SprayPart final : public VolumePart {
         slot.lifts_m.resize(slot.heights_m.size());
         const double mean = mean_breaking(sea.sea());
         const SprayVeil veil(sea);
-        const PreparedScene& now = *sea.sea().plan().from;
-        slot.law = spray_law(now.scene, now.extent.significant_height_m);
+        slot.law = veil.law();
         slot.top_m = spray_top_m(slot.law);
-        slot.wind_mps = now.scene.sea.wind_speed_mps;
+        slot.wind_mps = veil.wind_speed_mps();  // 0 where there is none: nothing flies then
         std::vector<glm::dvec3> shares;
         std::vector<double> cells_m, lifts_m;
         for_each_row<T>(

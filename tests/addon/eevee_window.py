@@ -54,6 +54,8 @@ def run():
         # Red light is the most changed by the way up to a level eye: 1.35 in the colour for an eye at 45 degrees.
         assert (np.abs(ratio - 1.0) < (0.28, 0.1, 0.1)).all(), ratio
 
+    if not at_night():
+        return
     with checking("EEVEE shows a camera in it Snell's window, the water mirrored round it, and the floor, as bright as the core's pictures"):
         from pictures import core_layers
         from pelagic_ocean import diving, ocean

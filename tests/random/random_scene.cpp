@@ -27,13 +27,15 @@ namespace {
 
 constexpr std::string_view kEntries = "entries of a list", kFramesAfterTheFirst = "frames after the first",
                            kVoxelsASide = "voxels along a side",
-                           kAutomaticBytes = "bytes of automatic cascades";
+                           kAutomaticBytes = "bytes of automatic cascades",
+                           kDropsSide_m = "metres along a side of drops of spray";
 
 // For time alone: with all of these a scene takes some tens of milliseconds.
 constexpr Cap kCaps[] = {
     {kEntries, {0, 3}, "each swell is a spectrum of its own, each cascade a grid"},
     {kFramesAfterTheFirst, {0, 1}, "each frame is baked twice"},
     {kVoxelsASide, {1, 12}, "voxels grow with the cube"},
+    {kDropsSide_m, {1, 20}, "parcels start in cells of a metre, up to 256 a side, in ten intervals"},
     {kAutomaticBytes, {0, 2e6}, "automatic cascades are as fine as somebody looks: 2048² beside a lens"},
     {"waves.cascades[].resolution", {16, 64}, "transforms grow with the square"},
     {"waves.trains", {1, 100}, "each point sums all trains"},
@@ -579,6 +581,7 @@ class Drawing {
             for (const char* needed : {"effects.spray_drops", "effects.spray", "effects.whitecaps"})
                 give(needed, true);
             give("effects.spray_law", std::string("andreas-1998"));
+            give("surface.size_m", std::min(number("surface.size_m"), cap(kDropsSide_m).high));
         }
         const auto* volumes = list<std::vector<std::string>>("output.volumes");
         if (!volumes || volumes->empty()) return;

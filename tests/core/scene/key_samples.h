@@ -49,6 +49,9 @@ inline KeyEntry good_entry(const Key& list) {
         entry.values[1].second = 100.0;
     }
     if (list.path == "waves.band_gains") entry.values[2].second = 1.5;  // 1 changes nothing
+    if (list.path == "waves.masks")
+        for (auto& [name, value] : entry.values)
+            if (name == "waves") value = 0.5;  // and so here
     if (list.path == kObjectsKey) entry.values[0].second = std::string("folder/boat.obj");
     if (list.path == "camera.keys") entry.values[1].second = std::vector<double>{0.0, -60.0, 4.0};
     return entry;

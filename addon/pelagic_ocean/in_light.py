@@ -11,7 +11,7 @@ import math
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 from mathutils import Matrix
 
 from . import bodies, camera, catcher, compat, courses, floating, ocean
@@ -47,6 +47,9 @@ class PELAGIC_PG_in_light(bpy.types.PropertyGroup):
                                                   "draws it, its shadow and its mirror image")
     proxy: IntProperty(name="Triangles", default=100, min=1, max=100, subtype="PERCENTAGE",
                        description="How many of its triangles a shot has, by Blender's Decimate: all, or a share where the object is far")
+    buoyancy: EnumProperty(name="Buoyancy", description="How it floats in the pictures of a shot; in Blender it lies on the water", items=(
+        ("plane", "On the Water", "It lies on the water under it"),
+        ("response", "By Its Mass", "It answers late, and rolls on, as a ship as long, wide and deep does")))
 
 
 # ---- Out
@@ -93,7 +96,7 @@ def put(context, sea, scene, folder):
         file = folder / f"{_free(ocean.clean_name(obj.name), files)}.obj"
         light = bodies.write(shape, file)
         made.append(entry | {"file": str(file.absolute()), "name": _free(_name(obj.name), names), "floats": floating.is_afloat(obj),
-                             "holdout": obj.is_holdout, "glow_cd_m2": float(f"{1000.0 * light:.6g}")})
+                             "buoyancy": obj.pelagic_in_light.buoyancy, "holdout": obj.is_holdout, "glow_cd_m2": float(f"{1000.0 * light:.6g}")})
     scene.objects = [pelagic.SceneObject(**each) for each in made]
     return remarks
 
@@ -207,6 +210,7 @@ def add(context, shot, name):
                 point.interpolation = "LINEAR"
         obj.is_holdout = entry.holdout
         obj.pelagic_in_light.enabled = True
+        obj.pelagic_in_light.buoyancy = entry.buoyancy
         if entry.floats:
             obj.pelagic_float.enabled = True
         made.append(obj)
@@ -259,6 +263,8 @@ class InLightPanel:
             layout.use_property_split = True
             layout.active = context.object.pelagic_in_light.enabled
             layout.prop(context.object.pelagic_in_light, "proxy")
+            if floating.is_afloat(context.object):
+                layout.prop(context.object.pelagic_in_light, "buoyancy")
             return
         chosen = of_scene(context.scene)
         for obj in chosen:

@@ -67,7 +67,8 @@ GERMAN = {
     "Pelagic Bake (.json, .usda)": "Pelagic-Bake (.json, .usda)", "Play Pelagic Bake": "Pelagic-Bake abspielen",
     "Float": "Schwimmen lassen", "Float No More": "Nicht mehr schwimmen lassen", "Apply Preset": "Voreinstellung anwenden",
     "Delete Preset": "Voreinstellung löschen", "Save Preset": "Voreinstellung speichern", "Save…": "Speichern …",
-    "Add to Sea": "In die See setzen", "Take from Sea": "Aus der See nehmen", "Triangles": "Dreiecke", "Catches": "Fängt auf",
+    "Add to Sea": "In die See setzen", "Take from Sea": "Aus der See nehmen", "Triangles": "Dreiecke", "Buoyancy": "Auftrieb", "On the Water": "Auf dem Wasser",
+    "By Its Mass": "Nach seiner Masse", "Catches": "Fängt auf",
     "Shadow and Reflection Catcher": "Fänger für Schatten und Spiegelbild",
     "Make Wake": "Kielwasser machen", "Mask from Painted Mesh": "Maske aus bemaltem Netz", "Release Mesh": "Netz freigeben", "Replace Ocean Modifier": "Ozean-Modifikator ersetzen",
     "Sample Sea Heights": "Wasserstand abtasten", "Use Mesh as Cage of an Ocean": "Netz als Käfig eines Ozeans",
@@ -99,6 +100,11 @@ GERMAN = {
         "Eine exportierte Aufnahme hat dieses Objekt mit allem, was daran hängt: pelagic render zeichnet es, seinen Schatten und sein Spiegelbild",
     "How many of its triangles a shot has, by Blender's Decimate: all, or a share where the object is far":
         "Wie viele seiner Dreiecke eine Aufnahme hat, durch Blenders Dezimieren: alle, oder einen Teil, wo das Objekt fern ist",
+    "How it floats in the pictures of a shot; in Blender it lies on the water":
+        "Wie es in den Bildern einer Aufnahme schwimmt; in Blender liegt es auf dem Wasser",
+    "It lies on the water under it": "Es liegt auf dem Wasser unter ihm",
+    "It answers late, and rolls on, as a ship as long, wide and deep does":
+        "Es antwortet verspätet und rollt nach, wie ein Schiff, das so lang, breit und tief ist",
     "Leave the sea out of Cycles' pictures but for what the scene's objects change on it, their shadow and their mirror image; or show it again":
         "Von der See in Bildern von Cycles nur zeigen, was die Objekte der Szene auf ihr ändern, Schatten und Spiegelbild; oder sie wieder zeigen",
     "Vertices a side while you work, as a share of what a render has":

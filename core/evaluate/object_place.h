@@ -27,7 +27,7 @@ struct ObjectMoment {
 };
 
 // What floats lies on the plane through the water under it, in waves about as long as it is: it heaves, pitches and rolls with that, and
-// turns about its origin. Others are as object_pose() has them. Any thread, for an object with a mesh and a frame that is set.
+// turns about its origin; or as core/evaluate/floating_response.h has it, where some of it is under water. Others are as object_pose() has them. Any thread, for an object with a mesh and a frame that is set.
 template <class T>
 PlacedObject place_object(const Frame<T>& state, const Scene& scene, const SceneObject& object,
                           const ObjectMoment& at);

@@ -1051,6 +1051,11 @@ void add_objects(Built& out) {
                                   .soft = SoftRange{0.01, 100.0, true}}),
         row<&SceneObject::floats>(
             {.name = "floats", .help = "heaves, pitches and rolls with the waves that are as long as it is"}),
+        row<&SceneObject::buoyancy>(
+            {.name = "buoyancy",
+             .help =
+                 "of what floats: plane: it lies on the water under it; response: it moves by its mass as well, late, and rolls on, as linear "
+                 "theory has a ship as long, wide and deep"}),
         row<&SceneObject::foam>(
             {.name = "foam",
              .help =

@@ -41,6 +41,10 @@ constexpr std::array kSpreadings = std::to_array<Word<SpreadingKind>>({
     {SpreadingKind::Cosine, "cosine"},
     {SpreadingKind::Elfouhaily, "elfouhaily"},
 });
+constexpr std::array kBuoyancies = std::to_array<Word<Buoyancy>>({
+    {Buoyancy::Plane, "plane"},
+    {Buoyancy::Response, "response"},
+});
 constexpr std::array kModels = std::to_array<Word<WaveModel>>({
     {WaveModel::Fft, "fft"},
     {WaveModel::Trochoid, "trochoid"},
@@ -162,6 +166,9 @@ std::span<const Word<SpraySource>> words_of(SpraySource) {
 }
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind) {
     return kSpreadings;
+}
+std::span<const Word<Buoyancy>> words_of(Buoyancy) {
+    return kBuoyancies;
 }
 std::span<const Word<WaveModel>> words_of(WaveModel) {
     return kModels;

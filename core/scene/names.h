@@ -29,6 +29,7 @@ std::span<const Word<SpraySource>> words_of(SpraySource);
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind);
 std::span<const Word<WaveModel>> words_of(WaveModel);
 std::span<const Word<Tiling>> words_of(Tiling);
+std::span<const Word<Buoyancy>> words_of(Buoyancy);
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind);
 std::span<const Word<Beyond>> words_of(Beyond);
 std::span<const Word<CameraInterpolation>> words_of(CameraInterpolation);

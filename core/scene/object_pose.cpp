@@ -104,7 +104,9 @@ ObjectPose object_pose(const Scene& scene, const SceneObject& object, double fra
 
 double floating_cell_m(const SceneObject& object) {
     const glm::dvec2 size(object.mesh->most_m() - object.mesh->least_m());
-    return object.scale * std::max(size.x, size.y) / 3.0;
+    const double longer = std::max(size.x, size.y), shorter = std::min(size.x, size.y);
+    return object.scale *
+           (object.buoyancy == Buoyancy::Response ? std::max(shorter / 6.0, longer / 60.0) : longer / 3.0);
 }
 
 }  // namespace pelagic

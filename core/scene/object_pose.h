@@ -18,7 +18,8 @@ struct ObjectPose {
 // At a frame, also between two of them, in a calm sea: what `floats` adds is the waves' (core/evaluate/object_place.h). The object is one of the scene's.
 ObjectPose object_pose(const Scene& scene, const SceneObject& object, double frame);
 
-// The footprint of the waves that move what floats: a third of its length [m]. The object has a mesh.
+// The footprint of the waves that move what floats [m]: a third of its length, or, of one that answers by its mass, a sixth of its beam, and
+// of its length a sixtieth at least. The object has a mesh.
 double floating_cell_m(const SceneObject& object);
 
 }  // namespace pelagic

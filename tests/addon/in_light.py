@@ -127,6 +127,11 @@ with checking("imported again it is at the same place, with its wake, afloat and
     for name, values in shot.object_mesh(0).items():
         if name == "points_m":
             assert np.allclose(values, again.object_mesh(0)[name], atol=2e-3)
+    assert ship.pelagic_in_light.buoyancy == shot.objects[0].buoyancy == "plane"
+    ship.pelagic_in_light.buoyancy = "response"
+    assert exported("by-mass").objects[0].buoyancy == "response"
+    assert bpy.ops.pelagic.import_shot(filepath=str(FOLDER / "by-mass.toml")) == {"FINISHED"}
+    assert {obj.pelagic_in_light.buoyancy for obj in in_light.of_scene(bpy.context.scene)} == {"response"}
 
 
 # ---- Hard cases

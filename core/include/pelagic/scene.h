@@ -32,6 +32,8 @@ enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
 enum class SpraySource { Monahan1986, Andreas1998 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
+// What floats lies on the water under it, or moves by its own mass as well (core/evaluate/floating_response.h).
+enum class Buoyancy { Plane, Response };
 enum class Tiling { Random, Periodic };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
 enum class Beyond { ByKind, Sea, Nothing };
@@ -302,10 +304,11 @@ struct SceneObject {
         0.0;  // of its +x, counter-clockwise from east; with a path or a vessel from its course
     double pitch_deg = 0.0, roll_deg = 0.0;  // bow up; to starboard down
     double scale = 1.0;                      // > 0
-    bool floats = false;      // heaves, pitches and rolls with the waves that are as long as it is
-    double foam = 1.0;        // times the foam where hull and water meet, 0 … 1
-    glm::dvec3 colour{1.0};   // times its materials', 0 … 1
-    double glow_cd_m2 = 0.0;  // luminance of materials that glow, ≥ 0
+    bool floats = false;  // heaves, pitches and rolls with the waves that are as long as it is
+    Buoyancy buoyancy = Buoyancy::Plane;  // of what floats
+    double foam = 1.0;                    // times the foam where hull and water meet, 0 … 1
+    glm::dvec3 colour{1.0};               // times its materials', 0 … 1
+    double glow_cd_m2 = 0.0;              // luminance of materials that glow, ≥ 0
     bool holdout =
         false;  // it is rendered elsewhere: nothing, with alpha 0, where it stands, but mirrored and shadowing
 

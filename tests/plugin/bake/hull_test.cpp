@@ -298,6 +298,7 @@ TEST_F(HullBakes, SayWhereAMeshIsWet) {
 
 TEST_F(HullBakes, AreTheSameAloneAndInARun) {
     Scene scene = at_sea();
+    scene.objects[0].buoyancy = Buoyancy::Response;
     scene.output.maps = {MapKind::Whitecaps};
     scene.output.map_resolution = 64;
     scene.output.volumes = {VolumeKind::LevelSet};
@@ -311,6 +312,10 @@ TEST_F(HullBakes, AreTheSameAloneAndInARun) {
         ASSERT_FALSE(bytes.empty()) << file;
         EXPECT_TRUE(bytes == bytes_of(run / file)) << file;
     }
+    // How it floats is a part of what they are made of.
+    const std::string late = bytes_of(run / "mesh/sea.0003.usdc");
+    scene.objects[0].buoyancy = Buoyancy::Plane;
+    EXPECT_TRUE(late != bytes_of(baked(scene, {3}, "run") / "mesh/sea.0003.usdc"));
 }
 
 TEST_F(HullBakes, LeaveWaterAndFoamOutOfThem) {

@@ -22,7 +22,7 @@ constexpr double kSmallest_m = 1e-3;  // of a box's sides
 // Of a displacement ship, by rule of thumb (floating_response.h).
 constexpr double kMetacentricShare = 0.1, kHighestGravityShare = 0.5, kTrimGyration = 0.25,
                  kHeelGyration = 0.35;
-constexpr double kHeaveDamping = 0.15, kTrimDamping = 0.15, kHeelDamping = 0.05;
+constexpr double kHeaveDamping = 0.2, kTrimDamping = 0.2, kHeelDamping = 0.05;
 double sinc(double q) {
     return std::abs(q) < 1e-4 ? 1.0 - q * q / 6.0 : std::sin(q) / q;
 }

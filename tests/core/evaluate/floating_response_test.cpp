@@ -170,8 +170,8 @@ TEST(FloatingResponse, FollowsLongWaves) {
         worst = std::max(worst, glm::length(mine.pose.turn[2] - plane.pose.turn[2]));
         most = std::max(most, glm::length(glm::dvec2(plane.pose.turn[2])));
     }
-    // Its heave, of four seconds, is 7 % higher in waves of sixteen, and late by 0.08 rad; its roll, of eight, is a third more.
-    EXPECT_LT(worst_m, 0.13 * most_m);
+    // Its heave, of four seconds, is 7 % higher in waves of sixteen, and late by 0.1 rad; its roll, of eight, is a third more.
+    EXPECT_LT(worst_m, 0.15 * most_m);
     EXPECT_LT(worst, 0.5 * most);
     EXPECT_GT(most, 0.005);
 }

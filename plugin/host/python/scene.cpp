@@ -18,7 +18,6 @@
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/number_keys.h"
-#include "core/scene/object_pose.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
@@ -278,34 +277,6 @@ Scene settled_scene(const Scene& scene) {
     return held(settle(kept, Purpose::Mesh, with_rates(recorded_rates()))).scene;
 }
 
-const SceneObject& object_at(const Scene& scene, py::ssize_t index) {
-    const auto count = static_cast<py::ssize_t>(scene.objects.size());
-    if (index < 0 || index >= count)
-        throw py::index_error("objects[" + std::to_string(index) + "]: accepted: 0 … " +
-                              std::to_string(count) + ", without its end");
-    return scene.objects[static_cast<std::size_t>(index)];
-}
-
-py::array_t<double> pose_matrix(const Scene& scene, py::ssize_t index, double frame) {
-    const SceneObject& object = object_at(scene, index);
-    // Without a mesh, too: who writes one asks first where it is to be.
-    if (object.vessel > static_cast<int>(scene.waves.vessels.size()) || !std::isfinite(frame))
-        throw py::value_error("objects[" + std::to_string(index) +
-                              "] has vessel = " + std::to_string(object.vessel) + " at frame " +
-                              std::to_string(frame) + "; accepted: one of waves.vessels, and a number");
-    const ObjectPose pose = object_pose(scene, object, frame);
-    py::array_t<double> matrix({4, 4});
-    auto at = matrix.mutable_unchecked<2>();
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) {
-            if (row == 3)
-                at(row, column) = column == 3 ? 1.0 : 0.0;
-            else
-                at(row, column) = column == 3 ? pose.place_m[row] : pose.scale * pose.turn[column][row];
-        }
-    return matrix;
-}
-
 // Rows of three.
 template <class Number>
 py::array_t<Number> rows_of_three(const Number* numbers, std::size_t rows) {
@@ -413,11 +384,6 @@ void add_scene(py::module_& module) {
             "a scene like that. Its sea is that of these numbers alone: of a shot whose sea changes bake() and render() show the waves of a "
             "frame, which have both keys' in them.")
         .def(
-            "object_pose", &pose_matrix, py::arg("index"), py::arg("frame"),
-            "Where a body of objects is at a frame, also between two, in a calm sea: float64 (4, 4), from its mesh's coordinates to the "
-            "sea's [m]. What floats moves with the waves on top of that. It needs no mesh. IndexError for a body that isn't there, ValueError "
-            "for one of a vessel that isn't.")
-        .def(
             "object_mesh", &mesh_of, py::arg("index"),
             "The mesh of a body of objects: points_m, float32 (n, 3); triangles, uint32 (m, 3), counter-clockwise seen from outside; "
             "normals of their corners, float32 (3 m, 3); material of each, uint16 (m,), into materials, a list of dictionaries of name, "
@@ -428,6 +394,7 @@ void add_scene(py::module_& module) {
             "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },
             py::arg("memo"))
         .def("__str__", [](const Scene& self) { return canonical(self); });
+    add_objects(scene);
     py::class_<TableOfScene> base(module, "Table", py::module_local(),
                                   "A table of a scene: its keys are the attributes.");
     base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }),

@@ -193,6 +193,36 @@ class Scene(unittest.TestCase):
         self.assertRaisesRegex(ValueError, "vessel = 1", scene.object_pose, 0, 1.0)
         self.assertRaises(ValueError, scene.object_pose, 0, float("nan"))
 
+    def test_where_floating_bodies_are_in_the_waves(self):
+        trawler = str(Path(__file__).parents[4] / "examples/data/trawler.obj")
+        scene = pelagic.Scene()
+        scene.waves.cascades = [{"size_m": 300.0, "resolution": 128}]
+        scene.objects = [pelagic.SceneObject(trawler, floats=True, path="1 0 0, 49 9 6"), pelagic.SceneObject(trawler, name="stands", east_m=5.0)]
+        frames = [1.0, 24.5, 48.0]
+        np.testing.assert_array_equal(scene.object_poses(1, frames), [scene.object_pose(1, frame) for frame in frames])
+        poses = {}
+        for how in ("plane", "response"):
+            scene.objects = [scene.objects[0]._replace(buoyancy=how), scene.objects[1]]
+            told = []
+            poses[how] = scene.object_poses(0, frames, progress=told.append)
+            self.assertEqual(told[-1], 1.0)
+            np.testing.assert_array_equal(scene.object_poses(0, frames[1:2])[0], poses[how][1])  # a frame alone
+            calm = np.array([scene.object_pose(0, frame) for frame in frames])
+            np.testing.assert_array_equal(poses[how][:, :2, 3], calm[:, :2, 3])
+            self.assertGreater(np.ptp(poses[how][:, 2, 3]), 0.05)
+            np.testing.assert_allclose(np.linalg.det(poses[how][:, :3, :3]), 1.0, atol=1e-9)
+        self.assertGreater(np.abs(poses["plane"] - poses["response"]).max(), 0.01)
+        # On the water, in waves about as long as it.
+        frame = pelagic.Frame(pelagic.Sea(scene, ["position"], cell_m=26.0 / 3.0))
+        frame.set(23.5 / scene.shot.fps)
+        around = poses["plane"][1][:2, 3] + 6.0 * np.array([(x, y) for x in (-1, 0, 1) for y in (-0.5, 0, 0.5)])
+        heights = frame.evaluate(around.astype(np.float32))["position"][:, 2]
+        self.assertLess(abs(heights.mean() - poses["plane"][1][2, 3]), 0.1)
+        self.assertEqual(scene.object_poses(0, []).shape, (0, 4, 4))
+        self.assertRaises(IndexError, scene.object_poses, 2, [1.0])
+        self.assertRaises(ValueError, scene.object_poses, 0, [float("inf")])
+        self.assertRaises(pelagic.Cancelled, scene.object_poses, 0, frames, cancel=lambda: True)
+
     def test_keys_are_described(self):
         keys = {key["path"]: key for key in pelagic.keys()}
         wind = keys["sea.wind_speed_mps"]

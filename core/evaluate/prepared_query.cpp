@@ -154,6 +154,7 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                                              ? "\" at one time alone: ask a SeaAtTime"
                                              : "\": ask for it when the plan is made"));
     has_trains_ = plan.trains && !query.only_cascade;
+    has_coast_ = has_trains_ && frame.sea().coast();
     has_random_tiling_ = !query.only_cascade &&
                          std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                      [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
@@ -271,7 +272,7 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
         .breaks = (given & breaking_products()).any(),
         .wants_unresolved = (given & unresolved_products()).any(),
         .has_levels = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
-        .differ_in_unresolved = points.pixel_m && (has_trains_ || many_pixels)};
+        .differ_in_unresolved = (points.pixel_m && (has_trains_ || many_pixels)) || has_coast_};
 }
 
 template <class T>
@@ -858,6 +859,8 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
         for (auto& moment : unresolved_of.moments)
             std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
     const TrainArgs<T> all{.trains = &frame_->sea().trains(),
+                           .coast = frame_->sea().coast(),
+                           .origin_m = call.place.origin_m,
                            .start_cycles = call.place.start_cycles.data(),
                            .filter = plan.filter,
                            .wanted = needed,

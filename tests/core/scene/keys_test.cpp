@@ -144,8 +144,10 @@ TEST(Keys, ValuesOfAnotherTypeAreRefusedAndChangeNothing) {
 Scene scene_with(const Key& key, const KeyValue& value) {
     Scene scene;
     if (key.path == kObjectsKey) scene = test::scene_with_body();
-    if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m")
+    if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m" ||
+        key.path == kCoastKey)
         scene.waves.model = WaveModel::Trochoid;
+    if (key.path == kCoastKey) scene.sea.depth_file = "bay.exr";
     if (!key.of_picture.empty()) {
         EXPECT_FALSE(set_value(scene, key_of(key.of_picture), std::string("noon.exr")));
     }

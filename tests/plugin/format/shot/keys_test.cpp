@@ -23,7 +23,8 @@ const std::filesystem::path kKeysData =
 // Keys of wave trains mean nothing without them, nor do those of a picture.
 std::string shot_with(const Key& key, const std::string& value) {
     const bool of_trains =
-        key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
+        key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m" ||
+        key.path == kCoastKey;
     // Waves of any height need a wind that makes them long.
     const bool is_height = key.path == "sea.significant_height_m";
     // A body may be any of so many vessels'.
@@ -31,7 +32,8 @@ std::string shot_with(const Key& key, const std::string& value) {
     for (int i = 0; key.path == kObjectsKey && i < limits::kVessels; ++i)
         vessels += (i > 0 ? ", " : "waves.vessels = [") + std::string("{ path = \"1 0 0, 48 10 0\" }");
     if (!vessels.empty()) vessels += "]\n";
-    return vessels + (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
+    const std::string floor = key.path == kCoastKey ? "sea.depth_file = \"sky.exr\"\n" : "";
+    return floor + vessels + (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
            std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
            (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
            '\n';

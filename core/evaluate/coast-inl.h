@@ -131,11 +131,9 @@ class CoastPoint {
         turn_ = breaking_turn_ = hn::Zero(D());
     }
 
-    // Trains i … i + lanes − 1.
-    HWY_INLINE void add(std::size_t i, const LocalTrains<V>& at) {
+    // Trains i … i + lanes − 1. What isn't shown is hidden whole.
+    HWY_INLINE void add(std::size_t i, const LocalTrains<V>& at, bool is_shown) {
         const D d;
-        V sine, cosine;
-        SinCosCycles(d, at.cycles, sine, cosine);
         const V k2 = hn::MulAdd(at.kx, at.kx, hn::MulAdd(at.ky, at.ky, hn::Set(d, T(1e-20))));
         const V k = hn::Sqrt(k2), per_k = hn::Div(hn::Set(d, T(1)), k);
         const V unit_x = hn::Mul(at.kx, per_k), unit_y = hn::Mul(at.ky, per_k);
@@ -145,9 +143,12 @@ class CoastPoint {
             limited = hn::Min(wanted, per_k);
             return hn::Gt(wanted, per_k);
         };
+        V sine = hn::Zero(d), cosine = sine, w = sine;
+        if (is_shown) SinCosCycles(d, at.cycles, sine, cosine);
         const auto add = [&](V* to, Field field, V value) HWY_ATTR { to[index(field)] = hn::Add(to[index(field)], value); };
-        if (wants_.height || wants_.horizontal || wants_.drift || wants_.rise) {
-            const V w = weight(cell_, k, unit_x, unit_y), s = hn::Mul(w, sine), c = hn::Mul(w, cosine);
+        if (is_shown && (wants_.height || wants_.horizontal || wants_.drift || wants_.rise)) {
+            const V of_cell = weight(cell_, k, unit_x, unit_y), s = hn::Mul(of_cell, sine),
+                    c = hn::Mul(of_cell, cosine);
             V wide;
             sideways(coast_.sideways_m, wide);
             const V omega = hn::LoadU(d, &coast_.omega[i]);
@@ -164,8 +165,8 @@ class CoastPoint {
             if (wants_.rise) add(field_, Field::VelocityZ, hn::Neg(hn::Mul(hn::Mul(omega, at.height_m), s)));
         }
         if (!wants_.slope && !wants_.gradient && !wants_.breaking && !wants_.hidden) return;
-        const V w = weight(pixel_, k, unit_x, unit_y);
-        if (wants_.slope) {
+        if (is_shown) w = weight(pixel_, k, unit_x, unit_y);
+        if (is_shown && wants_.slope) {
             const V s = hn::Mul(hn::Mul(w, sine), at.height_m), c = hn::Mul(w, cosine);
             add(field_, Field::SlopeX, hn::MulAdd(at.kx, s, hn::Mul(at.height_x, c)));
             add(field_, Field::SlopeY, hn::MulAdd(at.ky, s, hn::Mul(at.height_y, c)));
@@ -184,8 +185,8 @@ class CoastPoint {
             turn = hn::MulAdd(hn::NegMulAdd(unit_x, wide_y, hn::Mul(unit_y, wide_x)), s, turn);
         };
         const V most = hn::LoadU(d, &coast_.breaking[i]), seen = hn::Min(w, most);
-        if (wants_.gradient) gradient(w, field_, turn_);
-        if (wants_.breaking) gradient(seen, breaking_, breaking_turn_);
+        if (is_shown && wants_.gradient) gradient(w, field_, turn_);
+        if (is_shown && wants_.breaking) gradient(seen, breaking_, breaking_turn_);
         if (!wants_.hidden) return;
         const V half = hn::Set(d, T(0.5)), part = hn::Mul(half, unresolved_part(Pack<D>(w)).v);
         const V height2 = hn::Mul(at.height_m, at.height_m);
@@ -286,7 +287,7 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
         // What is hidden of those that feel the floor is summed here, of the others looked up.
         const std::size_t end = wanted.hidden ? std::max(shown, feeling) : shown;
         evaluated += end;
-        CyclesOf(trains, args.start_cycles, x, y, end, cycles);
+        CyclesOf(trains, args.start_cycles, x, y, std::min(shown + lanes, count), cycles);
         CoastPoint<T> point(coast, args.filter, wanted, cell, pixel);
         const std::size_t felt = std::min(feeling, end);
         for (std::size_t i = 0; i < felt; i += lanes) {
@@ -310,7 +311,8 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                           .ky = hn::MulAdd(turns, phase_y, hn::LoadU(d, &coast.ky[i])),
                           .height_m = hn::Mul(height, gain),
                           .height_x = hn::Mul(height, gain_x),
-                          .height_y = hn::Mul(height, gain_y)});
+                          .height_y = hn::Mul(height, gain_y)},
+                      i < shown);
         }
         T gain = T(0), gain_x = T(0), gain_y = T(0);
         for (std::size_t t = 0; t < taps.cell.size(); ++t) {
@@ -326,7 +328,8 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                           .ky = hn::LoadU(d, &coast.ky[i]),
                           .height_m = hn::Mul(height, hn::Set(d, gain)),
                           .height_x = hn::Mul(height, hn::Set(d, gain_x)),
-                          .height_y = hn::Mul(height, hn::Set(d, gain_y))});
+                          .height_y = hn::Mul(height, hn::Set(d, gain_y))},
+                      true);
         }
         const PointSums<T> sums = point.sums();
         for (std::size_t f = 0; f < kFieldCount; ++f)

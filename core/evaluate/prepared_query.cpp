@@ -264,11 +264,13 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
                                                        const Place& place) const {
     const ProductSet given = results.given();
     const bool many_pixels = planned_->pixel_levels.size() > 1;
+    FieldSet needed = fields_of(given & ~breaking_products());
+    if (has_coast_ && given[index(Product::Breaking)]) needed |= fields(Field::Height);
     return {
         .points = points,
         .results = results,
         .place = place,
-        .needed = fields_of(given & ~breaking_products()) & ~frame_->sea().plan().dropped,
+        .needed = needed & ~frame_->sea().plan().dropped,
         .breaks = (given & breaking_products()).any(),
         .wants_unresolved = (given & unresolved_products()).any(),
         .has_levels = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
@@ -414,6 +416,17 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     const auto unresolved = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && unresolved)
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
+    if (const auto breaking = call.results.numbers(Product::Breaking); breaking && has_coast_) {
+        const Coast<T>& coast = *frame_->sea().coast();
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const double cell_m = call.points.cell_m ? static_cast<double>(call.points.cell_m[first + i])
+                                                     : planned_->query.cell_m.front();
+            const double more =
+                coast_foam(coast, call.place.origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]),
+                           static_cast<double>(chunk.sums[index(Field::Height)][i]), cell_m, plan.filter);
+            breaking[first + i] += (T(1) - breaking[first + i]) * static_cast<T>(more);
+        }
+    }
     if (const auto breaking = call.results.numbers(Product::Breaking); breaking && work.masked)
         for (std::size_t i = 0; i < chunk.count; ++i) breaking[first + i] *= work.masks->gains.foam[i];
 }

@@ -77,18 +77,18 @@ std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
 }
 
 std::size_t TrainsPlan::coast_bytes(bool double_precision) const {
-    // Of each cell a phase and a gain of each train that feels it, in whole vectors; the gain of all others, and its share of breaking waves.
+    // Of each cell a phase and a gain of each train that feels it, in whole vectors; the gain of all others, its share of breaking waves and its height.
     const std::size_t scalar = double_precision ? sizeof(double) : sizeof(float), vector = 64 / scalar;
     const std::size_t stride = (static_cast<std::size_t>(coast_trains) + vector - 1) / vector * vector;
     return static_cast<std::size_t>(coast_cells.x) * static_cast<std::size_t>(coast_cells.y) *
-           (2 * stride + 2) * scalar;
+           (2 * stride + 3) * scalar;
 }
 
 namespace {
 
 // Cells as square as can be, and no finer than trains that feel the floor need.
 void plan_coast(TrainsPlan& plan, const Waves& waves) {
-    constexpr double kCellsASide = 256.0, kFinest_m = 0.25, kShortest_m = 1.0;
+    constexpr double kCellsASide = 256.0, kFinest_m = 0.25, kShortest_m = 2.0;
     if (!waves.coast_depths)
         throw std::invalid_argument("the depths of sea.depth_file weren't read, and waves.coast needs them");
     const glm::dvec2 size_m = waves.coast_depths->size_m();

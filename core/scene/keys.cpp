@@ -490,7 +490,8 @@ void add_waves(Built& out) {
                  "with trochoid: whether the trains feel the floor of sea.depth_file. They come from sea.depth_m, turn, shorten and rise "
                  "over shallow water, lose height where they break, and end at the shore. There are no diffraction behind islands, "
                  "no reflection, no run-up and no crests that overturn",
-             .key_parts = kWaves})));
+             .key_parts = kWaves,
+             .of_picture = "sea.depth_file"})));
 }
 
 void add_surface(Built& out) {

@@ -776,11 +776,6 @@ void check_coast(SceneChecker& check, const Scene& scene) {
     const auto refuse = [&](const std::string& problem, const std::string& accepted) {
         check.refuse({std::string(kCoastKey), "true", problem, accepted + ", or false"});
     };
-    if (scene.sea.depth_file == SeaState{}.depth_file)
-        refuse("lets waves feel the floor of sea.depth_file, and there is none",
-               "sea.depth_file = \"PATH.exr\"");
-    else if (has_ending(scene.sea.depth_file, ".obj"))
-        refuse("lets waves feel a floor, of which they take pictures and no meshes", "sea.depth_file = \"PATH.exr\"");
     if (waves.model != WaveModel::Trochoid)
         refuse("turns wave trains, and waves.model = " + choice_text(waves.model) +
                    " makes tiles, which are alike everywhere",

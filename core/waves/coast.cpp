@@ -330,6 +330,7 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
     coast.gain.assign(cells * coast.stride, T(0));
     coast.others.assign(cells, T(0));
     coast.broken.assign(cells, T(0));
+    coast.deviation_m.assign(cells, T(0));
     double most = -1.0, peak_hz = 0.0;
     glm::dvec2 towards(0.0);
     for (std::size_t i = 0; i < trains.count(); ++i) {
@@ -350,6 +351,7 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
         if (energy > most) {
             most = energy;
             peak_hz = omega / kTwoPi;
+            coast.peak_per_m = k;
         }
     }
     for (std::vector<T>* of : {&coast.kx, &coast.ky, &coast.height_m, &coast.omega, &coast.sideways_m,
@@ -395,6 +397,7 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
         const double fade = std::clamp((depth_m - kCoastShore_m) / kShortFade_m, 0.0, 1.0);
         coast.others[cell] = static_cast<T>(left * fade * fade * (3.0 - 2.0 * fade));
         if (!broken.broken.empty()) coast.broken[cell] = static_cast<T>(broken.broken[cell]);
+        coast.deviation_m[cell] = static_cast<T>(left * std::sqrt(m0[cell]));
     });
     // For bounds: over the nine cells that a place reads.
     coast.most_gain.assign(coast.feeling + 1, 0.0);
@@ -411,6 +414,36 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
     });
     return coast;
 }
+
+double quick_deviate(double share) {
+    constexpr double kLogistic = 1.702, kLeast = -7.0;
+    if (!(share > 0.0)) return kLeast;
+    return std::clamp(std::log(share / (1.0 - std::min(share, 0.999999))) / kLogistic, kLeast, -kLeast);
+}
+
+template <class T>
+double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
+                  const FootprintFilter& filter) {
+    // Linear between cells' middles: foam has no slope.
+    const glm::dvec2 at = glm::clamp((place_m - coast.from_m) / coast.cell_m - 0.5, glm::dvec2(0.0),
+                                     glm::dvec2(coast.count - 1));
+    const glm::ivec2 low(at), high = glm::min(low + 1, coast.count - 1);
+    const glm::dvec2 t = at - glm::dvec2(low);
+    const auto between = [&](const std::vector<T>& of) {
+        const auto value = [&](int x, int y) { return static_cast<double>(of[coast.cell(x, y)]); };
+        return glm::mix(glm::mix(value(low.x, low.y), value(high.x, low.y), t.x),
+                        glm::mix(value(low.x, high.y), value(high.x, high.y), t.x), t.y);
+    };
+    constexpr double kLeast = 1e-4, kSharpness = 4.0;
+    const double share = kRoller * between(coast.broken), deviation_m = between(coast.deviation_m);
+    if (!(share > kLeast && deviation_m > 0.0)) return 0.0;
+    const double crest = 0.5 * std::erfc(-kSharpness * (height_m / deviation_m + quick_deviate(share)) / std::sqrt(2.0));
+    const double shown = filter.weight(coast.peak_per_m, cell_m);
+    return shown * crest + (1.0 - shown) * share;
+}
+
+template double coast_foam(const Coast<float>&, glm::dvec2, double, double, const FootprintFilter&);
+template double coast_foam(const Coast<double>&, glm::dvec2, double, double, const FootprintFilter&);
 
 double CoastRange::most_wavenumber() const {
     return glm::length(glm::max(glm::abs(k_lo), glm::abs(k_hi)));

@@ -66,7 +66,9 @@ struct Coast {
     std::vector<T> phase;   // (S − k₀·x)/2π [cycles]
     std::vector<T> gain;    // of amplitudes
     std::vector<T> others;  // that of all trains too short to feel it, a number a cell
-    std::vector<T> broken;  // the share of waves that break, a number a cell
+    // A number a cell: the share of waves that break, and the heights' standard deviation [m].
+    std::vector<T> broken, deviation_m;
+    double peak_per_m = 0.0;  // the wavenumber of the highest train where it comes from
     // Of each train of the sea, with zeros for a vector that begins at the last: its wavevector where it comes from [rad/m], its height [m], its
     // angular frequency, how far it moves water to the side over height times wavenumber [m], for its displacement and for that of the waves that
     // break, and how much of these is resolved at best.
@@ -86,6 +88,15 @@ struct Coast {
 template <class T>
 Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const Trains<T>& trains,
                     const Breaking& breaking);
+
+// How much of a place foams because waves break on the floor there: where the sea is `height_m` high, seen through cells so wide. It lies on the highest
+// crests, over kRoller of the share of waves that break; cells too wide for crests have that much throughout.
+inline constexpr double kRoller = 0.25;  // of a breaking wave's length: by eye
+template <class T>
+double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
+                  const FootprintFilter& filter);
+// The standard normal deviate below which a share lies, within 0.01 of the share, −7 … 7 (Bowling et al. 2009).
+double quick_deviate(double share);
 
 // Between what a train's local numbers lie over a rectangle of the world.
 struct CoastRange {

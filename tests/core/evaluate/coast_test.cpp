@@ -195,6 +195,44 @@ TEST(Coast, OneTrainBreaksAtItsLimit) {
         EXPECT_NEAR((high[i] - low[i]) / depth_m(i), 0.78, 0.05) << depth_m(i);
 }
 
+// On the crests, and as much in the mean as the law of breaking says.
+TEST(Coast, FoamsWhereItBreaks) {
+    Scene scene = coast(floor_of([](glm::dvec2 at) { return (150.0 - at.x) / 30.0; }));
+    scene.effects.whitecap_amount = 0.0;
+    const std::vector<Query> queries{unfiltered(products(Position, Product::Breaking)),
+                                     filtered(products(Position, Product::Breaking), 200.0)};
+    auto frame = frame_of<float>(scene, queries);
+    const Coast<float>& held = *frame.sea().coast();
+    std::vector<glm::vec2> rest;
+    for (const float x : {-150.0f, 90.0f, 125.0f})
+        for (int y = 0; y < 60; ++y) rest.emplace_back(x, -150.0f + 5.0f * static_cast<float>(y));
+    double foam[3] = {}, heights[3] = {}, coarse[3] = {}, all_heights[3] = {};
+    int times = 0;
+    for (double t_s = 0.0; t_s < 300.0; t_s += 2.3, ++times) {
+        frame.set(t_s);
+        const auto fine = sample(frame, 0, rest), far = sample(frame, 1, rest);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const double share = fine.numbers(Product::Breaking)[i], z = fine.vectors(Position)[i].z;
+            foam[i / 60] += share;
+            heights[i / 60] += share * z;
+            all_heights[i / 60] += z;
+            coarse[i / 60] += far.numbers(Product::Breaking)[i];
+        }
+    }
+    for (int place = 0; place < 3; ++place) {
+        const double count = 60.0 * times;
+        const glm::ivec2 cell((rest[static_cast<std::size_t>(60 * place)].x + 200.0) / held.cell_m.x, 128);
+        const double expected = kRoller * static_cast<double>(held.broken[held.cell(cell.x, cell.y)]);
+        EXPECT_NEAR(foam[place] / count, expected, 0.25 * expected + 0.002) << place;
+        EXPECT_NEAR(coarse[place] / count, expected, 0.05 * expected + 0.001) << place;
+        if (place > 0) {
+            EXPECT_GT(expected, 0.02);
+            EXPECT_GT(heights[place] / foam[place], all_heights[place] / count + 0.05);
+        }
+    }
+    EXPECT_LT(foam[0] / (60.0 * times), 0.01);
+}
+
 // At an island waves bend round, and everything is finite.
 TEST(Coast, IsTheSameOnOneThreadAndTwoAndFinite) {
     const auto island = floor_of([](glm::dvec2 at) { return std::min(12.0, 0.2 * (glm::length(at) - 50.0)); });
@@ -263,7 +301,8 @@ TEST(Coast, IsRefusedWithoutDepthsAndSaysItsBytes) {
     const Sea<float> sea(plan);
     const Coast<float>& held = *sea.coast();
     EXPECT_EQ(plan.trains->coast_bytes(false),
-              (held.phase.size() + held.gain.size() + held.others.size() + held.broken.size()) * sizeof(float));
+              (held.phase.size() + held.gain.size() + held.others.size() + held.broken.size() +
+               held.deviation_m.size()) * sizeof(float));
     EXPECT_GT(plan.sea_bytes(), plain.sea_bytes() + plan.trains->coast_bytes(false) - 1);
     EXPECT_EQ(Sea<float>(plain).coast(), nullptr);
 }

@@ -279,9 +279,9 @@ TEST(Validate, FramesSeedAndLoop) {
     };
     expect_good(coast([](Scene&) {}));
     expect_refused(coast([](Scene& s) { s.sea.depth_file = "none"; }),
-                   {"waves.coast", "true", "sea.depth_file = \"PATH.exr\", or false"});
+                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
     expect_refused(coast([](Scene& s) { s.sea.depth_file = "reef.obj"; }),
-                   {"waves.coast", "true", "sea.depth_file = \"PATH.exr\", or false"});
+                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
     expect_refused(coast([](Scene& s) { s.waves.model = WaveModel::Fft; }),
                    {"waves.coast", "true", "waves.model = \"trochoid\", or false"});
     expect_refused(coast([](Scene& s) { s.waves.cascades = {{60.0, 128}}; }),

@@ -32,8 +32,7 @@ std::string shot_with(const Key& key, const std::string& value) {
     for (int i = 0; key.path == kObjectsKey && i < limits::kVessels; ++i)
         vessels += (i > 0 ? ", " : "waves.vessels = [") + std::string("{ path = \"1 0 0, 48 10 0\" }");
     if (!vessels.empty()) vessels += "]\n";
-    const std::string floor = key.path == kCoastKey ? "sea.depth_file = \"sky.exr\"\n" : "";
-    return floor + vessels + (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
+    return vessels + (key.of_picture.empty() ? "" : key.of_picture + " = \"sky.exr\"\n") +
            std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
            (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
            '\n';

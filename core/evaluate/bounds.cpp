@@ -509,7 +509,8 @@ void FrameBounds<T>::add_coast(const Coast<T>& coast, const Block& block, const 
         const double by =
             range.is_anything
                 ? 1.0
-                : std::abs(kx) * half.x + std::abs(ky) * half.y + 0.5 * (range.phase_hi - range.phase_lo) + 1e-9 +
+                : std::abs(kx) * half.x + std::abs(ky) * half.y + 0.5 * (range.phase_hi - range.phase_lo) +
+                      1e-9 +
                       kRounding<T> * (1.0 + std::max(std::abs(range.phase_lo), std::abs(range.phase_hi)));
         Interval weight{0.0, 1.0};
         if (!range.is_anything) {
@@ -523,7 +524,8 @@ void FrameBounds<T>::add_coast(const Coast<T>& coast, const Block& block, const 
                       k_least > 0.0 ? plan.filter.weight(k_least, cells_.finest_m) : 1.0};
             widen(weight, kRounding<T>);
         }
-        const Interval gain = product({std::max(range.is_anything ? 0.0 : range.gain_lo, 0.0), range.gain_hi}, weight);
+        const Interval gain =
+            product({std::max(range.is_anything ? 0.0 : range.gain_lo, 0.0), range.gain_hi}, weight);
         const double slack = kRounding<T> * range.gain_hi * height_m;
         if (!plan.dropped[index(Field::Height)]) {
             Interval height = product(product(gain, {height_m, height_m}), cosine(phase, by));

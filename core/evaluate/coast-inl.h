@@ -80,14 +80,15 @@ HWY_INLINE void CyclesOf(const Trains<T>& trains, const double* start, double x,
     HWY_ALIGN double reduced[hn::MaxLanes(d)];
     std::size_t i = 0;
     for (; i + hn::Lanes(d) <= end; i += hn::Lanes(d)) {
-        const auto all = hn::NegMulAdd(hn::LoadU(d, &trains.ky_cycles_per_m[i]), hn::Set(d, y),
-                                       hn::NegMulAdd(hn::LoadU(d, &trains.kx_cycles_per_m[i]), hn::Set(d, x),
-                                                     hn::LoadU(d, start + i)));
+        const auto all = hn::NegMulAdd(
+            hn::LoadU(d, &trains.ky_cycles_per_m[i]), hn::Set(d, y),
+            hn::NegMulAdd(hn::LoadU(d, &trains.kx_cycles_per_m[i]), hn::Set(d, x), hn::LoadU(d, start + i)));
         hn::Store(hn::Sub(all, hn::Round(all)), d, reduced);
         for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) out[i + lane] = static_cast<T>(reduced[lane]);
     }
     for (; i < end; ++i) {
-        const double all = std::fma(-trains.ky_cycles_per_m[i], y, std::fma(-trains.kx_cycles_per_m[i], x, start[i]));
+        const double all =
+            std::fma(-trains.ky_cycles_per_m[i], y, std::fma(-trains.kx_cycles_per_m[i], x, start[i]));
         out[i] = static_cast<T>(all - std::nearbyint(all));
     }
 }
@@ -145,7 +146,8 @@ class CoastPoint {
         };
         V sine = hn::Zero(d), cosine = sine, w = sine;
         if (is_shown) SinCosCycles(d, at.cycles, sine, cosine);
-        const auto add = [&](V* to, Field field, V value) HWY_ATTR { to[index(field)] = hn::Add(to[index(field)], value); };
+        const auto add = [&](V* to, Field field, V value)
+                             HWY_ATTR { to[index(field)] = hn::Add(to[index(field)], value); };
         if (is_shown && (wants_.height || wants_.horizontal || wants_.drift || wants_.rise)) {
             const V of_cell = weight(cell_, k, unit_x, unit_y), s = hn::Mul(of_cell, sine),
                     c = hn::Mul(of_cell, cosine);
@@ -175,13 +177,17 @@ class CoastPoint {
         V wide;
         const auto is_limited = sideways(coast_.breaking_sideways_m, wide);
         // How H changes; at its limit hardly.
-        const V grows = hn::IfThenZeroElse(is_limited, hn::Mul(hn::LoadU(d, &coast_.breaking_sideways_m[i]), k));
+        const V grows =
+            hn::IfThenZeroElse(is_limited, hn::Mul(hn::LoadU(d, &coast_.breaking_sideways_m[i]), k));
         const V wide_x = hn::Mul(grows, at.height_x), wide_y = hn::Mul(grows, at.height_y);
         const auto gradient = [&](V weight, V* to, V& turn) HWY_ATTR {
             const V c = hn::Mul(hn::Mul(weight, cosine), hn::Mul(k, wide)), s = hn::Mul(weight, sine);
-            add(to, Field::Dxx, hn::NegMulAdd(hn::Mul(unit_x, unit_x), c, hn::Mul(hn::Mul(unit_x, wide_x), s)));
-            add(to, Field::Dyy, hn::NegMulAdd(hn::Mul(unit_y, unit_y), c, hn::Mul(hn::Mul(unit_y, wide_y), s)));
-            add(to, Field::Dxy, hn::NegMulAdd(hn::Mul(unit_x, unit_y), c, hn::Mul(hn::Mul(unit_x, wide_y), s)));
+            add(to, Field::Dxx,
+                hn::NegMulAdd(hn::Mul(unit_x, unit_x), c, hn::Mul(hn::Mul(unit_x, wide_x), s)));
+            add(to, Field::Dyy,
+                hn::NegMulAdd(hn::Mul(unit_y, unit_y), c, hn::Mul(hn::Mul(unit_y, wide_y), s)));
+            add(to, Field::Dxy,
+                hn::NegMulAdd(hn::Mul(unit_x, unit_y), c, hn::Mul(hn::Mul(unit_x, wide_y), s)));
             turn = hn::MulAdd(hn::NegMulAdd(unit_x, wide_y, hn::Mul(unit_y, wide_x)), s, turn);
         };
         const V most = hn::LoadU(d, &coast_.breaking[i]), seen = hn::Min(w, most);
@@ -199,7 +205,8 @@ class CoastPoint {
         hide(2, slopes(at.ky, at.ky, at.height_y, at.height_y));
         // What isn't resolved at best counts with the waves outside.
         const V kh = hn::Mul(k, wide);
-        const V pressed = hn::Mul(hn::Mul(half, hn::NegMulAdd(seen, seen, hn::Mul(most, most))), hn::Mul(kh, kh));
+        const V pressed =
+            hn::Mul(hn::Mul(half, hn::NegMulAdd(seen, seen, hn::Mul(most, most))), hn::Mul(kh, kh));
         const V xx = hn::Mul(unit_x, unit_x), xy = hn::Mul(unit_x, unit_y), yy = hn::Mul(unit_y, unit_y);
         hide(3, hn::Mul(pressed, hn::Mul(xx, xx)));
         hide(4, hn::Mul(pressed, hn::Mul(xx, xy)));
@@ -217,7 +224,8 @@ class CoastPoint {
         }
         out.turn = hn::GetLane(hn::SumOfLanes(d, turn_));
         out.breaking_turn = hn::GetLane(hn::SumOfLanes(d, breaking_turn_));
-        for (std::size_t m = 0; m < out.hidden.size(); ++m) out.hidden[m] = hn::GetLane(hn::SumOfLanes(d, hidden_[m]));
+        for (std::size_t m = 0; m < out.hidden.size(); ++m)
+            out.hidden[m] = hn::GetLane(hn::SumOfLanes(d, hidden_[m]));
         return out;
     }
 
@@ -264,7 +272,8 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
     const bool of_cells = wanted.height || wanted.horizontal || wanted.drift || wanted.rise,
                of_pixels = wanted.slope || wanted.gradient || wanted.breaking;
     std::vector<T> cycles(count + 64 / sizeof(T), T(0));
-    const auto footprint = [](const T* each, T only, const typename TrainArgs<T>::Stretch& stretch, std::size_t p) {
+    const auto footprint = [](const T* each, T only, const typename TrainArgs<T>::Stretch& stretch,
+                              std::size_t p) {
         return PointFootprint<T>{each ? each[p] : only, stretch.x ? stretch.x[p] : T(0),
                                  stretch.x ? stretch.y[p] : T(0)};
     };
@@ -282,8 +291,8 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                                 pixel = footprint(args.pixel_of, args.pixel_m, args.pixel_stretch, p);
         const double x = static_cast<double>(chunk.rest_x[p]), y = static_cast<double>(chunk.rest_y[p]);
         const CoastTaps<T> taps = CoastTapsOf(coast, args.origin_m + glm::dvec2(x, y));
-        const std::size_t shown =
-            std::max(of_cells ? end_of(cell.width_m) : 0, of_pixels || wanted.hidden ? end_of(pixel.width_m) : 0);
+        const std::size_t shown = std::max(of_cells ? end_of(cell.width_m) : 0,
+                                           of_pixels || wanted.hidden ? end_of(pixel.width_m) : 0);
         // What is hidden of those that feel the floor is summed here, of the others looked up.
         const std::size_t end = wanted.hidden ? std::max(shown, feeling) : shown;
         evaluated += end;
@@ -291,11 +300,13 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
         CoastPoint<T> point(coast, args.filter, wanted, cell, pixel);
         const std::size_t felt = std::min(feeling, end);
         for (std::size_t i = 0; i < felt; i += lanes) {
-            V phase = hn::Zero(d), phase_x = phase, phase_y = phase, gain = phase, gain_x = phase, gain_y = phase;
+            V phase = hn::Zero(d), phase_x = phase, phase_y = phase, gain = phase, gain_x = phase,
+              gain_y = phase;
             for (std::size_t t = 0; t < taps.cell.size(); ++t) {
                 const std::size_t at = taps.cell[t] * coast.stride + i;
                 const V s = hn::LoadU(d, &coast.phase[at]), g = hn::LoadU(d, &coast.gain[at]);
-                const V value = hn::Set(d, taps.value[t]), rate_x = hn::Set(d, taps.x[t]), rate_y = hn::Set(d, taps.y[t]);
+                const V value = hn::Set(d, taps.value[t]), rate_x = hn::Set(d, taps.x[t]),
+                        rate_y = hn::Set(d, taps.y[t]);
                 phase = hn::MulAdd(value, s, phase);
                 phase_x = hn::MulAdd(rate_x, s, phase_x);
                 phase_y = hn::MulAdd(rate_y, s, phase_y);
@@ -306,12 +317,13 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
             const V height = hn::IfThenElseZero(hn::FirstN(d, felt - i), hn::LoadU(d, &coast.height_m[i])),
                     turns = hn::Set(d, static_cast<T>(kTwoPi));
             const V all = hn::Sub(hn::LoadU(d, &cycles[i]), phase);
-            point.add(i, {.cycles = hn::Sub(all, hn::Round(all)),
-                          .kx = hn::MulAdd(turns, phase_x, hn::LoadU(d, &coast.kx[i])),
-                          .ky = hn::MulAdd(turns, phase_y, hn::LoadU(d, &coast.ky[i])),
-                          .height_m = hn::Mul(height, gain),
-                          .height_x = hn::Mul(height, gain_x),
-                          .height_y = hn::Mul(height, gain_y)},
+            point.add(i,
+                      {.cycles = hn::Sub(all, hn::Round(all)),
+                       .kx = hn::MulAdd(turns, phase_x, hn::LoadU(d, &coast.kx[i])),
+                       .ky = hn::MulAdd(turns, phase_y, hn::LoadU(d, &coast.ky[i])),
+                       .height_m = hn::Mul(height, gain),
+                       .height_x = hn::Mul(height, gain_x),
+                       .height_y = hn::Mul(height, gain_y)},
                       i < shown);
         }
         T gain = T(0), gain_x = T(0), gain_y = T(0);
@@ -323,12 +335,13 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
         }
         for (std::size_t i = feeling; i < end; i += lanes) {
             const V height = hn::IfThenElseZero(hn::FirstN(d, end - i), hn::LoadU(d, &coast.height_m[i]));
-            point.add(i, {.cycles = hn::LoadU(d, &cycles[i]),
-                          .kx = hn::LoadU(d, &coast.kx[i]),
-                          .ky = hn::LoadU(d, &coast.ky[i]),
-                          .height_m = hn::Mul(height, hn::Set(d, gain)),
-                          .height_x = hn::Mul(height, hn::Set(d, gain_x)),
-                          .height_y = hn::Mul(height, hn::Set(d, gain_y))},
+            point.add(i,
+                      {.cycles = hn::LoadU(d, &cycles[i]),
+                       .kx = hn::LoadU(d, &coast.kx[i]),
+                       .ky = hn::LoadU(d, &coast.ky[i]),
+                       .height_m = hn::Mul(height, hn::Set(d, gain)),
+                       .height_x = hn::Mul(height, hn::Set(d, gain_x)),
+                       .height_y = hn::Mul(height, hn::Set(d, gain_y))},
                       true);
         }
         const PointSums<T> sums = point.sums();

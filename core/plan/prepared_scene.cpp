@@ -60,8 +60,9 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
                      depth_m = deviation_m / (0.5 * kMostCoastHeight / std::sqrt(2.0)),
                      omega = spectrum.dispersion().omega(spectrum.longest_peak_wavenumber());
         extent.height_m *= rise;
-        extent.reach_m = std::max(rise * extent.reach_m, kExtentDeviations * choppiness.largest() * deviation_m *
-                                                             std::sqrt(kGravity / depth_m) / omega);
+        extent.reach_m =
+            std::max(rise * extent.reach_m, kExtentDeviations * choppiness.largest() * deviation_m *
+                                                std::sqrt(kGravity / depth_m) / omega);
         for (double& of : extent.unresolved.deviation_m) of *= rise;
     }
     for (const VesselPlan& vessel : plan_vessels(scene)) {

@@ -59,7 +59,8 @@ DepthMap::DepthMap(glm::ivec2 columns_rows, std::vector<float> depths_m, glm::dv
         for (int byte = 0; byte < 4; ++byte) hash.add(static_cast<unsigned char>(bits >> 8 * byte));
     }
     content_ = std::to_string(columns_rows.x) + " x " + std::to_string(columns_rows.y) + " depths";
-    for (const double number : {from_m.x, from_m.y, size_m.x, size_m.y}) content_ += ' ' + number_text(number);
+    for (const double number : {from_m.x, from_m.y, size_m.x, size_m.y})
+        content_ += ' ' + number_text(number);
     content_ += ", " + hash.text();
 }
 

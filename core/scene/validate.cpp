@@ -781,9 +781,9 @@ void check_coast(SceneChecker& check, const Scene& scene) {
                    " makes tiles, which are alike everywhere",
                "waves.model = \"trochoid\"");
     if (!waves.cascades.empty())
-        refuse("turns wave trains, and waves.cascades are tiles, which are alike everywhere", "no waves.cascades");
-    if (!waves.heroes.empty())
-        refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
+        refuse("turns wave trains, and waves.cascades are tiles, which are alike everywhere",
+               "no waves.cascades");
+    if (!waves.heroes.empty()) refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
     if (std::ranges::any_of(scene.keyed, is_of_sea))
         refuse("is worked out for one sea, and this one has keys", "a sea without keys");
 }

@@ -98,7 +98,8 @@ class Front {
         take_rates(phase, from);
         double steepest = 0.0;
         for (const double turn : turn_) steepest = std::max(steepest, std::abs(turn));
-        const int parts = std::clamp(static_cast<int>(std::ceil(2.0 * steepest * du / march_.dv)), 1, kMostParts);
+        const int parts =
+            std::clamp(static_cast<int>(std::ceil(2.0 * steepest * du / march_.dv)), 1, kMostParts);
         const double part = du / parts;
         std::vector<double> begin(width), end(width);
         for (int p = 0; p < parts; ++p) {
@@ -155,7 +156,8 @@ class Front {
         };
         for (std::size_t face = 0; face <= width; ++face) {
             const std::size_t below = face == 0 ? 0 : face - 1, above = std::min(face, width - 1);
-            const double turn = 0.5 * (turn_[below] + turn_[above]), part = 0.5 * std::abs(turn) * du / march_.dv;
+            const double turn = 0.5 * (turn_[below] + turn_[above]),
+                         part = 0.5 * std::abs(turn) * du / march_.dv;
             const double carried = turn > 0.0 ? flux[below] + (0.5 - part) * slope(below)
                                               : flux[above] - (0.5 - part) * slope(above);
             faces_[face] = turn * carried;
@@ -196,7 +198,8 @@ CoastRange range_of_cells(const Coast<T>& coast, std::size_t train, glm::ivec2 f
             if (!feels) continue;
             const double here = phase_at(x, y);
             include(here, range.phase_lo, range.phase_hi);
-            const auto slope = [&](bool is_there, double next, double cell_m, double& low, double& high, bool& any) {
+            const auto slope = [&](bool is_there, double next, double cell_m, double& low, double& high,
+                                   bool& any) {
                 if (!is_there) return;
                 const double rate = kTwoPi * (next - here) / cell_m;
                 if (!any) low = high = rate;
@@ -208,7 +211,8 @@ CoastRange range_of_cells(const Coast<T>& coast, std::size_t train, glm::ivec2 f
         }
     if (!feels) range.phase_lo = range.phase_hi = 0.0;
     for (int axis = 0; axis < 2; ++axis)
-        if (first[axis] == 0 || last[axis] == coast.count[axis] - 1) include(0.0, rate_lo[axis], rate_hi[axis]);
+        if (first[axis] == 0 || last[axis] == coast.count[axis] - 1)
+            include(0.0, rate_lo[axis], rate_hi[axis]);
     const glm::dvec2 k0(coast.kx[train], coast.ky[train]);
     range.k_lo = k0 + rate_lo;
     range.k_hi = k0 + rate_hi;
@@ -218,7 +222,8 @@ CoastRange range_of_cells(const Coast<T>& coast, std::size_t train, glm::ivec2 f
 }  // namespace
 
 CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count) {
-    CoastDepths depths{.count = count, .from_m = map.from_m(), .cell_m = map.size_m() / glm::dvec2(count), .depth_m = {}};
+    CoastDepths depths{
+        .count = count, .from_m = map.from_m(), .cell_m = map.size_m() / glm::dvec2(count), .depth_m = {}};
     for (int y = 0; y < count.y; ++y)
         for (int x = 0; x < count.x; ++x) {
             const glm::dvec2 from = depths.from_m + glm::dvec2(x, y) * depths.cell_m;
@@ -437,7 +442,8 @@ double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, do
     constexpr double kLeast = 1e-4, kSharpness = 4.0;
     const double share = kRoller * between(coast.broken), deviation_m = between(coast.deviation_m);
     if (!(share > kLeast && deviation_m > 0.0)) return 0.0;
-    const double crest = 0.5 * std::erfc(-kSharpness * (height_m / deviation_m + quick_deviate(share)) / std::sqrt(2.0));
+    const double crest =
+        0.5 * std::erfc(-kSharpness * (height_m / deviation_m + quick_deviate(share)) / std::sqrt(2.0));
     const double shown = filter.weight(coast.peak_per_m, cell_m);
     return shown * crest + (1.0 - shown) * share;
 }
@@ -455,7 +461,8 @@ CoastRange coast_range(const Coast<T>& coast, std::size_t train, glm::dvec2 min_
     const glm::dvec2 k0(coast.kx[train], coast.ky[train]);
     const std::size_t own = std::min(train, coast.feeling);
     CoastRange all{.is_anything = true, .gain_hi = coast.most_gain[own], .k_lo = k0, .k_hi = k0};
-    const glm::dvec2 low = (min_m - coast.from_m) / coast.cell_m, high = (max_m - coast.from_m) / coast.cell_m,
+    const glm::dvec2 low = (min_m - coast.from_m) / coast.cell_m,
+                     high = (max_m - coast.from_m) / coast.cell_m,
                      within_low = glm::clamp(low, glm::dvec2(0.0), glm::dvec2(coast.count)),
                      within_high = glm::clamp(high, glm::dvec2(0.0), glm::dvec2(coast.count));
     all.most_sideways = train < coast.feeling ? coast.most_sideways[train] : all.gain_hi * glm::length(k0);
@@ -465,8 +472,9 @@ CoastRange coast_range(const Coast<T>& coast, std::size_t train, glm::dvec2 min_
     // A place between two cells may be told to belong to either.
     constexpr double kSlack = 1e-6;
     const glm::ivec2 last = coast.count - 1;
-    const CoastRange here = range_of_cells(coast, train, glm::clamp(glm::ivec2(glm::floor(within_low - kSlack)), glm::ivec2(0), last),
-                                           glm::clamp(glm::ivec2(glm::floor(within_high + kSlack)), glm::ivec2(0), last));
+    const CoastRange here = range_of_cells(
+        coast, train, glm::clamp(glm::ivec2(glm::floor(within_low - kSlack)), glm::ivec2(0), last),
+        glm::clamp(glm::ivec2(glm::floor(within_high + kSlack)), glm::ivec2(0), last));
     CoastRange out = here;
     out.most_sideways = std::min(all.most_sideways, here.gain_hi * here.most_wavenumber());
     return out;
@@ -474,7 +482,9 @@ CoastRange coast_range(const Coast<T>& coast, std::size_t train, glm::dvec2 min_
 
 template CoastRange coast_range(const Coast<float>&, std::size_t, glm::dvec2, glm::dvec2);
 template CoastRange coast_range(const Coast<double>&, std::size_t, glm::dvec2, glm::dvec2);
-template Coast<float> make_coast(const PreparedScene&, const TrainsPlan&, const Trains<float>&, const Breaking&);
-template Coast<double> make_coast(const PreparedScene&, const TrainsPlan&, const Trains<double>&, const Breaking&);
+template Coast<float> make_coast(const PreparedScene&, const TrainsPlan&, const Trains<float>&,
+                                 const Breaking&);
+template Coast<double> make_coast(const PreparedScene&, const TrainsPlan&, const Trains<double>&,
+                                  const Breaking&);
 
 }  // namespace pelagic

@@ -40,9 +40,9 @@ CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count);
 
 // What becomes of one train of unit energy without breaking, parallel to the depths.
 struct CoastWave {
-    std::vector<double> phase;        // S − k₀·x from the map's corner [rad]
-    std::vector<double> energy;       // 0 … kMostCoastEnergy
-    std::vector<glm::dvec2> flux;     // energy times the group's velocity [m/s]
+    std::vector<double> phase;     // S − k₀·x from the map's corner [rad]
+    std::vector<double> energy;    // 0 … kMostCoastEnergy
+    std::vector<glm::dvec2> flux;  // energy times the group's velocity [m/s]
 };
 // A train of this frequency [rad/s] that comes from water of `depth_m` along a unit vector.
 CoastWave march_coast(const CoastDepths& depths, double depth_m, double omega, glm::dvec2 direction);
@@ -78,7 +78,9 @@ struct Coast {
     // The largest gain of each train that feels the floor, and of the others; the largest of gain times wavenumber [rad/m] of the former.
     std::vector<double> most_gain, most_sideways;
 
-    std::size_t cells() const { return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y); }
+    std::size_t cells() const {
+        return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y);
+    }
     std::size_t cell(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);
     }

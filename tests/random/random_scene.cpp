@@ -525,7 +525,8 @@ class Drawing {
 
     void fit_trains() {
         if (!is("waves.model", std::string("trochoid"))) {
-            for (const char* path : {"waves.trains", "waves.shortest_m", "waves.longest_m", "waves.coast"}) leave_out(path);
+            for (const char* path : {"waves.trains", "waves.shortest_m", "waves.longest_m", "waves.coast"})
+                leave_out(path);
             return;
         }
         const auto* cascades = list<std::vector<KeyEntry>>("waves.cascades");

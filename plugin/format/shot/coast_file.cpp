@@ -25,7 +25,8 @@ std::vector<Problem> read_coast_depths(Scene& scene) {
     // What isn't read is refused by validate().
     if (!scene.waves.coast || !has_ending(sea.depth_file, ".exr") || !(sea.depth_size_m > 0.0)) return {};
     const auto refused = [&](const std::string& problem, const std::string& accepted) {
-        return std::vector{Problem{"sea.depth_file", quoted_text(sea.depth_file), line_text(problem), accepted}};
+        return std::vector{
+            Problem{"sea.depth_file", quoted_text(sea.depth_file), line_text(problem), accepted}};
     };
     try {
         const exr::RgbFile picture(sea.depth_file);

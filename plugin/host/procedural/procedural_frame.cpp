@@ -109,9 +109,8 @@ double most_of(const Frame<float>& frame, Field field) {
                 const double gain = coast->most_gain[std::min(i, coast->feeling)],
                              sideways = i < coast->feeling ? coast->most_sideways[i]
                                                            : gain * kTwoPi / trains.wavelength_m[i];
-                const double of_height = field == Field::VelocityZ
-                                             ? gain
-                                             : static_cast<double>(coast->sideways_m[i]) * sideways;
+                const double of_height =
+                    field == Field::VelocityZ ? gain : static_cast<double>(coast->sideways_m[i]) * sideways;
                 most += static_cast<double>(coast->omega[i]) * trains.height_m[i] * of_height;
             }
         } else {

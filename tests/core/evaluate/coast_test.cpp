@@ -105,10 +105,13 @@ TEST(Coast, HasTheNormalsAndTheVelocityOfItsPositions) {
         const auto before = moved({});
         double squares = 0.0, tilts = 0.0;
         for (std::size_t i = 0; i < rest.size(); ++i) {
-            const glm::dvec3 tx = (east[i] - west[i]) / (2.0 * kStep), ty = (north[i] - south[i]) / (2.0 * kStep);
+            const glm::dvec3 tx = (east[i] - west[i]) / (2.0 * kStep),
+                             ty = (north[i] - south[i]) / (2.0 * kStep);
             const glm::dvec3 normal = glm::normalize(glm::cross(tx, ty));
             const double error = glm::length(answers.vectors(Normal)[i] - normal);
-            if (choppiness == 0.0) { ASSERT_LT(error, 2e-5) << i; }
+            if (choppiness == 0.0) {
+                ASSERT_LT(error, 2e-5) << i;
+            }
             squares += error * error;
             tilts += normal.x * normal.x + normal.y * normal.y;
             const glm::dvec3 velocity = (after[i] - before[i]) / (2.0 * kStep);
@@ -147,14 +150,16 @@ TEST(Coast, ShownAndHiddenSlopesAddUp) {
     const double footprints_m[] = {0.0, 0.7, 4.0, 20.0, 1000.0};
     std::vector<double> total;
     for (const double footprint_m : footprints_m) {
-        auto frame = frame_of<double>(scene, {filtered(products(Normal, Product::SlopeVarianceAtRest), footprint_m)});
+        auto frame =
+            frame_of<double>(scene, {filtered(products(Normal, Product::SlopeVarianceAtRest), footprint_m)});
         double sum = 0.0;
         int times = 0;
         for (double t_s = 0.0; t_s < 400.0; t_s += 3.7, ++times) {
             frame.set(t_s);
             const auto at = sample(frame, 0, rest);
             for (std::size_t i = 0; i < rest.size(); ++i) {
-                const glm::dvec3 n = at.vectors(Normal)[i], hidden = at.vectors(Product::SlopeVarianceAtRest)[i];
+                const glm::dvec3 n = at.vectors(Normal)[i],
+                                 hidden = at.vectors(Product::SlopeVarianceAtRest)[i];
                 sum += (n.x * n.x + n.y * n.y) / (n.z * n.z) + hidden.x + hidden.y;
                 ASSERT_GE(hidden.x, 0.0);
                 ASSERT_LE(hidden.z * hidden.z, hidden.x * hidden.y * 1.0001);
@@ -235,7 +240,8 @@ TEST(Coast, FoamsWhereItBreaks) {
 
 // At an island waves bend round, and everything is finite.
 TEST(Coast, IsTheSameOnOneThreadAndTwoAndFinite) {
-    const auto island = floor_of([](glm::dvec2 at) { return std::min(12.0, 0.2 * (glm::length(at) - 50.0)); });
+    const auto island =
+        floor_of([](glm::dvec2 at) { return std::min(12.0, 0.2 * (glm::length(at) - 50.0)); });
     const Scene scene = coast(island);
     const auto rest = random_points<float>(900.0, 2000);
     const std::vector<Query> queries{unfiltered(kAll), filtered(kAll, 2.0)};
@@ -250,7 +256,8 @@ TEST(Coast, IsTheSameOnOneThreadAndTwoAndFinite) {
     const auto one = answers(1), two = answers(2);
     for (std::size_t query = 0; query < 2; ++query)
         for (std::size_t i = 0; i < rest.size(); ++i) {
-            for (const Product product : {Position, Normal, Velocity, SlopeVariance, Product::JacobianMoments}) {
+            for (const Product product :
+                 {Position, Normal, Velocity, SlopeVariance, Product::JacobianMoments}) {
                 const glm::vec3 value = one[query].vectors(VectorProduct::checked(product))[i];
                 ASSERT_TRUE(std::isfinite(value.x + value.y + value.z)) << i;
                 ASSERT_EQ(value, two[query].vectors(VectorProduct::checked(product))[i]) << i;
@@ -272,7 +279,8 @@ TEST(Coast, BoundsHoldWhatItReaches) {
         const RestRegion where{corner_m, corner_m + side_m};
         std::vector<glm::vec2> rest;
         for (int i = 0; i < 200; ++i) rest.emplace_back(side_m * glm::dvec2(unit(random), unit(random)));
-        const auto moved = sample(frame, 0, rest, {.origin_m = corner_m, .cell_m = {}, .pixel_m = {}}).vectors(Displacement);
+        const auto moved =
+            sample(frame, 0, rest, {.origin_m = corner_m, .cell_m = {}, .pixel_m = {}}).vectors(Displacement);
         for (const DisplacementBounds& bound : {bounds.region(where), bounds.region(where, 1), all})
             for (const glm::vec3& by : moved) {
                 ASSERT_TRUE(by.z >= bound.z.lo && by.z <= bound.z.hi) << side_m;
@@ -300,9 +308,9 @@ TEST(Coast, IsRefusedWithoutDepthsAndSaysItsBytes) {
     EXPECT_EQ(explain(plain).find("feel the floor"), std::string::npos);
     const Sea<float> sea(plan);
     const Coast<float>& held = *sea.coast();
-    EXPECT_EQ(plan.trains->coast_bytes(false),
-              (held.phase.size() + held.gain.size() + held.others.size() + held.broken.size() +
-               held.deviation_m.size()) * sizeof(float));
+    EXPECT_EQ(plan.trains->coast_bytes(false), (held.phase.size() + held.gain.size() + held.others.size() +
+                                                held.broken.size() + held.deviation_m.size()) *
+                                                   sizeof(float));
     EXPECT_GT(plan.sea_bytes(), plain.sea_bytes() + plan.trains->coast_bytes(false) - 1);
     EXPECT_EQ(Sea<float>(plain).coast(), nullptr);
 }

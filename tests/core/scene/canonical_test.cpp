@@ -98,13 +98,13 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.waves.coast = true; },
         [](Scene& s) {
             s.waves.coast = true;
-            s.waves.coast_depths = std::make_shared<const DepthMap>(
-                glm::ivec2(2, 1), std::vector{3.0f, 4.0f}, glm::dvec2(0.0), glm::dvec2(2.0, 1.0));
+            s.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.0f},
+                                                                    glm::dvec2(0.0), glm::dvec2(2.0, 1.0));
         },
         [](Scene& s) {
             s.waves.coast = true;
-            s.waves.coast_depths = std::make_shared<const DepthMap>(
-                glm::ivec2(2, 1), std::vector{3.0f, 4.5f}, glm::dvec2(0.0), glm::dvec2(2.0, 1.0));
+            s.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.5f},
+                                                                    glm::dvec2(0.0), glm::dvec2(2.0, 1.0));
         },
         [](Scene& s) { s.surface.kind = SurfaceKind::Planet; },
         [](Scene& s) { s.surface.size_m = 201.0; },

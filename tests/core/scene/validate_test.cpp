@@ -284,10 +284,15 @@ TEST(Validate, FramesSeedAndLoop) {
                    {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
     expect_refused(coast([](Scene& s) { s.waves.model = WaveModel::Fft; }),
                    {"waves.coast", "true", "waves.model = \"trochoid\", or false"});
-    expect_refused(coast([](Scene& s) { s.waves.cascades = {{60.0, 128}}; }),
+    expect_refused(coast([](Scene& s) {
+                       s.waves.cascades = {{60.0, 128}};
+                   }),
                    {"waves.coast", "true", "no waves.cascades, or false"});
-    expect_refused(coast([](Scene& s) { s.waves.heroes = {{}}; }), {"waves.coast", "true", "no waves.heroes, or false"});
-    expect_refused(coast([](Scene& s) { s.keyed = {{"sea.wind_speed_mps", {.keys = {{1, 5.0}, {40, 9.0}}}}}; }),
+    expect_refused(coast([](Scene& s) { s.waves.heroes = {{}}; }),
+                   {"waves.coast", "true", "no waves.heroes, or false"});
+    expect_refused(coast([](Scene& s) {
+                       s.keyed = {{"sea.wind_speed_mps", {.keys = {{1, 5.0}, {40, 9.0}}}}};
+                   }),
                    {"waves.coast", "true", "a sea without keys, or false"});
     expect_refused([](Scene& s) { s.effects.foam_pattern = "foam.obj"; },
                    {"effects.foam_pattern", "\"foam.obj\"", "\"lace\", or the path"});

@@ -35,8 +35,7 @@ double beach_m(double x) {
 }
 
 TEST(CoastTest, APlaneBeachIsSnells) {
-    const CoastDepths depths =
-        depths_of({256, 64}, 4.0, [](glm::dvec2 at) { return beach_m(at.x); });
+    const CoastDepths depths = depths_of({256, 64}, 4.0, [](glm::dvec2 at) { return beach_m(at.x); });
     const Dispersion far{40.0};
     const double k0 = far.wavenumber(kOmega);
     for (const double degrees : {0.0, 20.0, -40.0}) {
@@ -71,8 +70,7 @@ TEST(CoastTest, APlaneBeachIsSnells) {
 }
 
 TEST(CoastTest, ThePhaseIsTheIntegralOfTheWavenumber) {
-    const CoastDepths depths =
-        depths_of({240, 8}, 4.0, [](glm::dvec2 at) { return beach_m(at.x); });
+    const CoastDepths depths = depths_of({240, 8}, 4.0, [](glm::dvec2 at) { return beach_m(at.x); });
     const CoastWave wave = march_coast(depths, kEdge_m, kOmega, {1.0, 0.0});
     const double k0 = Dispersion{kEdge_m}.wavenumber(kOmega);
     double phase = 0.0;
@@ -84,20 +82,23 @@ TEST(CoastTest, ThePhaseIsTheIntegralOfTheWavenumber) {
 }
 
 TEST(CoastTest, AllWaysAreAlike) {
-    const CoastDepths east = depths_of({64, 48}, 4.0, [](glm::dvec2 at) { return 8.0 - at.x / 40.0 + at.y / 200.0; });
+    const CoastDepths east =
+        depths_of({64, 48}, 4.0, [](glm::dvec2 at) { return 8.0 - at.x / 40.0 + at.y / 200.0; });
     const CoastWave wave = march_coast(east, kEdge_m, kOmega, towards(30.0));
     // The same beach to the west, the north and the south.
-    const CoastDepths west = depths_of(
-        {64, 48}, 4.0, [](glm::dvec2 at) { return 8.0 - (256.0 - at.x) / 40.0 + at.y / 200.0; });
+    const CoastDepths west =
+        depths_of({64, 48}, 4.0, [](glm::dvec2 at) { return 8.0 - (256.0 - at.x) / 40.0 + at.y / 200.0; });
     const CoastWave mirrored = march_coast(west, kEdge_m, kOmega, towards(150.0));
-    const CoastDepths north = depths_of({48, 64}, 4.0, [](glm::dvec2 at) { return 8.0 - at.y / 40.0 + at.x / 200.0; });
+    const CoastDepths north =
+        depths_of({48, 64}, 4.0, [](glm::dvec2 at) { return 8.0 - at.y / 40.0 + at.x / 200.0; });
     const CoastWave turned = march_coast(north, kEdge_m, kOmega, towards(60.0));
-    const CoastDepths south = depths_of({48, 64}, 4.0, [](glm::dvec2 at) { return 8.0 - (256.0 - at.y) / 40.0 + at.x / 200.0; });
+    const CoastDepths south =
+        depths_of({48, 64}, 4.0, [](glm::dvec2 at) { return 8.0 - (256.0 - at.y) / 40.0 + at.x / 200.0; });
     const CoastWave below = march_coast(south, kEdge_m, kOmega, towards(-60.0));
     for (const auto& [x, y] : {std::pair(10, 20), std::pair(50, 30), std::pair(63, 0)}) {
-        for (const auto& [other, cell] : {std::pair(&mirrored, west.at(63 - x, y)),
-                                          std::pair(&turned, north.at(y, x)),
-                                          std::pair(&below, south.at(y, 63 - x))}) {
+        for (const auto& [other, cell] :
+             {std::pair(&mirrored, west.at(63 - x, y)), std::pair(&turned, north.at(y, x)),
+              std::pair(&below, south.at(y, 63 - x))}) {
             EXPECT_NEAR(other->phase[cell], wave.phase[east.at(x, y)], 1e-9);
             EXPECT_NEAR(other->energy[cell], wave.energy[east.at(x, y)], 1e-9);
         }
@@ -119,10 +120,8 @@ TEST(CoastTest, OverALevelFloorNothingChanges) {
 
 // Against the sheet's figures: a sea of 1.5 m (rms) and 10 s on 1:50.
 TEST(CoastTest, ASeaBreaksByThorntonAndGuza) {
-    const CoastDepths depths =
-        depths_of({500, 4}, 2.0, [](glm::dvec2 at) { return beach_m(at.x); });
-    const CoastWave wave =
-        march_coast(depths, std::numeric_limits<double>::infinity(), kOmega, {1.0, 0.0});
+    const CoastDepths depths = depths_of({500, 4}, 2.0, [](glm::dvec2 at) { return beach_m(at.x); });
+    const CoastWave wave = march_coast(depths, std::numeric_limits<double>::infinity(), kOmega, {1.0, 0.0});
     std::vector<double> m0;
     std::vector<glm::dvec2> flux;
     constexpr double kHeight_m = 1.5, kM0 = kHeight_m * kHeight_m / 8.0;
@@ -131,16 +130,19 @@ TEST(CoastTest, ASeaBreaksByThorntonAndGuza) {
         flux.push_back(kM0 * wave.flux[cell]);
     }
     const CoastBreaking breaking = break_on_coast(depths, m0, flux, {1.0, 0.0}, 1.0 / kPeriod_s);
-    for (const auto& [depth_m, expected] : {std::pair(5.0, 0.32), std::pair(3.0, 0.38), std::pair(1.0, 0.44)}) {
+    for (const auto& [depth_m, expected] :
+         {std::pair(5.0, 0.32), std::pair(3.0, 0.38), std::pair(1.0, 0.44)}) {
         const int x = static_cast<int>((kEdge_m - depth_m) / kSlope / 2.0);
         const std::size_t cell = depths.at(x, 2);
         const double height_m = std::sqrt(8.0 * m0[cell] * breaking.left[cell]);
         EXPECT_NEAR(height_m / depths.depth_m[cell] / expected, 1.0, 0.1) << depth_m;
-        EXPECT_NEAR(breaking.broken[cell], std::min(1.0, std::pow(height_m / (0.42 * depths.depth_m[cell]), 4.0)), 1e-9);
+        EXPECT_NEAR(breaking.broken[cell],
+                    std::min(1.0, std::pow(height_m / (0.42 * depths.depth_m[cell]), 4.0)), 1e-9);
     }
     // None offshore, and no energy from nowhere.
     EXPECT_LT(breaking.broken[depths.at(5, 2)], 0.01);
-    for (int x = 1; x < 500; ++x) EXPECT_LE(breaking.left[depths.at(x, 2)], breaking.left[depths.at(x - 1, 2)]);
+    for (int x = 1; x < 500; ++x)
+        EXPECT_LE(breaking.left[depths.at(x, 2)], breaking.left[depths.at(x - 1, 2)]);
 }
 
 TEST(CoastTest, BehindAnIslandItIsCalm) {
@@ -149,12 +151,15 @@ TEST(CoastTest, BehindAnIslandItIsCalm) {
     });
     const CoastWave wave = march_coast(depths, 12.0, kOmega, {1.0, 0.0});
     for (std::size_t cell = 0; cell < wave.phase.size(); ++cell) {
-        ASSERT_TRUE(std::isfinite(wave.phase[cell] + wave.energy[cell] + wave.flux[cell].x + wave.flux[cell].y));
-        if (depths.depth_m[cell] <= kCoastShore_m) { EXPECT_EQ(wave.energy[cell], 0.0); }
+        ASSERT_TRUE(
+            std::isfinite(wave.phase[cell] + wave.energy[cell] + wave.flux[cell].x + wave.flux[cell].y));
+        if (depths.depth_m[cell] <= kCoastShore_m) {
+            EXPECT_EQ(wave.energy[cell], 0.0);
+        }
     }
-    EXPECT_LT(wave.energy[depths.at(56, 64)], 0.1);              // in its lee, 20 m behind
-    EXPECT_NEAR(wave.energy[depths.at(100, 5)], 1.0, 0.05);      // far beside it
-    EXPECT_NEAR(wave.energy[depths.at(10, 64)], 1.0, 0.05);      // before it
+    EXPECT_LT(wave.energy[depths.at(56, 64)], 0.1);          // in its lee, 20 m behind
+    EXPECT_NEAR(wave.energy[depths.at(100, 5)], 1.0, 0.05);  // far beside it
+    EXPECT_NEAR(wave.energy[depths.at(10, 64)], 1.0, 0.05);  // before it
 }
 
 TEST(CoastTest, AShoalGathersNoMoreThanItsLimit) {
@@ -192,8 +197,8 @@ TEST(CoastTest, WhatTurnsBackEnds) {
 TEST(CoastTest, DepthsAreMeansOfTexels) {
     const DepthMap map({2, 2}, {1.0f, 3.0f, 5.0f, -7.0f}, {10.0, 20.0}, {4.0, 4.0});
     EXPECT_NEAR(map.mean_m({10.0, 20.0}, {14.0, 24.0}), 0.5, 1e-9);
-    EXPECT_NEAR(map.mean_m({11.0, 21.0}, {11.0, 21.0}), 1.0, 1e-9);   // a texel's middle
-    EXPECT_NEAR(map.mean_m({12.0, 21.0}, {12.0, 21.0}), 2.0, 1e-9);   // halfway to the next
+    EXPECT_NEAR(map.mean_m({11.0, 21.0}, {11.0, 21.0}), 1.0, 1e-9);    // a texel's middle
+    EXPECT_NEAR(map.mean_m({12.0, 21.0}, {12.0, 21.0}), 2.0, 1e-9);    // halfway to the next
     EXPECT_NEAR(map.mean_m({-90.0, 21.0}, {-90.0, 21.0}), 1.0, 1e-9);  // as at the edge
     EXPECT_NEAR(map.mean_m({90.0, 90.0}, {95.0, 95.0}), -7.0, 1e-9);
     const CoastDepths cells = coast_depths(map, {4, 4});

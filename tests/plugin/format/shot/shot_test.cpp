@@ -72,11 +72,11 @@ TEST(Shot, ACoastsDepthsAreReadWhereWavesFeelThem) {
         }
         return std::string();
     };
-    const std::string gone = refused(
-        "[sea]\ndepth_file = \"gone.exr\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
+    const std::string gone =
+        refused("[sea]\ndepth_file = \"gone.exr\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
     EXPECT_NE(gone.find("sea.depth_file = \"gone.exr\": is no file"), std::string::npos) << gone;
-    const std::string wrong = refused(
-        "[sea]\ndepth_file = \"beach.toml\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
+    const std::string wrong =
+        refused("[sea]\ndepth_file = \"beach.toml\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
     EXPECT_NE(wrong.find("is neither \"none\" nor a picture"), std::string::npos) << wrong;
 }
 

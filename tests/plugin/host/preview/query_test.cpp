@@ -414,8 +414,8 @@ TEST(SeaLayout, RefusesWavesThatFeelTheFloor) {
     scene.waves.model = WaveModel::Trochoid;
     scene.sea.depth_file = "bay.exr";
     scene.waves.coast = true;
-    scene.waves.coast_depths = std::make_shared<const DepthMap>(
-        glm::ivec2(2, 1), std::vector{3.0f, 4.0f}, glm::dvec2(0.0), glm::dvec2(20.0, 10.0));
+    scene.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.0f},
+                                                                glm::dvec2(0.0), glm::dvec2(20.0, 10.0));
     const auto prepared = prepare(scene);
     try {
         SeaLayout::planes_of(make_plan(prepared, {view_query(*prepared)}), 0);

@@ -1,8 +1,8 @@
-"""Makes the floors of some shots: the depths of an atoll's rim, a pool's tiles, and sand.
+"""Makes the floors of some shots: the depths of an atoll's rim and of a beach, a pool's tiles, and sand.
 
     blender -b --factory-startup -P examples/floor-maps.py -- DIR
 
-Makes examples/data/atoll.exr, metres below the sea, 2 m a pixel, and examples/data/tiles.exr and sand.exr, linear Rec. 709.
+Makes examples/data/atoll.exr and beach.exr, metres below the sea, 2 m a pixel, and examples/data/tiles.exr and sand.exr, linear Rec. 709.
 """
 
 import sys
@@ -47,6 +47,18 @@ def atoll():
     return np.repeat(np.clip(depth, 0.25, 40.0)[..., None], 3, axis=-1)
 
 
+def beach():
+    """Rows from the north, where the land is, below 0: sand at 1:30 in a wide bay, with a bar that a channel cuts, and a point in the east."""
+    across = (np.arange(ATOLL) + 0.5 - ATOLL / 2) * PIXEL_M
+    east, north = np.meshgrid(across, -across)
+    shore = 135.0 + 18.0 * np.cos((east + 60.0) / 75.0) - 70.0 * step(90.0, 190.0, east)
+    out = shore - north
+    depth = out / 30.0 + 0.12 * noise(ATOLL, 2.2, 21) * step(0.0, 30.0, out)
+    bar = np.exp(-(((out - 55.0) / 16.0) ** 2)) * (1.0 - np.exp(-(((east + 45.0) / 18.0) ** 2)))
+    depth -= 0.75 * bar
+    return np.repeat(np.clip(depth, -2.0, 10.0)[..., None], 3, axis=-1)
+
+
 def tiles():
     random = np.random.default_rng(4)
     count = TILES // TILE
@@ -82,5 +94,6 @@ def save(pixels, path):
 if __name__ == "__main__":
     folder = Path(sys.argv[sys.argv.index("--") + 1])
     save(atoll(), folder / "atoll.exr")
+    save(beach(), folder / "beach.exr")
     save(tiles(), folder / "tiles.exr")
     save(sand(), folder / "sand.exr")

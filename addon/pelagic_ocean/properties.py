@@ -28,7 +28,7 @@ OF_CAMERA = {"camera.exposure_ev", "camera.ev100"}  # what Blender's camera hasn
 ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", ("file",)), "sea.spectrum_time": ("sea.spectrum", ("file",)),
              "surface.cage_file": ("surface.kind", ("cage",)), "surface.cage_level": ("surface.kind", ("cage",)),
              "waves.trains": ("waves.model", ("trochoid",)), "waves.shortest_m": ("waves.model", ("trochoid",)),
-             "waves.longest_m": ("waves.model", ("trochoid",)),
+             "waves.longest_m": ("waves.model", ("trochoid",)), "waves.coast": ("waves.model", ("trochoid",)),
              "water.chlorophyll_mg_m3": ("water.type", ("ocean", "coastal", "turbid"))}
 
 # A unit of the table → arguments of a property. Degrees stay degrees: Blender's angles would be radians in scripts.
@@ -160,7 +160,8 @@ def counts(field, settings):
     picture = BY_PATH.get(field.key["of_picture"])
     if picture is not None:
         path = picture.read(getattr(settings, picture.table))
-        return path != picture.key["default"] and not path.lower().endswith(".obj")
+        if path == picture.key["default"] or path.lower().endswith(".obj"):
+            return False
     other, values = ONLY_WITH.get(field.path, (None, ()))
     return other is None or getattr(getattr(settings, BY_PATH[other].table), BY_PATH[other].name) in values
 

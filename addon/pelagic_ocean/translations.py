@@ -29,7 +29,7 @@ GERMAN = {
     "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",
     "Lean": "Vorneigung", "Second order": "Zweite Ordnung",
     "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen", "Heroes": "Einzelwellen", "Masks": "Masken", "Picture": "Bild", "Vessels": "Schiffe", "Path": "Pfad", "Interpolation": "Interpolation", "Beam": "Breite", "Draught": "Tiefgang", "Linear": "Linear", "Smooth": "Weich", "Edge": "Rand", "Ripples": "Kräuselwellen", "Foam": "Schaum", "East": "Osten", "North": "Norden",
-    "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste",
+    "From": "Von", "To": "Bis", "Gain": "Verstärkung", "Trains": "Wellenzüge", "Shortest": "Kürzeste", "Longest": "Längste", "Coast": "Küste",
     "Kind": "Art", "Cell": "Zelle", "Earth curvature": "Erdkrümmung", "Cage file": "Käfigdatei", "Cage level": "Käfigstufe", "Beyond": "Jenseits",
     "Sun elevation": "Sonnenhöhe", "Sun azimuth": "Sonnenazimut", "Sky": "Himmel", "Turbidity": "Trübung der Luft",
     "Visibility": "Sichtweite", "Camera": "Kamera", "Light meter": "Belichtungsmesser", "Type": "Wasserart", "Body": "Wasserkörper", "Floor colour": "Farbe des Grundes", "Crest light": "Licht durch Kämme",

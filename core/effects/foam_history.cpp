@@ -655,6 +655,12 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
         threshold(kStride + 16);
     Results<T> results;
     results.set(Product::JacobianMoments, {moments.data()});
+    const Coast<T>* coast = level.frame.sea().coast();
+    static thread_local std::vector<glm::vec<3, T>> moved;
+    if (coast) {
+        moved.resize(kStride);
+        results.set(Product::Displacement, {moved.data()});
+    }
     // Where it waits for its parts, this thread takes up no other tile: the arrays are its own.
     const Points<T> points{.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}};
     tbb::this_task_arena::isolate([&] { evaluate(level.frame, 0, points, results); });
@@ -675,6 +681,12 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
                           sea_->plan().knobs.third_moment, {deviates(n), kNodes});
     else
         std::fill_n(deviates(n), kNodes, kNoBreaking);
+    // What breaks on the floor foams like the rest.
+    for (std::size_t i = 0; i < kNodes && coast; ++i) {
+        const double foam = coast_foam(*coast, origin_m + glm::dvec2(level.rest_m[i]),
+                                       static_cast<double>(moved[i].z), level.cell_m, sea_->plan().filter);
+        deviates(n)[i] = std::max(deviates(n)[i], static_cast<float>(quick_deviate(foam)));
+    }
     // In a calm J is 1 throughout, as far from breaking as can be.
     if (const auto& masks = sea_->plan().masks) {
         const double side_m = level.cell_m * FoamPlan::kTileCells;

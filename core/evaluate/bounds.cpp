@@ -232,6 +232,12 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
     if (plan.trains && !query.only_cascade) {
         const Trains<T>& trains = frame.sea().trains();
         for (std::size_t i = 0; i < trains.count(); ++i) {
+            if (const Coast<T>* coast = frame.sea().coast()) {  // its weights are those of its local length
+                if (!(static_cast<double>(coast->longest_m[i]) > plan.filter.n_min * cells_.finest_m)) break;
+                finest_weight_.push_back(1.0);
+                coarsest_weight_.push_back(1.0);
+                continue;
+            }
             const double k = kTwoPi / trains.wavelength_m[i];
             finest_weight_.push_back(plan.filter.weight(k, cells_.finest_m));
             if (finest_weight_.back() == 0.0) {  // the longest come first
@@ -434,8 +440,10 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
     // Waves that are long against the block are bounded together, by the sums of their values and slopes at its
     // middle; the rest is of second order, |a| δ²/2 where the phase turns by δ. The others are bounded one by one.
     constexpr double kSmooth = 1.0;
+    const Coast<T>* coast = frame_->sea().coast();
+    if (coast) add_coast(*coast, block, cycles, origin_m, bounds);
     std::array<glm::dvec2, 3> slopes{glm::dvec2(0.0), glm::dvec2(0.0), glm::dvec2(0.0)};
-    for (std::size_t i = 0; i < finest_weight_.size(); ++i) {
+    for (std::size_t i = 0; i < finest_weight_.size() && !coast; ++i) {
         const double kx = trains.kx_cycles_per_m[i], ky = trains.ky_cycles_per_m[i];
         const double phase = cycles[i] - kx * middle.x - ky * middle.y;
         const double by = std::abs(kx) * half.x + std::abs(ky) * half.y + 1e-9, radians = kTwoPi * by;
@@ -479,6 +487,72 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
         (bounds.*axis).hi += (of_vessels.*axis).hi;
     }
     return bounds;
+}
+
+// Each train between what its local phase, way and height can be there.
+template <class T>
+void FrameBounds<T>::add_coast(const Coast<T>& coast, const Block& block, const std::vector<double>& cycles,
+                               glm::dvec2 origin_m, DisplacementBounds& bounds) const {
+    const Plan& plan = frame_->sea().plan();
+    const Trains<T>& trains = frame_->sea().trains();
+    const glm::dvec2 middle = 0.5 * (block.min_m + block.max_m), half = 0.5 * (block.max_m - block.min_m);
+    const auto product = [](const Interval& a, const Interval& b) {
+        const auto [lo, hi] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
+        return Interval{lo, hi};
+    };
+    for (std::size_t i = 0; i < finest_weight_.size(); ++i) {
+        const CoastRange range = coast_range(coast, i, origin_m + block.min_m, origin_m + block.max_m);
+        const double height_m = trains.height_m[i], sideways_m = static_cast<double>(coast.sideways_m[i]);
+        const double kx = trains.kx_cycles_per_m[i], ky = trains.ky_cycles_per_m[i];
+        const double floor_phase = 0.5 * (range.phase_lo + range.phase_hi);
+        const double phase = cycles[i] - kx * middle.x - ky * middle.y - floor_phase;
+        const double by =
+            range.is_anything
+                ? 1.0
+                : std::abs(kx) * half.x + std::abs(ky) * half.y + 0.5 * (range.phase_hi - range.phase_lo) +
+                      1e-9 +
+                      kRounding<T> * (1.0 + std::max(std::abs(range.phase_lo), std::abs(range.phase_hi)));
+        Interval weight{0.0, 1.0};
+        if (!range.is_anything) {
+            // The least |∇S| is 0 where a component may vanish.
+            glm::dvec2 least(0.0);
+            for (int axis = 0; axis < 2; ++axis)
+                if (range.k_lo[axis] * range.k_hi[axis] > 0.0)
+                    least[axis] = std::min(std::abs(range.k_lo[axis]), std::abs(range.k_hi[axis]));
+            const double k_least = std::hypot(least.x, least.y);
+            weight = {plan.filter.weight(range.most_wavenumber(), cells_.coarsest_m),
+                      k_least > 0.0 ? plan.filter.weight(k_least, cells_.finest_m) : 1.0};
+            widen(weight, kRounding<T>);
+        }
+        const Interval gain =
+            product({std::max(range.is_anything ? 0.0 : range.gain_lo, 0.0), range.gain_hi}, weight);
+        const double slack = kRounding<T> * range.gain_hi * height_m;
+        if (!plan.dropped[index(Field::Height)]) {
+            Interval height = product(product(gain, {height_m, height_m}), cosine(phase, by));
+            widen(height, slack);
+            bounds.z.lo += height.lo;
+            bounds.z.hi += height.hi;
+        }
+        // k̂ H is ∇S times h, and no further than 1/k.
+        const Interval wave = cosine(phase - 0.25, by);
+        const double most_m = sideways_m * height_m * range.most_sideways;
+        for (int axis = 0; axis < 2; ++axis) {
+            if (plan.dropped[index(axis == 0 ? Field::Dx : Field::Dy)]) continue;
+            Interval way{-most_m, most_m};
+            if (!range.is_anything) {
+                const double to_side = sideways_m * height_m;
+                Interval local = product(gain, {to_side * range.k_lo[axis], to_side * range.k_hi[axis]});
+                if (to_side * range.gain_hi * range.most_wavenumber() * range.most_wavenumber() > 1.0)
+                    include(local, {0.0, 0.0});
+                way = {std::max(way.lo, local.lo), std::min(way.hi, local.hi)};
+            }
+            Interval moved = product(way, wave);
+            widen(moved, kRounding<T> * most_m + slack);
+            Interval& to = axis == 0 ? bounds.dx : bounds.dy;
+            to.lo += moved.lo;
+            to.hi += moved.hi;
+        }
+    }
 }
 
 // Splits the blocks whose bounds lie farthest beyond what the region surely reaches, until none lies far beyond. The

@@ -101,6 +101,8 @@ class FrameBounds {
     Pyramid pyramid_of(int cascade, int grid, Field field) const;
     DisplacementBounds bounds_of(const Block& block, const std::vector<double>& cycles,
                                  glm::dvec2 origin_m) const;
+    void add_coast(const Coast<T>& coast, const Block& block, const std::vector<double>& cycles,
+                   glm::dvec2 origin_m, DisplacementBounds& bounds) const;
 
     const Frame<T>* frame_;
     const PlannedQuery* planned_;

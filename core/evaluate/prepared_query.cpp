@@ -154,6 +154,7 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                                              ? "\" at one time alone: ask a SeaAtTime"
                                              : "\": ask for it when the plan is made"));
     has_trains_ = plan.trains && !query.only_cascade;
+    has_coast_ = has_trains_ && frame.sea().coast();
     has_random_tiling_ = !query.only_cascade &&
                          std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                      [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
@@ -263,15 +264,17 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
                                                        const Place& place) const {
     const ProductSet given = results.given();
     const bool many_pixels = planned_->pixel_levels.size() > 1;
+    FieldSet needed = fields_of(given & ~breaking_products());
+    if (has_coast_ && given[index(Product::Breaking)]) needed |= fields(Field::Height);
     return {
         .points = points,
         .results = results,
         .place = place,
-        .needed = fields_of(given & ~breaking_products()) & ~frame_->sea().plan().dropped,
+        .needed = needed & ~frame_->sea().plan().dropped,
         .breaks = (given & breaking_products()).any(),
         .wants_unresolved = (given & unresolved_products()).any(),
         .has_levels = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
-        .differ_in_unresolved = points.pixel_m && (has_trains_ || many_pixels)};
+        .differ_in_unresolved = (points.pixel_m && (has_trains_ || many_pixels)) || has_coast_};
 }
 
 template <class T>
@@ -413,6 +416,17 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     const auto unresolved = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && unresolved)
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
+    if (const auto breaking = call.results.numbers(Product::Breaking); breaking && has_coast_) {
+        const Coast<T>& coast = *frame_->sea().coast();
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const double cell_m = call.points.cell_m ? static_cast<double>(call.points.cell_m[first + i])
+                                                     : planned_->query.cell_m.front();
+            const double more =
+                coast_foam(coast, call.place.origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]),
+                           static_cast<double>(chunk.sums[index(Field::Height)][i]), cell_m, plan.filter);
+            breaking[first + i] += (T(1) - breaking[first + i]) * static_cast<T>(more);
+        }
+    }
     if (const auto breaking = call.results.numbers(Product::Breaking); breaking && work.masked)
         for (std::size_t i = 0; i < chunk.count; ++i) breaking[first + i] *= work.masks->gains.foam[i];
 }
@@ -858,6 +872,8 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
         for (auto& moment : unresolved_of.moments)
             std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
     const TrainArgs<T> all{.trains = &frame_->sea().trains(),
+                           .coast = frame_->sea().coast(),
+                           .origin_m = call.place.origin_m,
                            .start_cycles = call.place.start_cycles.data(),
                            .filter = plan.filter,
                            .wanted = needed,

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "core/evaluate/trains.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target first: it includes this file once for each instruction set.
+#include "core/evaluate/coast-inl.h"
 #include "core/evaluate/trains-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -10,10 +11,10 @@ namespace pelagic {
 namespace HWY_NAMESPACE {
 
 std::size_t AddTrainsFloat(const TrainArgs<float>& args, Chunk<float>& chunk) {
-    return AddTrains(args, chunk);
+    return args.coast ? AddCoastTrains(args, chunk) : AddTrains(args, chunk);
 }
 std::size_t AddTrainsDouble(const TrainArgs<double>& args, Chunk<double>& chunk) {
-    return AddTrains(args, chunk);
+    return args.coast ? AddCoastTrains(args, chunk) : AddTrains(args, chunk);
 }
 
 }  // namespace HWY_NAMESPACE

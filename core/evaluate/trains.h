@@ -5,6 +5,7 @@
 
 #include "core/evaluate/chunk.h"
 #include "core/plan/filter.h"
+#include "core/waves/coast.h"
 #include "core/waves/trains.h"
 
 namespace pelagic {
@@ -18,6 +19,9 @@ struct UnresolvedChunk {
 template <class T>
 struct TrainArgs {
     const Trains<T>* trains = nullptr;
+    // Where given, the trains go by it: their local lengths, ways and heights. Points are then from an origin in the world.
+    const Coast<T>* coast = nullptr;
+    glm::dvec2 origin_m{0.0};
     const double* start_cycles = nullptr;  // phases_at() the chunk's origin and the frame's time
     FootprintFilter filter{};
     FieldSet wanted{};

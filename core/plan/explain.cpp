@@ -68,6 +68,11 @@ std::string trains_text(const Plan& plan) {
         "  summed at each point: nothing is transformed, no grid is held\n",
         trains.count, trains.longest_m, trains.shortest_m,
         bytes_text(trains.sea_bytes(plan.knobs.double_precision)).c_str());
+    if (trains.coast_cells.x > 0)
+        page += format(
+            "  %d of them feel the floor, marched once over %d x %d cells, %s of those bytes; nine reads a point and train\n",
+            trains.coast_trains, trains.coast_cells.x, trains.coast_cells.y,
+            bytes_text(trains.coast_bytes(plan.knobs.double_precision)).c_str());
     for (const PlannedQuery& planned : plan.queries) {
         const Query& query = planned.query;
         page += "  " + query.name + ": ";

@@ -484,6 +484,7 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     Query query;
     query.name = "foam";
     query.products = products(Product::JacobianMoments);
+    if (plan.from->scene.waves.coast) query.products |= products(Product::Displacement);
     query.cell_m = query.pixel_m = {cell_m};
     query.is_view = true;
     Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});

@@ -6,8 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "core/base/constants.h"
 #include "core/plan/effects.h"
 #include "core/plan/masks.h"
+#include "core/plan/trains.h"
 #include "core/plan/vessels.h"
 #include "core/plan/weather.h"
 #include "core/scene/budget.h"
@@ -50,6 +52,18 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
         extent.height_m *= masks->largest();
         extent.reach_m *= masks->largest();
         for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();
+    }
+    if (scene.waves.coast && spectrum.m0() > 0.0) {
+        // On a coast waves rise to kMostCoastEnergy at most. So high, σ, they go farthest to the side where they have broken down to 0.28 d, half
+        // of kMostCoastHeight: σ coth(kd) ≤ σ √(g/d)/ω.
+        const double rise = std::sqrt(kMostCoastEnergy), deviation_m = rise * std::sqrt(spectrum.m0()),
+                     depth_m = deviation_m / (0.5 * kMostCoastHeight / std::sqrt(2.0)),
+                     omega = spectrum.dispersion().omega(spectrum.longest_peak_wavenumber());
+        extent.height_m *= rise;
+        extent.reach_m =
+            std::max(rise * extent.reach_m, kExtentDeviations * choppiness.largest() * deviation_m *
+                                                std::sqrt(kGravity / depth_m) / omega);
+        for (double& of : extent.unresolved.deviation_m) of *= rise;
     }
     for (const VesselPlan& vessel : plan_vessels(scene)) {
         extent.height_m += vessel.highest_m(scene.sea.depth_m);

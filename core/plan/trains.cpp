@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
+#include <stdexcept>
 
 #include "core/base/constants.h"
 #include "core/plan/fields.h"
@@ -70,10 +72,31 @@ std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
     constexpr std::size_t kUnresolved = 8;
     const auto trains = static_cast<std::size_t>(count + hero_trains);
     return trains * (7 * sizeof(double) + (kFieldCount + 2) * scalar) +
-           (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kUnresolved * scalar;
+           (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kUnresolved * scalar +
+           coast_bytes(double_precision);
+}
+
+std::size_t TrainsPlan::coast_bytes(bool double_precision) const {
+    // Of each cell a phase and a gain of each train that feels it, in whole vectors; the gain of all others, its share of breaking waves and its height.
+    const std::size_t scalar = double_precision ? sizeof(double) : sizeof(float), vector = 64 / scalar;
+    const std::size_t stride = (static_cast<std::size_t>(coast_trains) + vector - 1) / vector * vector;
+    return static_cast<std::size_t>(coast_cells.x) * static_cast<std::size_t>(coast_cells.y) *
+           (2 * stride + 3) * scalar;
 }
 
 namespace {
+
+// Cells as square as can be, and no finer than trains that feel the floor need.
+void plan_coast(TrainsPlan& plan, const Waves& waves) {
+    constexpr double kCellsASide = 256.0, kFinest_m = 0.25, kShortest_m = 2.0;
+    if (!waves.coast_depths)
+        throw std::invalid_argument("the depths of sea.depth_file weren't read, and waves.coast needs them");
+    const glm::dvec2 size_m = waves.coast_depths->size_m();
+    const double cell_m = std::max(std::max(size_m.x, size_m.y) / kCellsASide, kFinest_m);
+    plan.coast_cells = glm::max(glm::ivec2(glm::round(size_m / cell_m)), 4);
+    plan.coast_trains = static_cast<int>(
+        std::ranges::count_if(plan.wavelengths_m, [](double length_m) { return length_m > kShortest_m; }));
+}
 
 TrainsPlan model_trains(const PreparedScene& prepared, double finest_footprint_m) {
     const Waves& waves = prepared.scene.waves;
@@ -103,6 +126,7 @@ TrainsPlan model_trains(const PreparedScene& prepared, double finest_footprint_m
         plan.wavelengths_m.push_back(mean_wavelength_m(spectrum, plan.edge_m(i), plan.edge_m(i + 1)));
         plan.below_pixel += plan.wavelengths_m.back() < nyquist_m;
     }
+    if (waves.coast) plan_coast(plan, waves);
     return plan;
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,6 +29,9 @@ struct HeroEnds {
     double height = 0.0, level = 0.0;
 };
 
+// On a coast (core/waves/coast.h): a train's energy over what came in, and the height of one over the depth.
+inline constexpr double kMostCoastEnergy = 3.0, kMostCoastHeight = 0.78;
+
 struct TrainsPlan {
     int count = 0;
     double longest_m = 0.0, shortest_m = 0.0;  // the bins' outer edges
@@ -41,6 +45,11 @@ struct TrainsPlan {
     HeroEnds hero_ends{};  // up to where heroes know the sea
     // Whose spectrum's directions they have: of a shot with weather (core/plan/weather.h); null: the sea's own.
     std::shared_ptr<const PreparedScene> shot{};
+
+    // With waves.coast: cells of the depths that they are marched over, and how many of the trains, the longest, feel them.
+    glm::ivec2 coast_cells{0};
+    int coast_trains = 0;
+    std::size_t coast_bytes(bool double_precision) const;
 
     // What a Sea holds of them (Trains<T>, core/waves/trains.h).
     std::size_t sea_bytes(bool double_precision) const;

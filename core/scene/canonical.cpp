@@ -34,6 +34,8 @@ std::string canonical(const Scene& scene, KeyPartSet parts) {
             if (scene.surface.cage && key.path == kCageFile) value = scene.surface.cage->content();
         } else if (key.type != KeyType::DataTime) {  // is part of its file's line
             value = value_text(key, content_value(scene, key));
+            if (key.path == kCoastKey && scene.waves.coast_depths)
+                value += ' ' + scene.waves.coast_depths->content();
         }
         if (!value.empty()) text += key.path + " = " + value + '\n';
     }

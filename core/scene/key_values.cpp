@@ -421,6 +421,7 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
         (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
         return false;
     if (key.path == kObjectsKey && scene.objects.empty()) return false;
+    if (key.path == kCoastKey && !scene.waves.coast) return false;
     return (key.key_parts & parts).any();
 }
 

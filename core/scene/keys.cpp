@@ -137,7 +137,7 @@ void add_sea(Built& out) {
             {.name = "depth_file",
              .help =
                  "how deep the floor lies that is seen, in metres: a picture of depths from above, north at its top, grey or its red, "
-                 "or a mesh of the floor, z up, which lies where it lies in the world; beyond it the floor goes to depth_m. Waves are those of depth_m",
+                 "or a mesh of the floor, z up, which lies where it lies in the world; beyond it the floor goes to depth_m. Waves are those of depth_m, and feel it with waves.coast",
              .accepted = "\"none\", or the path of an .exr or .obj, from the shot file's folder",
              .key_parts = key_parts(KeyPart::Water),
              .is_picture = true,
@@ -483,7 +483,15 @@ void add_waves(Built& out) {
              .unit = "m",
              .range = limits::kTrain_m,
              .soft = SoftRange{1.0, 2000.0, true},
-             .key_parts = kWaves}));
+             .key_parts = kWaves}),
+        with_data(row<&Waves::coast>(
+            {.name = "coast",
+             .help =
+                 "with trochoid: whether the trains feel the floor of sea.depth_file. They come from sea.depth_m, turn, shorten and rise "
+                 "over shallow water, lose height where they break, and end at the shore. There are no diffraction behind islands, "
+                 "no reflection, no run-up and no crests that overturn",
+             .key_parts = kWaves,
+             .of_picture = "sea.depth_file"})));
 }
 
 void add_surface(Built& out) {

@@ -169,7 +169,8 @@ std::optional<EntryPath> entry_of(std::string_view path);
 inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file",
                                   kCameraFile = "camera.file";
 // The list of bodies, whose meshes are as well.
-inline constexpr std::string_view kObjectsKey = "objects", kMasksKey = "waves.masks";
+inline constexpr std::string_view kObjectsKey = "objects", kMasksKey = "waves.masks",
+                                  kCoastKey = "waves.coast";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);

@@ -769,6 +769,30 @@ void check_objects(SceneChecker& check, const Scene& scene) {
                       "at most " + std::to_string(limits::kObjectTriangles) + " of all files together"});
 }
 
+// What waves that feel the floor need, and can't do yet.
+void check_coast(SceneChecker& check, const Scene& scene) {
+    const Waves& waves = scene.waves;
+    if (!waves.coast) return;
+    const auto refuse = [&](const std::string& problem, const std::string& accepted) {
+        check.refuse({std::string(kCoastKey), "true", problem, accepted + ", or false"});
+    };
+    if (waves.model != WaveModel::Trochoid)
+        refuse("turns wave trains, and waves.model = " + choice_text(waves.model) +
+                   " makes tiles, which are alike everywhere",
+               "waves.model = \"trochoid\"");
+    if (!waves.cascades.empty())
+        refuse("turns wave trains, and waves.cascades are tiles, which are alike everywhere",
+               "no waves.cascades");
+    if (!waves.heroes.empty()) refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
+    if (std::ranges::any_of(scene.objects, [](const SceneObject& object) {
+            return object.floats && object.buoyancy == Buoyancy::Response;
+        }))
+        refuse("turns waves, and objects[].buoyancy = \"response\" answers each as it comes from sea.depth_m",
+               "objects[].buoyancy = \"plane\"");
+    if (std::ranges::any_of(scene.keyed, is_of_sea))
+        refuse("is worked out for one sea, and this one has keys", "a sea without keys");
+}
+
 // What calm and rough places can't do yet.
 void check_masks(SceneChecker& check, const Scene& scene) {
     const Waves& waves = scene.waves;
@@ -910,6 +934,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_budget(check, scene.quality);
     check_tiles(check, scene.output, scene.waves);
     check_masks(check, scene);
+    check_coast(check, scene);
     check_vessels(check, scene);
     check_objects(check, scene);
     check_volumes(check, scene);

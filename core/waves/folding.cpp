@@ -69,9 +69,10 @@ std::vector<std::string> trough_warning(const PreparedScene& prepared) {
 
 std::vector<std::string> map_warning(const PreparedScene& prepared) {
     if (prepared.scene.sea.depth_file == SeaState{}.depth_file) return {};
+    if (prepared.scene.waves.coast) return {};
     return {
         "waves don't feel the depths of sea.depth_file: the floor is seen there, and waves are those of " +
-        number_text(prepared.scene.sea.depth_m) + " m (sea.depth_m)"};
+        number_text(prepared.scene.sea.depth_m) + " m (sea.depth_m); waves.coast lets wave trains feel it"};
 }
 
 std::vector<std::string> folding_warning(const PreparedScene& prepared) {

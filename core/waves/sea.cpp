@@ -274,6 +274,9 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
     if (plan_.trains) {
         trains_ = make_trains<T>(*plan_.from, *plan_.trains, plan_.filter, plan_.breaking);
         total_ = pelagic::total(trains_);
+        if (plan_.trains->coast_cells.x > 0)
+            coast_ = std::make_shared<const Coast<T>>(
+                make_coast(*plan_.from, *plan_.trains, trains_, plan_.breaking));
     } else {
         total_ =
             moments_with_breaking(spectrum, 0.0, std::numeric_limits<double>::infinity(), plan_.breaking);

@@ -14,6 +14,7 @@
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/spectrum/spectrum_table.h"
+#include "core/waves/coast.h"
 #include "core/waves/ellipse_moments.h"
 #include "core/waves/gusts.h"
 #include "core/waves/trains.h"
@@ -87,6 +88,8 @@ class Sea {
     const std::shared_ptr<const SpectrumTable>& spectrum_table() const { return table_; }
     std::span<const Cascade<T>> cascades() const { return *cascades_; }
     const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
+    // How the trains go where they feel the floor; null where they don't.
+    const Coast<T>* coast() const { return coast_.get(); }
     double loop_s() const { return loop_s_; }
     // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
     const SpectralMoments& total() const { return total_; }
@@ -128,6 +131,7 @@ class Sea {
     Whitecaps whitecaps_;
     std::shared_ptr<const std::vector<Cascade<T>>> cascades_;
     Trains<T> trains_;
+    std::shared_ptr<const Coast<T>> coast_;
     std::vector<QueryStatistics> statistics_;
     std::vector<EllipseMoments> ellipses_;
     std::vector<double> expected_m0_;

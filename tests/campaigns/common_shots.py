@@ -201,7 +201,7 @@ def _make_fit(draw, keys):
         if shortest and longest and longest < 10 * shortest:
             keys["waves.longest_m"] = min(10 * shortest, 1e6)
     else:
-        for name in ("trains", "shortest_m", "longest_m"):
+        for name in ("trains", "shortest_m", "longest_m", "coast"):
             keys.pop(f"waves.{name}", None)
     if keys.get("surface.kind", "patch") != "patch":
         keys.pop("output.mesh_scheme", None)

@@ -61,7 +61,7 @@ if "python" in sys.argv[4:]:
         cwd="/", env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")})
     expect(len(list((folder / "by_python").rglob("*.vdb"))) == 1, "the module writes no volume")
 headers = sorted(str(p.relative_to(prefix / "include")) for p in (prefix / "include").rglob("*") if p.is_file())
-expect(headers == [f"pelagic/{name}.h" for name in ("cage", "mask_picture", "object_mesh", "ocean", "procedural", "scene", "version")], f"the headers are {headers}")
+expect(headers == [f"pelagic/{name}.h" for name in ("cage", "depth_map", "mask_picture", "object_mesh", "ocean", "procedural", "scene", "version")], f"the headers are {headers}")
 pc = {**os.environ, "PKG_CONFIG_PATH": str(next(prefix.rglob("pkgconfig")))}
 cflags = run("pkg-config", "--cflags", "pelagic-core", env=pc).split()
 libs = run("pkg-config", "--libs", "pelagic-core", env=pc).split()

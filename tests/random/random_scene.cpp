@@ -527,10 +527,14 @@ class Drawing {
 
     void fit_trains() {
         if (!is("waves.model", std::string("trochoid"))) {
-            for (const char* path : {"waves.trains", "waves.shortest_m", "waves.longest_m"}) leave_out(path);
+            for (const char* path : {"waves.trains", "waves.shortest_m", "waves.longest_m", "waves.coast"})
+                leave_out(path);
             return;
         }
         const auto* cascades = list<std::vector<KeyEntry>>("waves.cascades");
+        if (!is("sea.depth_file", std::string(kFoamName)) || made_.value("waves.heroes") ||
+            (cascades && !cascades->empty()))
+            leave_out("waves.coast");
         if (cascades && !cascades->empty() && made_.value("waves.shortest_m")) {
             const auto& first = cascades->front().values;
             const auto& last = cascades->back().values;

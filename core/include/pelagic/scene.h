@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "pelagic/cage.h"
+#include "pelagic/depth_map.h"
 #include "pelagic/mask_picture.h"
 #include "pelagic/object_mesh.h"
 #include "pelagic/version.h"
@@ -116,7 +117,7 @@ struct SeaState {
     double fetch_m = 300e3;                                    // > 0
     double depth_m = std::numeric_limits<double>::infinity();  // > 0
     // The floor that is seen where it isn't level: "none", or the path of a picture of depths [m], how wide it is and where its middle lies.
-    // Waves are those of depth_m.
+    // Waves are those of depth_m, and with Waves::coast come from there.
     std::string depth_file = "none";
     double depth_size_m = 100.0;  // > 0
     double depth_east_m = 0.0, depth_north_m = 0.0;
@@ -195,6 +196,9 @@ struct Waves {
     // spectrum's (core/plan/trains.h).
     int trains = 250;  // 1 … 10000
     std::optional<double> shortest_m, longest_m;
+    // With WaveModel::Trochoid: whether trains feel the floor of SeaState::depth_file (core/waves/coast.h), and that floor, read.
+    bool coast = false;
+    std::shared_ptr<const DepthMap> coast_depths{};
 };
 
 // [surface]

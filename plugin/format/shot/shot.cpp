@@ -13,6 +13,7 @@
 #include "plugin/format/obj/obj.h"
 #include "plugin/format/shot/bounds.h"
 #include "plugin/format/shot/chan.h"
+#include "plugin/format/shot/coast_file.h"
 #include "plugin/format/shot/mask_files.h"
 #include "plugin/format/shot/ndbc.h"
 #include "plugin/format/shot/object_file.h"
@@ -181,6 +182,8 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     load_camera(reader, file.parent_path(), scene.camera);
     find_pictures(reader, file.parent_path(), scene);
     for (const Problem& problem : read_mask_pictures(scene.waves, file.parent_path())) reader.refuse(problem);
+    if (!reader.has_failed("sea.depth_file"))
+        for (const Problem& problem : read_coast_depths(scene)) reader.refuse(problem);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
     const std::vector<const Key*> pictures = picture_keys(scene);
     if (std::none_of(pictures.begin(), pictures.end(),

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/constants.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/memory.h"
 #include "core/scene/text.h"
@@ -103,7 +104,18 @@ double most_of(const Frame<float>& frame, Field field) {
         const auto add = [&](const std::vector<float>& amplitudes) {
             for (const float amplitude : amplitudes) most += std::abs(static_cast<double>(amplitude));
         };
-        add(trains.amplitude[index(field)]);
+        if (const Coast<float>* coast = frame.sea().coast()) {
+            for (std::size_t i = 0; i < trains.count(); ++i) {
+                const double gain = coast->most_gain[std::min(i, coast->feeling)],
+                             sideways = i < coast->feeling ? coast->most_sideways[i]
+                                                           : gain * kTwoPi / trains.wavelength_m[i];
+                const double of_height =
+                    field == Field::VelocityZ ? gain : static_cast<double>(coast->sideways_m[i]) * sideways;
+                most += static_cast<double>(coast->omega[i]) * trains.height_m[i] * of_height;
+            }
+        } else {
+            add(trains.amplitude[index(field)]);
+        }
         for (const std::size_t axis : {0, 1, 2})
             if (field == kVelocities[axis]) add(trains.growth[axis]);
     }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/scene/names.h"
+#include "plugin/format/shot/coast_file.h"
 #include "plugin/format/shot/mask_files.h"
 #include "plugin/format/shot/shot.h"
 
@@ -172,12 +173,16 @@ py::object to_python(const Key& key, const KeyValue& value) {
 
 void set_from_python(Scene& scene, const Key& key, py::handle given) {
     const KeyValue value = from_python(key, key.path, given);
-    Waves before = scene.waves;
+    const Waves waves_before = scene.waves;
+    const SeaState sea_before = scene.sea;
     if (const auto problem = set_value(scene, key, value)) throw ShotError(text_of(*problem));
-    if (key.path != "waves.masks") return;
-    const std::vector<Problem> problems = read_mask_pictures(scene.waves, "");
+    std::vector<Problem> problems;
+    if (key.path == "waves.masks") problems = read_mask_pictures(scene.waves, "");
+    if (key.path == kCoastKey || (scene.waves.coast && key.path.starts_with("sea.depth_")))
+        problems = read_coast_depths(scene);
     if (problems.empty()) return;
-    scene.waves = std::move(before);
+    scene.waves = waves_before;
+    scene.sea = sea_before;
     throw ShotError(text_of(problems.front()));
 }
 

@@ -95,6 +95,17 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.waves.trains = 61; },
         [](Scene& s) { s.waves.shortest_m = 0.02; },
         [](Scene& s) { s.waves.longest_m = 0.02; },
+        [](Scene& s) { s.waves.coast = true; },
+        [](Scene& s) {
+            s.waves.coast = true;
+            s.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.0f},
+                                                                    glm::dvec2(0.0), glm::dvec2(2.0, 1.0));
+        },
+        [](Scene& s) {
+            s.waves.coast = true;
+            s.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.5f},
+                                                                    glm::dvec2(0.0), glm::dvec2(2.0, 1.0));
+        },
         [](Scene& s) { s.surface.kind = SurfaceKind::Planet; },
         [](Scene& s) { s.surface.size_m = 201.0; },
         [](Scene& s) { s.surface.resolution = 255; },
@@ -162,6 +173,11 @@ TEST(Canonical, EveryValueMatters) {
         changes()[i](scene);
         EXPECT_TRUE(texts.insert(canonical(scene)).second) << "change number " << i;
     }
+}
+
+// Shots from before it keep their fingerprints.
+TEST(Canonical, ACoastThatIsOffSaysNothing) {
+    EXPECT_EQ(canonical(Scene()).find("waves.coast"), std::string::npos);
 }
 
 TEST(Canonical, TheRangeOfFramesDoesNot) {

@@ -144,7 +144,8 @@ TEST(Keys, ValuesOfAnotherTypeAreRefusedAndChangeNothing) {
 Scene scene_with(const Key& key, const KeyValue& value) {
     Scene scene;
     if (key.path == kObjectsKey) scene = test::scene_with_body();
-    if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m")
+    if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m" ||
+        key.path == kCoastKey)
         scene.waves.model = WaveModel::Trochoid;
     if (!key.of_picture.empty()) {
         EXPECT_FALSE(set_value(scene, key_of(key.of_picture), std::string("noon.exr")));
@@ -204,9 +205,9 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
                 << key.path << " and " << pelagic::text_of(only);
         }
         EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;
-        // Wave trains have no lean and no pairs; bodies that aren't there are no line.
+        // Wave trains have no lean and no pairs; bodies that aren't there and a coast that isn't felt are no line.
         const std::size_t without = key.path == "waves.model" ? 2 : 0;
-        const bool is_added = key.is_optional || key.path == kObjectsKey;
+        const bool is_added = key.is_optional || key.path == kObjectsKey || key.path == kCoastKey;
         EXPECT_EQ(described(changed, key.key_parts).size() + without,
                   described(Scene{}, key.key_parts).size() + (is_added ? 1u : 0u))
             << key.path;

@@ -268,6 +268,38 @@ TEST(Validate, FramesSeedAndLoop) {
     expect_refused([](Scene& s) { s.effects.foam_pattern_m = 4.0; },
                    {"effects.foam_pattern_m", "4", "10, or effects.foam_pattern = \"PATH.exr\""});
     expect_good([](Scene& s) { s.sea.depth_file = "reef.obj"; });
+    // Waves that feel the floor: of a picture, in a sea of trains alone that stays what it is.
+    const auto coast = [](auto&& change) {
+        return [=](Scene& s) {
+            s.waves.model = WaveModel::Trochoid;
+            s.waves.coast = true;
+            s.sea.depth_file = "bay.exr";
+            change(s);
+        };
+    };
+    expect_good(coast([](Scene&) {}));
+    expect_refused(coast([](Scene& s) { s.sea.depth_file = "none"; }),
+                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
+    expect_refused(coast([](Scene& s) { s.sea.depth_file = "reef.obj"; }),
+                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
+    expect_refused(coast([](Scene& s) { s.waves.model = WaveModel::Fft; }),
+                   {"waves.coast", "true", "waves.model = \"trochoid\", or false"});
+    expect_refused(coast([](Scene& s) {
+                       s.waves.cascades = {{60.0, 128}};
+                   }),
+                   {"waves.coast", "true", "no waves.cascades, or false"});
+    expect_refused(coast([](Scene& s) { s.waves.heroes = {{}}; }),
+                   {"waves.coast", "true", "no waves.heroes, or false"});
+    expect_refused(coast([](Scene& s) {
+                       s.keyed = {{"sea.wind_speed_mps", {.keys = {{1, 5.0}, {40, 9.0}}}}};
+                   }),
+                   {"waves.coast", "true", "a sea without keys, or false"});
+    expect_refused(coast([](Scene& s) {
+                       s.objects = test::scene_with_body().objects;
+                       s.objects[0].floats = true;
+                       s.objects[0].buoyancy = Buoyancy::Response;
+                   }),
+                   {"waves.coast", "true", "objects[].buoyancy = \"plane\", or false"});
     expect_refused([](Scene& s) { s.effects.foam_pattern = "foam.obj"; },
                    {"effects.foam_pattern", "\"foam.obj\"", "\"lace\", or the path"});
     // A mesh says itself where it lies.

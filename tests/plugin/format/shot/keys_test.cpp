@@ -22,8 +22,8 @@ const std::filesystem::path kKeysData =
 
 // Keys of wave trains mean nothing without them, nor do those of a picture.
 std::string shot_with(const Key& key, const std::string& value) {
-    const bool of_trains =
-        key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
+    const bool of_trains = key.path == "waves.trains" || key.path == "waves.shortest_m" ||
+                           key.path == "waves.longest_m" || key.path == kCoastKey;
     // Waves of any height need a wind that makes them long.
     const bool is_height = key.path == "sea.significant_height_m";
     // A body may be any of so many vessels'.

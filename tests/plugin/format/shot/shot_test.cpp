@@ -51,6 +51,35 @@ void expect_refused(std::string_view text, const std::string& begins, const std:
     EXPECT_EQ(lines(message), 1u) << message;
 }
 
+TEST(Shot, ACoastsDepthsAreReadWhereWavesFeelThem) {
+    const std::filesystem::path file = std::filesystem::path(PELAGIC_SOURCE_DIR) / "examples" / "beach.toml";
+    const std::string begins =
+        "[sea]\ndepth_file = \"data/beach.exr\"\ndepth_size_m = 400\ndepth_east_m = 30\n[waves]\nmodel = \"trochoid\"\n";
+    EXPECT_EQ(parse_shot(begins, file, no_check).waves.coast_depths, nullptr);
+    const Scene scene = parse_shot(begins + "coast = true\n", file, no_check);
+    ASSERT_TRUE(scene.waves.coast_depths);
+    const DepthMap& depths = *scene.waves.coast_depths;
+    EXPECT_EQ(depths.from_m(), glm::dvec2(-170.0, -200.0));
+    EXPECT_EQ(depths.size_m(), glm::dvec2(400.0));
+    const auto depth_m = [&](glm::dvec2 at) { return depths.mean_m(at, at); };
+    EXPECT_LT(depth_m({30.0, 190.0}), 0.0);   // land in the north
+    EXPECT_GT(depth_m({30.0, -190.0}), 8.0);  // the sea in the south
+    const auto refused = [&](const std::string& text) {
+        try {
+            parse_shot(text, file, no_check);
+        } catch (const ShotError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string gone =
+        refused("[sea]\ndepth_file = \"gone.exr\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
+    EXPECT_NE(gone.find("sea.depth_file = \"gone.exr\": is no file"), std::string::npos) << gone;
+    const std::string wrong =
+        refused("[sea]\ndepth_file = \"beach.toml\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
+    EXPECT_NE(wrong.find("is neither \"none\" nor a picture"), std::string::npos) << wrong;
+}
+
 TEST(Shot, AnEmptyFileIsTheDefaults) {
     for (const char* text : {"", "\n", "# nothing\n", "\xef\xbb\xbf", "[shot]\n[sea]\n[output]\n"}) {
         EXPECT_EQ(canonical(parse(text)), canonical(Scene{}));

@@ -98,6 +98,29 @@ class Scene(unittest.TestCase):
         scene.waves.shortest_m = None
         self.assertEqual(scene.validate(), [])
 
+    def test_a_coasts_depths_are_read_when_they_are_asked_for(self):
+        data = pathlib.Path(__file__).parents[4] / "examples" / "data"
+        scene = pelagic.Scene()
+        scene.waves.model, scene.waves.trains, scene.sea.depth_m = "trochoid", 20, 10.0
+        scene.sea.depth_file, scene.sea.depth_size_m = str(data / "beach.exr"), 400.0
+        self.assertNotIn("waves.coast", str(scene))
+        scene.waves.coast = True
+        self.assertEqual(scene.validate(), [])
+        self.assertIn("200 x 200 depths", str(scene))
+        before = str(scene)
+        scene.sea.depth_north_m = 50.0
+        self.assertNotEqual(str(scene), before)
+        scene.sea.depth_north_m = 0.0
+        self.assertEqual(str(scene), before)
+        with self.assertRaisesRegex(pelagic.ShotError, "sea.depth_file = "):
+            scene.sea.depth_file = str(data / "gone.exr")
+        self.assertEqual(str(scene), before)  # as it was
+        frame = pelagic.Frame(pelagic.Sea(scene))
+        frame.set(1.0)
+        ashore, afloat = frame.evaluate(np.float32([(0.0, 195.0), (0.0, -100.0)]))["position"]
+        self.assertEqual(ashore[2], 0.0)
+        self.assertNotEqual(afloat[2], 0.0)
+
     def test_a_masks_picture_is_read_when_it_is_named(self):
         data = pathlib.Path(__file__).parents[4] / "examples" / "data"
         scene = pelagic.Scene()

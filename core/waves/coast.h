@@ -1,0 +1,115 @@
+// Waves that feel the floor of a coast (Waves::coast): each train's phase and amplitude over depths that vary slowly from place to place.
+//
+// Geometric optics (WKB): a train of frequency ω has the phase S(x) − ωt, |∇S| = k(ω, d), and its energy goes along ∇S at the group's
+// speed, ∇·(k̂ c_g E) = 0. S is marched along the axis of the map that the train comes nearest to, S_u = √(k² − S_v²) (Heun's steps, one-sided
+// differences of second order, and Godunov's choice between them, which takes the earliest of arrivals that cross); the flux c_g E cos α along
+// with it, conservatively. Trains enter at the map's edge as they are in sea.depth_m, by Snell's law.
+//
+// Where rays cross, E is no more than kMostCoastEnergy of what came in. Nothing goes on where the water is shallower than kCoastShore_m: behind an
+// island it is calm but for rays that turn there, since there is no diffraction. Trains that turn back from the march (S_v ≥ k) end there.
+//
+// Breaking takes energy from all trains alike, by Thornton and Guza 1983: ε = (3√π/16) ρ g f_p H_rms⁷/(γ⁴ d⁵), γ = 0.42. Their law is of a
+// random sea: of one train alone, and of each for itself, the height is at most kMostCoastHeight of the depth.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "core/plan/trains.h"
+#include "core/waves/trains.h"
+#include "pelagic/depth_map.h"
+
+namespace pelagic {
+
+inline constexpr double kCoastShore_m = 0.05;
+
+// The depths of a map's cells [m], columns fastest, rows from the south.
+struct CoastDepths {
+    glm::ivec2 count{0};
+    glm::dvec2 from_m{0.0}, cell_m{1.0};
+    std::vector<double> depth_m;
+
+    std::size_t at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);
+    }
+};
+// Their means over a grid of so many cells.
+CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count);
+
+// What becomes of one train of unit energy without breaking, parallel to the depths.
+struct CoastWave {
+    std::vector<double> phase;     // S − k₀·x from the map's corner [rad]
+    std::vector<double> energy;    // 0 … kMostCoastEnergy
+    std::vector<glm::dvec2> flux;  // energy times the group's velocity [m/s]
+};
+// A train of this frequency [rad/s] that comes from water of `depth_m` along a unit vector.
+CoastWave march_coast(const CoastDepths& depths, double depth_m, double omega, glm::dvec2 direction);
+
+// What breaking leaves of a sea's energy, and the share of its waves that break, parallel to the depths. `m0` [m²] and `flux` [m³/s] without it;
+// `towards`: where the sea comes from goes; peak_hz: of its spectrum.
+struct CoastBreaking {
+    std::vector<double> left, broken;
+};
+CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> m0,
+                             std::span<const glm::dvec2> flux, glm::dvec2 towards, double peak_hz);
+
+// All of a sea's trains on its coast. Between cells' middles phases and amplitudes are quadratic B-splines, as pictures of masks are
+// (core/plan/masks.h): the surface is C¹. Beyond the map they go on as at its edge.
+template <class T>
+struct Coast {
+    glm::ivec2 count{0};
+    glm::dvec2 from_m{0.0}, cell_m{1.0};
+    // Of each cell side by side, the trains that feel the floor, longest first: `stride` numbers, a multiple of 64 bytes.
+    std::size_t feeling = 0, stride = 0;
+    std::vector<T> phase;   // (S − k₀·x)/2π [cycles]
+    std::vector<T> gain;    // of amplitudes
+    std::vector<T> others;  // that of all trains too short to feel it, a number a cell
+    // A number a cell: the share of waves that break, and the heights' standard deviation [m].
+    std::vector<T> broken, deviation_m;
+    double peak_per_m = 0.0;  // the wavenumber of the highest train where it comes from
+    // Of each train of the sea, with zeros for a vector that begins at the last: its wavevector where it comes from [rad/m], its height [m], its
+    // angular frequency, how far it moves water to the side over height times wavenumber [m], for its displacement and for that of the waves that
+    // break, and how much of these is resolved at best.
+    std::vector<T> kx, ky, height_m, omega, sideways_m, breaking_sideways_m, breaking;
+    std::vector<T> longest_m;  // no deeper water makes it longer
+
+    // The largest gain of each train that feels the floor, and of the others; the largest of gain times wavenumber [rad/m] of the former.
+    std::vector<double> most_gain, most_sideways;
+
+    std::size_t cells() const {
+        return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y);
+    }
+    std::size_t cell(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);
+    }
+};
+
+// Of make_trains()'s. The scene must have waves.coast, and its depths.
+template <class T>
+Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const Trains<T>& trains,
+                    const Breaking& breaking);
+
+// How much of a place foams because waves break on the floor there: where the sea is `height_m` high, seen through cells so wide. It lies on the highest
+// crests, over kRoller of the share of waves that break; cells too wide for crests have that much throughout.
+inline constexpr double kRoller = 0.25;  // of a breaking wave's length: by eye
+template <class T>
+double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
+                  const FootprintFilter& filter);
+// The standard normal deviate below which a share lies, within 0.01 of the share, −7 … 7 (Bowling et al. 2009).
+double quick_deviate(double share);
+
+// Between what a train's local numbers lie over a rectangle of the world.
+struct CoastRange {
+    bool is_anything = false;  // of phase and wavevector: nothing is known there
+    double phase_lo = 0.0, phase_hi = 0.0, gain_lo = 0.0, gain_hi = 0.0;
+    glm::dvec2 k_lo{0.0}, k_hi{0.0};  // of ∇S [rad/m]
+    double most_sideways = 0.0;       // of gain times wavenumber
+
+    double most_wavenumber() const;
+};
+template <class T>
+CoastRange coast_range(const Coast<T>& coast, std::size_t train, glm::dvec2 min_m, glm::dvec2 max_m);
+
+}  // namespace pelagic

@@ -18,6 +18,7 @@ namespace pelagic {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kMostFoam = 0.9;  // by eye, as Hulls::kFull_mps
 
 }  // namespace
 
@@ -106,7 +107,6 @@ float Hulls::wet_share(double distance_m, double cell_m) {
 
 double Hulls::Placed::foam_at(const glm::dvec3& place, double distance_m, const glm::dvec3& water_mps,
                               double cell_m) const {
-    constexpr double kMost = 0.9, kFull_mps = 1.5;  // by eye
     const double width_m = std::max(foam_m, cell_m);
     const double share = std::clamp(distance_m / width_m, 0.0, 1.0);
     const glm::dvec3 in = local(place);
@@ -115,7 +115,7 @@ double Hulls::Placed::foam_at(const glm::dvec3& place, double distance_m, const 
     const glm::dvec3 normal = glm::normalize(axes * glm::dvec3(outward, 0.0));
     const glm::dvec3 hull_mps = place_mps + axes_per_s * in;
     const double speed = std::abs(glm::dot(water_mps - hull_mps, normal));
-    return foam * kMost * (foam_m / width_m) * (1.0 - share * share * (3.0 - 2.0 * share)) *
+    return foam * kMostFoam * (foam_m / width_m) * (1.0 - share * share * (3.0 - 2.0 * share)) *
            std::min(speed / kFull_mps, 1.0);
 }
 
@@ -189,6 +189,78 @@ template void Hulls::meet(const Frame<float>&, std::optional<int>, const Points<
                           const Met&) const;
 template void Hulls::meet(const Frame<double>&, std::optional<int>, const Points<double>&, double,
                           const Known&, const Met&) const;
+
+// Nodes are of the hull: so of each the water that is there now is looked for, which rests elsewhere.
+template <class T>
+std::vector<Hulls::Beside> Hulls::beside(const Frame<T>& state, std::optional<int> query) const {
+    std::vector<Beside> all(scene_.objects.size());
+    for (const Placed& placed : hulls_) {
+        if (!(placed.foam > 0.0) || !query) continue;
+        Beside& made = all[placed.object];
+        made.foam = placed.foam * kMostFoam;
+        made.foam_m = placed.foam_m;
+        // Half as far as the shortest waves that are known: between nodes their water's velocity is nearly straight.
+        constexpr double kOfWidth = 0.5;
+        const double least_m = contact_level_m(placed.foam_m);
+        const glm::dvec3 least = scene_.objects[placed.object].mesh->least_m(),
+                         most = scene_.objects[placed.object].mesh->most_m();
+        made.step_m = kOfWidth * std::max(placed.foam_m, least_m) / placed.scale;
+        const glm::dvec2 margin(placed.hull->margin_m());
+        made.first_m = glm::dvec2(least) - margin;
+        made.count = glm::ivec2(glm::ceil((glm::dvec2(most - least) + 2.0 * margin) / made.step_m)) + 1;
+        made.way_mps.assign(static_cast<std::size_t>(made.count.x) * made.count.y, glm::vec3(0.0f));
+        const auto node = [&](std::size_t i) {
+            const auto columns = static_cast<std::size_t>(made.count.x);
+            return made.first_m + made.step_m * glm::dvec2(i % columns, i / columns);
+        };
+        std::vector<std::size_t> near;
+        std::vector<glm::dvec2> rest_m;
+        for (std::size_t i = 0; i < made.way_mps.size(); ++i) {
+            // At whatever height the water is there.
+            const glm::dvec2 at = node(i);
+            const double reach_m = placed.hull->margin_m();
+            bool is_near = false;
+            for (int level = 0; level < Hull::kLevels && !is_near; level += 4)
+                is_near =
+                    std::abs(placed.hull->distance_m(glm::dvec3(
+                        at, placed.hull->lowest_m() + (level + 0.5) * placed.hull->level_m()))) <= reach_m;
+            if (!is_near) continue;
+            near.push_back(i);
+            rest_m.emplace_back(placed.place_m + placed.axes * glm::dvec3(at, 0.0));
+        }
+        if (near.empty()) continue;
+        const glm::dvec2 origin_m(placed.place_m);
+        std::vector<glm::vec<2, T>> asked_m(near.size());
+        std::vector<glm::vec<3, T>> position_m(near.size()), velocity_mps(near.size());
+        const T level_m = static_cast<T>(least_m);
+        const auto place_of = [&](std::size_t k) {
+            glm::dvec3 place(position_m[k]);
+            if (rest_m_) place.z += rest_m_(rest_m[k]);
+            return place + glm::dvec3(origin_m, 0.0);
+        };
+        constexpr int kSteps = 4;  // each leaves as much of the error as the water is stretched
+        for (int step = 0;; ++step) {
+            for (std::size_t k = 0; k < near.size(); ++k) asked_m[k] = rest_m[k] - origin_m;
+            Points<T> points{.origin_m = origin_m, .count = near.size(), .rest_m = {asked_m.data()}};
+            points.cell_m = {&level_m, 0};
+            Results<T> results;
+            results.set(Product::Position, {position_m.data()});
+            if (step == kSteps) results.set(Product::Velocity, {velocity_mps.data()});
+            evaluate(state, *query, points, results);
+            if (step == kSteps) break;
+            for (std::size_t k = 0; k < near.size(); ++k) {
+                const glm::dvec2 off = glm::dvec2(placed.local(place_of(k))) - node(near[k]);
+                rest_m[k] -= glm::dvec2(placed.axes * glm::dvec3(off, 0.0));
+            }
+        }
+        for (std::size_t k = 0; k < near.size(); ++k)
+            made.way_mps[near[k]] = glm::vec3(glm::dvec3(velocity_mps[k]) - placed.place_mps -
+                                              placed.axes_per_s * placed.local(place_of(k)));
+    }
+    return all;
+}
+template std::vector<Hulls::Beside> Hulls::beside(const Frame<float>&, std::optional<int>) const;
+template std::vector<Hulls::Beside> Hulls::beside(const Frame<double>&, std::optional<int>) const;
 
 void add_contact_foam(std::span<const float> foam, Values& values) {
     std::vector<float>& coverage = values.numbers(Product::Coverage);

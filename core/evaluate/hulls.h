@@ -58,6 +58,20 @@ class Hulls {
     void meet(const Frame<T>& state, std::optional<int> query, const Points<T>& points, double cell_m,
               const Known& known, const Met& met) const;
 
+    // The water along an object's hull, as meet() has it for who knows nothing of it: at nodes over the hull's own x and y.
+    struct Beside {
+        glm::dvec2 first_m{0.0};
+        double step_m = 1.0;
+        glm::ivec2 count{0};  // 0: it has no foam
+        std::vector<glm::vec3>
+            way_mps{};  // the water's velocity less the hull's, row by row; 0 where no foam can be
+        double foam = 0.0, foam_m = 0.0;  // W of the foam times its most, and its width w
+    };
+    // Of the scene's objects, in their order.
+    template <class T>
+    std::vector<Beside> beside(const Frame<T>& state, std::optional<int> query) const;
+    static constexpr double kFull_mps = 1.5;  // v₀
+
   private:
     struct Placed {
         std::size_t object = 0;

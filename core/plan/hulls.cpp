@@ -36,6 +36,12 @@ std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
     return query;
 }
 
+std::optional<Query> hulls_query_of_picture(const Scene& scene) {
+    const bool has_foam =
+        std::ranges::any_of(scene.objects, [](const SceneObject& object) { return object.foam > 0.0; });
+    return has_foam ? hulls_query(scene, false) : std::nullopt;
+}
+
 std::optional<int> hulls_query(const Plan& plan) {
     for (std::size_t i = 0; i < plan.queries.size(); ++i)
         if (plan.queries[i].query.name == kHullsQuery) return static_cast<int>(i);

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ class Hull {
     glm::dvec2 outward(const glm::dvec3& place) const;
     // From the hull's bottom over or below a place, negative below it. Infinite where there is none, at the nearest node.
     double above_bottom_m(const glm::dvec3& place) const;
+
+    // What distance_m() interpolates, for who does so elsewhere: nodes by level, row and column.
+    std::span<const float> nodes_m() const { return distance_m_; }
+    glm::ivec2 columns() const { return columns_; }
+    glm::dvec2 first_m() const { return first_m_; }  // the first node's place
+    double lowest_m() const { return lowest_m_; }
 
     double cell_m() const { return cell_m_; }
     double level_m() const { return level_m_; }

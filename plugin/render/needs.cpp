@@ -73,10 +73,7 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
     std::vector<Query> queries{std::move(query)};
-    // For the foam where they meet the water.
-    if (std::ranges::any_of(prepared->scene.objects,
-                            [](const SceneObject& object) { return object.foam > 0.0; }))
-        if (auto hulls = hulls_query(prepared->scene, false)) queries.push_back(std::move(*hulls));
+    if (auto hulls = hulls_query_of_picture(prepared->scene)) queries.push_back(std::move(*hulls));
     return make_plan(std::move(prepared), queries, {.knobs = options.knobs, .filter = options.filter});
 }
 

@@ -10,9 +10,10 @@ void main() {
         return;
     }
     vec3 pixel = pixel_on_mesh();
+    vec3 place = vec3(0.0, 0.0, view_height_m) + point_from_eye();
     PixelAnswer answer = query_pixel(rest_m, pixel);
     AllFoam all = AllFoam(0.0, 0.0, 0.0, -1.0);
-    if (kCoverage) all = with_strips(all_foam(rest_m, pixel, answer.coverage), rest_m, pixel.x);
+    if (kCoverage) all = with_hulls(with_strips(all_foam(rest_m, pixel, answer.coverage), rest_m, pixel.x), place, pixel.x);
     answer.coverage = all.coverage;
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);
@@ -42,7 +43,6 @@ void main() {
         write_terms(kBehindGlass * below.sun, kBehindGlass * below.sky, kBehindGlass * below.sea, kBehindGlass * below.foam, vec3(0.0), 1.0);
         return;
     }
-    vec3 place = vec3(0.0, 0.0, view_height_m) + body.from_eye;
     SeaLight light = sea_light();
     float sun = sun_share(place);
     light.sun_radiance *= sun;

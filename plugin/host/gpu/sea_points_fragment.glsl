@@ -4,6 +4,7 @@ layout(location = 1) out vec4 second_out;
 layout(location = 2) out vec4 third_out;
 
 void main() {
+    read_point();
     vec3 drawn = pixel_on_mesh();
     first_out = vec4(rest_m, drawn.x, drawn.y);
     second_out = vec4(drawn.z, point_distance_m(), mesh_variance_along(), 0.0);

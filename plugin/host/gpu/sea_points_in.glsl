@@ -5,7 +5,10 @@ in vec3 from_eye_m;
 in vec3 mesh_variance;  // of slopes: xx, yy, xy
 in vec3 crest_shape;    // of long waves: slopes, height [m]
 
-void read_point() {}
+uniform float eye_height_m;  // above the grid's origin
+
+void read_point() { keep_out_of_hulls(vec3(0.0, 0.0, eye_height_m) + from_eye_m); }
+vec3 point_from_eye() { return from_eye_m; }
 vec3 point_crest() { return crest_shape; }
 float point_distance_m() { return length(from_eye_m); }
 // Variance of the slopes that the mesh leaves unresolved, along the view.

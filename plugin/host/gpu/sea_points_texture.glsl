@@ -19,6 +19,10 @@ void read_point() {
     drawn_crest = texelFetch(third_points, ivec2(gl_FragCoord.xy), 0).xyz;
 }
 
+vec3 point_from_eye() {
+    return pixel_ray() * drawn_distance_m;
+}
+
 vec3 pixel_on_mesh() {
     return drawn_pixel_m;
 }

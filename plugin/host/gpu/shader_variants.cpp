@@ -9,6 +9,7 @@
 #include "core/lighting/spray.h"
 #include "core/plan/taps.h"
 #include "plugin/host/gpu/packed_foam.h"
+#include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/uniforms.h"
 
 namespace pelagic {
@@ -64,6 +65,19 @@ std::string object_constants(bool has_objects) {
     return has_objects ? constant("kObjects", true) + constant("kObjectBoxes", kObjectBoxes) +
                              "const float kIsObject = " + std::to_string(kIsObject) + ";\n"
                        : std::string();
+}
+std::string hull_constants(bool has_hulls) {
+    return has_hulls
+               ? constant("kHullColumns", kHullColumns) + constant("kHullPlaceColumns", kHullPlaceColumns) +
+                     constant("kHullTexels", kHullTexels) + constant("kHullLevels", Hull::kLevels) +
+                     "const float kHullFull_mps = " + std::to_string(Hulls::kFull_mps) + ";\n"
+               : std::string();
+}
+// What the sea's first or only pass leaves out, and the foam along it.
+std::vector<std::string_view> hull_files(bool has_hulls, bool for_host) {
+    if (!has_hulls) return {"plugin/host/gpu/hulls_none.glsl"};
+    return {"plugin/host/gpu/hulls.glsl",
+            for_host ? "plugin/host/gpu/hulls_left_out.glsl" : "plugin/host/gpu/hulls_behind.glsl"};
 }
 // A key beside the files, by which programs are told apart.
 std::string constant_of_shadow(const DrawOptions& options) {
@@ -195,9 +209,10 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
     const bool has_objects = options.has_objects && !options.for_host && !options.from_below;
+    const bool has_hulls = options.for_host ? options.has_hulls : has_objects;
     return {query_constants(layout, coverage, options.is_shaped) +
                 lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
-                object_constants(has_objects) + constant_of_shadow(options) +
+                object_constants(has_objects) + hull_constants(has_hulls) + constant_of_shadow(options) +
                 (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
@@ -213,16 +228,18 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     spray_files(lighting),
                     {"core/lighting/place.glsl"},
                     sun_files(options.for_host ? options.has_shadow : has_objects, options.for_host),
+                    hull_files(has_hulls, options.for_host),
                     {"plugin/host/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/host/gpu/false_colour.glsl", points_file(options),
                      shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
 }
 
-ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped) {
-    return {query_constants(layout, false, is_shaped),
+ShaderVariant ShaderVariant::of_points(const SeaLayout& layout, bool is_shaped, bool has_objects) {
+    return {query_constants(layout, false, is_shaped) + hull_constants(has_objects),
             joined({query_files(), {shape_file(is_shaped, kShapeOfVertex), kCrests, vertex_file({})}}),
             joined({query_files(),
+                    hull_files(has_objects, false),
                     {"plugin/host/gpu/rays.glsl", "plugin/host/gpu/sea_points_in.glsl",
                      "plugin/host/gpu/sea_points_fragment.glsl"}})};
 }

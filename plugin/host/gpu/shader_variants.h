@@ -23,7 +23,7 @@ class ShaderVariant {
   public:
     static ShaderVariant of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size);
     // The first of two passes.
-    static ShaderVariant of_points(const SeaLayout& layout, bool is_shaped);
+    static ShaderVariant of_points(const SeaLayout& layout, bool is_shaped, bool has_objects);
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
     // An object for the eye, or for its mirror image.
     static ShaderVariant of_object(const DrawOptions& options, int sky_map_size, bool mirrored);

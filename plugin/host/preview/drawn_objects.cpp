@@ -8,17 +8,22 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "core/plan/hulls.h"
+#include "core/plan/plan.h"
+#include "core/scene/hull.h"
 #include "core/surface/earth.h"
 #include "plugin/host/gpu/shader_variants.h"
 #include "plugin/host/preview/gl_textures.h"
+#include "plugin/host/preview/sea_renderer.h"
 
 namespace pelagic {
 namespace {
 
-enum Unit : int { kMaterials, kShadow, kBlockers, kMirrored };
+enum Unit : int { kMaterials, kShadow, kBlockers, kMirrored, kHullMaps, kHullPlaces };
 
 struct Vertex {
     glm::vec3 place_m, normal;
@@ -46,6 +51,12 @@ glm::dmat4 translation(glm::dvec3 by) {
 std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& scene,
                                        const ObjectMoment& at) {
     std::vector<DrawnObject> drawn;
+    std::vector<Hulls::Beside> beside(scene.objects.size());
+    if (const std::optional<int> query = hulls_query(state.sea().plan())) {
+        Hulls hulls(scene);
+        hulls.place(state, query, at.frame, at.rest_m);
+        beside = hulls.beside(state, query);
+    }
     for (const SceneObject& object : scene.objects) {
         const auto [pose, water_m] = place_object(state, scene, object, at);
         drawn.push_back(
@@ -56,7 +67,9 @@ std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& s
              .colour = glm::vec3(object.colour),
              // Radiance 1 is a thousand cd/m² by daylight; a sky's picture counts as if it were so.
              .glow = static_cast<float>(1e-3 * object.glow_cd_m2),
-             .holdout = object.holdout});
+             .holdout = object.holdout,
+             .hull = hull_of(*object.mesh),
+             .beside = std::move(beside[drawn.size()])});
     }
     return drawn;
 }
@@ -102,6 +115,53 @@ void DrawnObjects::set(std::vector<DrawnObject> objects, const ObjectSurrounding
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, static_cast<GLsizei>(data.materials.size()), 0, GL_RGBA,
                      GL_FLOAT, texels.data());
     }
+    set_hulls();
+}
+
+// Of the objects' hulls, which stay while the meshes do.
+void DrawnObjects::set_hulls() {
+    std::vector<std::shared_ptr<const Hull>> hulls;
+    for (const DrawnObject& object : objects_) hulls.push_back(object.hull);
+    PackedHulls packed(std::move(hulls));
+    if (packed == hulls_) return;
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (std::max(packed.rows(), kHullColumns) > largest)
+        throw PreviewError(
+            "the hulls of these objects take a texture of " + std::to_string(kHullColumns) + " x " +
+            std::to_string(packed.rows()) + " texels, and this driver's largest is " +
+            std::to_string(largest) +
+            " a side: give fewer objects, or objects that share a file, or use pelagic render");
+    hulls_ = std::move(packed);
+    const std::vector<float> maps = hulls_.maps();
+    edit_texture(hull_maps_);
+    texels_as_they_are();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, kHullColumns, std::max(hulls_.rows(), 1), 0, GL_RED, GL_FLOAT,
+                 maps.empty() ? nullptr : maps.data());
+}
+
+void DrawnObjects::place_hulls() {
+    std::vector<PlacedHull> hulls;
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+        hulls.push_back({objects_[i].hull.get(), placed_[i].grid_from, &objects_[i].beside});
+    const std::vector<glm::vec4> texels = hulls_.places(hulls);
+    edit_texture(hull_places_);
+    texels_as_they_are();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kHullPlaceColumns,
+                 static_cast<GLsizei>(texels.size() / kHullPlaceColumns), 0, GL_RGBA, GL_FLOAT,
+                 texels.data());
+}
+
+void DrawnObjects::bind_hulls(const ShaderProgram& program, int first_unit) const {
+    glUniform1i(program.uniform("hull_maps"), first_unit + kHullMaps);
+    glUniform1i(program.uniform("hull_places"), first_unit + kHullPlaces);
+    bind_texture(first_unit + kHullMaps, hull_maps_);
+    bind_texture(first_unit + kHullPlaces, hull_places_);
+    glUniform1f(program.uniform("behind_all"), eye_.reversed_depth ? 1e-30f : 0.99999994f);
 }
 
 const DrawnObjects::Mesh& DrawnObjects::mesh_of(const DrawnObject& object) const {
@@ -132,6 +192,7 @@ void DrawnObjects::place(const Eye& eye) {
         placed.grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
         placed.water_m = on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z;
     }
+    place_hulls();
     fit_shadow();
     fit_mirror();
 }
@@ -350,6 +411,7 @@ void DrawnObjects::draw(const ShaderProgram& program, int first_unit) {
 
 void DrawnObjects::bind(const ShaderProgram& program, int first_unit) const {
     bind_shadow(program, first_unit);
+    bind_hulls(program, first_unit);
     glUniform1i(program.uniform("mirrored_objects"), first_unit + kMirrored);
     bind_texture(first_unit + kMirrored, mirrored_);
     set_matrix(program, "mirrored_from_grid", mirrored_from_grid_);
@@ -381,6 +443,7 @@ std::size_t DrawnObjects::bytes(const Scene& scene) {
     for (const SceneObject& object : scene.objects) meshes.insert(object.mesh.get());
     std::size_t all = std::size_t{kShadowSide} * kShadowSide * sizeof(float) +
                       std::size_t{kMirroredSide} * kMirroredSide * (2 * sizeof(glm::vec4));
+    all += 2 * hulls_bytes(scene);  // with the texture
     for (const ObjectMesh* mesh : meshes) all += 2 * mesh->data().triangles.size() * sizeof(Vertex);
     return all;
 }

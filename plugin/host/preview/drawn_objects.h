@@ -11,11 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluate/hulls.h"
 #include "core/evaluate/object_place.h"
 #include "core/lighting/object.h"
 #include "core/surface/view.h"
 #include "pelagic/object_mesh.h"
 #include "pelagic/scene.h"
+#include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/uniforms.h"
 #include "plugin/host/preview/gl_objects.h"
 #include "plugin/host/preview/shader_program.h"
@@ -31,9 +33,11 @@ struct DrawnObject {
     glm::vec3 colour{1.0f};
     float glow = 0.0f;  // radiance of a material that glows wholly [kcd/m²]
     bool holdout = false;
+    std::shared_ptr<const Hull> hull{};  // with what it keeps out, if anything
+    Hulls::Beside beside{};              // the water along it, where its foam is known
 };
 
-// A scene's, which have meshes, in its sea. Any thread; needs no context.
+// A scene's, which have meshes, in its sea; their foam where its plan has a hulls_query(). Any thread; needs no context.
 std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& scene, const ObjectMoment& at);
 
 class DrawnObjects {
@@ -60,8 +64,10 @@ class DrawnObjects {
     void draw_mirrored(const ShaderProgram& program, int first_unit);
     void draw(const ShaderProgram& program, int first_unit);
     // For the sea's program, which is in use.
-    static constexpr int kUnits = 4;  // from first_unit on
+    static constexpr int kUnits = 6;  // from first_unit on
     void bind(const ShaderProgram& program, int first_unit) const;
+    // For the program of its points alone.
+    void bind_hulls(const ShaderProgram& program, int first_unit) const;
 
     // [bytes] of a scene's meshes, here and at the driver's, and of the maps; 0 without objects.
     static std::size_t bytes(const Scene& scene);
@@ -80,6 +86,8 @@ class DrawnObjects {
     };
     const Mesh& mesh_of(const DrawnObject& object) const;
     std::array<glm::dvec3, 8> corners(std::size_t object) const;
+    void set_hulls();
+    void place_hulls();
     void fit_shadow();
     void fit_mirror();
     void draw_all(const ShaderProgram& program, const glm::dmat4& clip_from_grid, glm::dvec3 eye_m,
@@ -89,6 +97,8 @@ class DrawnObjects {
     std::vector<DrawnObject> objects_;
     std::vector<Uniform> surroundings_;
     std::vector<Mesh> meshes_;
+    PackedHulls hulls_{{}};
+    GlTexture hull_maps_, hull_places_;
     Eye eye_;
     std::vector<Placed> placed_;
 

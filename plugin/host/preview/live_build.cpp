@@ -6,7 +6,9 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/plan/hulls.h"
 #include "core/plan/plan.h"
 #include "core/plan/weather.h"
 #include "core/scene/budget.h"
@@ -70,7 +72,9 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     made.scene = scene;
     const auto plan_from = [&](double finest_m) {
         const Query query = view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
-        return make_plan(prepared, {query}, {.double_precision = false});
+        std::vector<Query> queries{query};
+        if (auto hulls = hulls_query_of_picture(prepared->scene)) queries.push_back(std::move(*hulls));
+        return make_plan(prepared, queries, {.double_precision = false});
     };
     for (const std::string& warning : sea_warnings(*prepared))
         made.note += (made.note.empty() ? "" : "\n") + warning;

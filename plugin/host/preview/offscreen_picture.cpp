@@ -12,6 +12,7 @@
 
 #include "core/evaluate/values.h"
 #include "core/lighting/meniscus.h"
+#include "core/plan/hulls.h"
 #include "core/plan/plan.h"
 #include "core/plan/quality.h"
 #include "core/scene/number_keys.h"
@@ -183,7 +184,9 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
                                                    .finest_cell_m = needs.finest_cell_m,
                                                    .finest_pixel_m = finest_pixel_m,
                                                    .points = needs.points});
-        return make_plan(prepared, {query}, {.double_precision = false});
+        std::vector<Query> queries{query};
+        if (auto hulls = hulls_query_of_picture(prepared->scene)) queries.push_back(std::move(*hulls));
+        return make_plan(prepared, queries, {.double_precision = false});
     };
     // Positions alone, with waves no shorter than the cells: little beside what pixels resolve. They tell which
     // pixels are in the picture. A low camera has points nearby that a crest might bring into view and that no pixel

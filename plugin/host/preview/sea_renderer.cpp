@@ -89,7 +89,8 @@ struct SeaRenderer::Implementation {
     void draw_mesh(const ShaderProgram& program, const View& view, const SeaMesh& mesh);
     void draw_over_all(const ShaderProgram& program) const;
     void begin_picture(glm::ivec2 size, bool layers);
-    void draw_points(const View& view, const SeaMesh& mesh);
+    void draw_points(const View& view, const SeaMesh& mesh, bool has_objects);
+    void place_objects(const View& view, const SeaMesh& mesh, bool has_sun);
     void end_picture() const;
     void set_foam_image(const std::shared_ptr<const FoamImage>& image);
     void draw_sea(const View& view, const SeaMesh& mesh, const DrawOptions& options);
@@ -395,9 +396,15 @@ void SeaRenderer::Implementation::end_picture() const {
     glActiveTexture(GL_TEXTURE0);
 }
 
-void SeaRenderer::Implementation::draw_points(const View& view, const SeaMesh& mesh) {
+void SeaRenderer::Implementation::draw_points(const View& view, const SeaMesh& mesh, bool has_objects) {
     glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
-    draw_mesh(program_of(ShaderVariant::of_points(sea.layout(), !mesh.normal.empty())), view, mesh);
+    const ShaderProgram& program =
+        program_of(ShaderVariant::of_points(sea.layout(), !mesh.normal.empty(), has_objects));
+    if (has_objects) {
+        program.use();
+        objects->bind_hulls(program, kObjectUnits);
+    }
+    draw_mesh(program, view, mesh);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
 }
 
@@ -414,7 +421,7 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const SeaMesh& mesh
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
         return;
     }
-    draw_points(view, mesh);
+    draw_points(view, mesh, options.has_objects);
     program.use();
     set_common(program, view);
     sea.bind(program, mesh.points.origin_m);
@@ -441,16 +448,20 @@ const ShaderProgram& SeaRenderer::Implementation::use_object_program(const View&
     return program;
 }
 
-void SeaRenderer::Implementation::draw_object_maps(const View& view, const SeaMesh& mesh,
-                                                   const DrawOptions& options) {
+void SeaRenderer::Implementation::place_objects(const View& view, const SeaMesh& mesh, bool has_sun) {
     objects->place({.view = view,
                     .origin_m = mesh.points.origin_m,
                     .curvature_per_m = mesh.points.curvature_per_m,
                     .near_m = near_m,
                     .to_sun = to_sun,
-                    .sun_angular_radius = options.lighting.sun ? sun_angular_radius : 0.0,
+                    .sun_angular_radius = has_sun ? sun_angular_radius : 0.0,
                     .reversed_depth = reversed_depth,
                     .largest_texture = largest_texture});
+}
+
+void SeaRenderer::Implementation::draw_object_maps(const View& view, const SeaMesh& mesh,
+                                                   const DrawOptions& options) {
+    place_objects(view, mesh, options.lighting.sun);
     objects->draw_shadow(program_of(ShaderVariant::of_object_shadow()));
     objects->draw_mirrored(use_object_program(view, options, true), kObjectUnits);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
@@ -645,7 +656,8 @@ SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const SeaMe
     glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
     glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    of.draw_points(view, mesh);
+    if (of.objects) of.place_objects(view, mesh, false);
+    of.draw_points(view, mesh, of.objects.has_value());
     of.end_picture();
     glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
     const auto count =

@@ -16,6 +16,7 @@
 #include "core/lighting/object.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
+#include "plugin/format/shot/object_file.h"
 #include "plugin/host/gpu/packed_frame.h"
 #include "plugin/host/gpu/shader_variants.h"
 #include "plugin/host/preview/drawn_objects.h"
@@ -139,7 +140,10 @@ class ObjectStage {
     Picture drawn(std::vector<DrawnObject> objects) {
         const LightingChoice lighting = render_options(scene_).lighting;
         renderer().set_objects(std::move(objects), object_surroundings(lighting, sky_, water_, 0.0));
-        renderer().draw(view_, mesh_, {.lighting = lighting, .layers = true});
+        renderer().draw(view_, mesh_,
+                        {.lighting = lighting,
+                         .foam = make_foam(scene_, make_foam_picture(scene_), 1.0),
+                         .layers = true});
         return renderer().read_layers();
     }
 
@@ -313,9 +317,114 @@ TEST(PreviewsObjects, AreLitAsRaysSay) {
     }
 }
 
+// A hull in waves by the preview and by rays; of both the picture and what they show where only one has the body.
+struct BothHulls {
+    Picture ours, rays;
+    std::size_t rim = 0, only_ours = 0, only_rays = 0;  // pixels; rim: of the body, beside the sea
+};
+BothHulls hull_pictures(const char* name, Scene scene, std::shared_ptr<const ObjectMesh> mesh,
+                        double foam = 1.0) {
+    SceneObject object;
+    object.name = name;
+    object.mesh = std::move(mesh);
+    object.heading_deg = 30.0;
+    object.floats = true;
+    object.foam = foam;
+    scene.objects = {object};
+    scene.camera.resolution = {320, 180};
+    ObjectStage stage(scene);
+    BothHulls both;
+    both.ours = stage.with_objects();
+    RenderOptions options = render_options(scene);
+    options.samples = 1;
+    Renderer(scene, options, stage.sky(), std::array{1}).render(1, both.rays);
+    const auto body = [](const Picture& picture, std::size_t i) {
+        return picture.data[index(PictureLayer::Object)][3 * i + 1] > 0.0f;
+    };
+    for (std::size_t i = 0; i < both.rays.sea.size(); ++i) {
+        const bool ours = body(both.ours, i), rays = body(both.rays, i);
+        const auto width = static_cast<std::size_t>(scene.camera.resolution.x);
+        both.rim += rays && i >= width && i + width < both.rays.sea.size() &&
+                    (both.rays.sea[i - 1] || both.rays.sea[i + 1] || both.rays.sea[i - width] ||
+                     both.rays.sea[i + width]);
+        both.only_ours += ours && !rays;
+        both.only_rays += rays && !ours;
+    }
+    std::printf("    %s: %zu pixels at the body's rim; %zu only in the preview, %zu only by rays\n", name,
+                both.rim, both.only_ours, both.only_rays);
+    return both;
+}
+
+// Five faces: walls of the water's height and half as high again, and a bottom.
+std::shared_ptr<const ObjectMesh> barge() {
+    const glm::vec3 half(8.0f, 3.0f, 1.0f);
+    ObjectMeshData data = box(half)->data();
+    // The face towards +z is the last.
+    data.triangles.resize(data.triangles.size() - 6);
+    data.normals.resize(data.triangles.size());
+    data.material.resize(data.triangles.size() / 3);
+    return std::make_shared<const ObjectMesh>(std::move(data));
+}
+
+std::shared_ptr<const ObjectMesh> trawler_mesh() {
+    static const auto mesh = load_object(PELAGIC_SOURCE_DIR "/examples/data/trawler.obj");
+    return mesh;
+}
+
+Scene swell_scene() {
+    Scene scene = object_scene(9.0, 40.0);
+    scene.camera.position_m = {3.0, -26.0, 9.0};
+    scene.camera.look_at_m = {0.0, 0.0, 0.0};
+    scene.camera.fov_deg = 50.0;
+    return scene;
+}
+
+TEST(PreviewsObjects, KeepTheWaterOutAsRaysSay) {
+    const BothHulls trawler = hull_pictures("trawler", swell_scene(), trawler_mesh());
+    EXPECT_GT(trawler.rim, 300u);
+    EXPECT_LE(trawler.only_ours + trawler.only_rays, trawler.rim / 50);
+    // Nothing hides what is inside.
+    const BothHulls open = hull_pictures("barge", swell_scene(), barge());
+    EXPECT_GT(open.rim, 300u);
+    EXPECT_LE(open.only_ours + open.only_rays, open.rim / 50);
+}
+
+TEST(PreviewsObjects, HaveFoamAlongTheirHullsAsPicturesDo) {
+    Scene scene = swell_scene();
+    scene.effects.foam_structure = 0.0;  // so that each pixel's foam is its coverage
+    const BothHulls with = hull_pictures("with foam", scene, trawler_mesh()),
+                    without = hull_pictures("without", scene, trawler_mesh(), 0.0);
+    std::vector<double> differences;
+    double ours = 0.0, rays = 0.0, most = 0.0;
+    for (std::size_t i = 0; i < with.rays.sea.size(); ++i) {
+        if (with.rays.sea[i] == 0 || with.ours.sea[i] == 0) continue;
+        const auto along = [&](const Picture BothHulls::*of) {
+            return static_cast<double>((with.*of).layers[i].foam.y - (without.*of).layers[i].foam.y);
+        };
+        const double a = along(&BothHulls::ours), b = along(&BothHulls::rays);
+        ours += a;
+        rays += b;
+        most = std::max(most, b);
+        if (std::max(std::abs(a), std::abs(b)) > 1e-3) differences.push_back(std::abs(a - b));
+    }
+    ASSERT_GT(differences.size(), 300u);
+    std::ranges::sort(differences);
+    const auto part = [&](std::size_t tenths) {
+        return differences[differences.size() * tenths / 10] / most;
+    };
+    std::printf(
+        "    foam in all %.4f of the rays'; in %zu pixels, of the brightest the difference is %.1e in half of them, 90 %% have %.1e\n",
+        ours / rays, differences.size(), part(5), part(9));
+    EXPECT_NEAR(ours / rays, 1.0, 0.05);
+    EXPECT_LE(part(5), 0.01);
+    EXPECT_LE(part(9), 0.05);
+}
+
 TEST(PreviewsObjects, AreCountedInTheMemory) {
     gpu::need_context();
-    const Scene bare = object_scene(8.0, 35.0), with = with_box(bare);
+    const Scene bare = object_scene(8.0, 35.0);
+    Scene with = with_box(bare);
+    with.objects.front().foam = 0.0;  // which would ask the sea for more
     EXPECT_GT(DrawnObjects::bytes(with), std::size_t{16} << 20);
     EXPECT_EQ(DrawnObjects::bytes(bare), 0u);
     EXPECT_EQ(offscreen_memory(plan_offscreen(with, 1), 2).bytes(),

@@ -313,6 +313,8 @@ TEST(Coast, IsRefusedWithoutDepthsAndSaysItsBytes) {
                                                    sizeof(float));
     EXPECT_GT(plan.sea_bytes(), plain.sea_bytes() + plan.trains->coast_bytes(false) - 1);
     EXPECT_EQ(Sea<float>(plain).coast(), nullptr);
+    // Foam's own seas don't hold it again.
+    EXPECT_EQ(Sea<float>(plan_of_foam_level(plan, 1.5), {}, nullptr, sea.coast()).coast(), sea.coast());
 }
 
 }  // namespace

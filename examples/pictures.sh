@@ -27,6 +27,8 @@ for shot in noon low-sun overcast storm storm-trough spray from-8-km patch lagoo
     render $shot 12
     sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
+"$PELAGIC_ROOT/build/release/pelagic" render "$here/beach.toml" --frames 40 --size 640x360 --samples 2 --out "$scratch"
+sheet 1 beach.jpg "$scratch/beach.0040.png"
 for shot in trawler-noon trawler-sunset buoy-storm lighthouse-dusk; do render $shot 12; done
 sheet 2 objects.jpg "$scratch"/{trawler-noon,trawler-sunset,buoy-storm,lighthouse-dusk}.0012.png
 for shot in foam-breeze foam-gale foam-storm; do render $shot 1-2; done
@@ -44,4 +46,4 @@ sheet 1 presets.jpg "$scratch/presets.png"
 mapfile -t presets < <("$PELAGIC_ROOT/build/release/pelagic" presets | cut -d ' ' -f 1)
 blender -b --factory-startup --python-exit-code 1 --python "$here/preset-thumbnails.py" -- \
     "$scratch/presets.png" "$PELAGIC_ROOT/addon/pelagic_ocean/thumbnails" "${presets[@]}" >/dev/null
-ls -l "$out"/{presets,noon,low-sun,overcast,storm,storm-trough,spray,from-8-km,patch,lagoon,tiles,atoll,glassy-backlit,half-under,from-below,water-types,foam,objects,foam-strip}.jpg
+ls -l "$out"/{presets,noon,low-sun,overcast,storm,storm-trough,spray,from-8-km,patch,lagoon,tiles,atoll,beach,glassy-backlit,half-under,from-below,water-types,foam,objects,foam-strip}.jpg

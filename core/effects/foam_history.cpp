@@ -321,8 +321,9 @@ typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atom
     const double cell_m = foam_.cell_of(index);
     const BuildWatch watch{.progress = {}, .cancel = cancel};
     Plan plan = plan_of_foam_level(shot_ ? shot_->plan() : sea_->plan(), cell_m);
-    Frame<T> frame = shot_ ? Frame<T>(std::make_shared<const SeaOverTime<T>>(plan, watch, shot_.get()))
-                           : Frame<T>(std::make_shared<const Sea<T>>(plan, watch, sea_->spectrum_table()));
+    Frame<T> frame =
+        shot_ ? Frame<T>(std::make_shared<const SeaOverTime<T>>(plan, watch, shot_.get()))
+              : Frame<T>(std::make_shared<const Sea<T>>(plan, watch, sea_->spectrum_table(), sea_->coast()));
     level = std::make_unique<Level>(std::move(frame), cell_m, plan);
     return *level;
 }
@@ -655,7 +656,7 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
         threshold(kStride + 16);
     Results<T> results;
     results.set(Product::JacobianMoments, {moments.data()});
-    const Coast<T>* coast = level.frame.sea().coast();
+    const Coast<T>* coast = level.frame.sea().coast().get();
     static thread_local std::vector<glm::vec<3, T>> moved;
     if (coast) {
         moved.resize(kStride);

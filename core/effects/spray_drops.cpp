@@ -88,8 +88,8 @@ SprayDrops<T>::SprayDrops(const Sea<T>& sea, double size_m, const BuildWatch& wa
     const PreparedScene& from = *sea.plan().from;
     const SprayLaw law = spray_law(from.scene, from.extent.significant_height_m);
     if (!(law.drops.optical_thickness > 0.0)) return;
-    frame_ = std::make_unique<Frame<T>>(
-        std::make_shared<const Sea<T>>(plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table()));
+    frame_ = std::make_unique<Frame<T>>(std::make_shared<const Sea<T>>(
+        plan_of_spray_drops(sea.plan(), plan_), watch, sea.spectrum_table(), sea.coast()));
     // Its own: where foam lives, what counts as breaking depends on whether anybody asks for that.
     mean_breaking_ = mean_breaking(frame_->sea());
     if (knows_hulls(frame_->sea().plan())) hulls_ = std::make_unique<Hulls>(frame_->sea().plan().from->scene);

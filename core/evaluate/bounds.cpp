@@ -232,7 +232,7 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
     if (plan.trains && !query.only_cascade) {
         const Trains<T>& trains = frame.sea().trains();
         for (std::size_t i = 0; i < trains.count(); ++i) {
-            if (const Coast<T>* coast = frame.sea().coast()) {  // its weights are those of its local length
+            if (const Coast<T>* coast = frame.sea().coast().get()) {  // its weights are those of its local length
                 if (!(static_cast<double>(coast->longest_m[i]) > plan.filter.n_min * cells_.finest_m)) break;
                 finest_weight_.push_back(1.0);
                 coarsest_weight_.push_back(1.0);
@@ -440,7 +440,7 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
     // Waves that are long against the block are bounded together, by the sums of their values and slopes at its
     // middle; the rest is of second order, |a| δ²/2 where the phase turns by δ. The others are bounded one by one.
     constexpr double kSmooth = 1.0;
-    const Coast<T>* coast = frame_->sea().coast();
+    const Coast<T>* coast = frame_->sea().coast().get();
     if (coast) add_coast(*coast, block, cycles, origin_m, bounds);
     std::array<glm::dvec2, 3> slopes{glm::dvec2(0.0), glm::dvec2(0.0), glm::dvec2(0.0)};
     for (std::size_t i = 0; i < finest_weight_.size() && !coast; ++i) {

@@ -872,7 +872,7 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
         for (auto& moment : unresolved_of.moments)
             std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
     const TrainArgs<T> all{.trains = &frame_->sea().trains(),
-                           .coast = frame_->sea().coast(),
+                           .coast = frame_->sea().coast().get(),
                            .origin_m = call.place.origin_m,
                            .start_cycles = call.place.start_cycles.data(),
                            .filter = plan.filter,

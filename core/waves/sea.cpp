@@ -266,7 +266,8 @@ class Sea<T>::Progress {
 };
 
 template <class T>
-Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTable> table)
+Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTable> table,
+            std::shared_ptr<const Coast<T>> coast)
     : plan_(std::move(plan)), table_(std::move(table)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
     if (plan_.from->weather) refuse_keyed_sea(plan_.from->scene);
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
@@ -274,7 +275,12 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTa
     if (plan_.trains) {
         trains_ = make_trains<T>(*plan_.from, *plan_.trains, plan_.filter, plan_.breaking);
         total_ = pelagic::total(trains_);
-        if (plan_.trains->coast_cells.x > 0)
+        const auto is_for = [&](const Coast<T>& of) {
+            return std::equal(trains_.breaking.begin(), trains_.breaking.end(), of.breaking.begin());
+        };
+        if (coast && is_for(*coast))
+            coast_ = std::move(coast);
+        else if (plan_.trains->coast_cells.x > 0)
             coast_ = std::make_shared<const Coast<T>>(
                 make_coast(*plan_.from, *plan_.trains, trains_, plan_.breaking));
     } else {

@@ -77,7 +77,9 @@ class Sea {
     // the spectrum, the cascade's size and band, and the seed: not on resolutions, nor on what is asked of
     // the sea. Throws BuildCancelled. `table`: of the plan's spectrum, from another sea of the same scene; null: made.
     // One sea: std::invalid_argument for the plan of a shot with weather, whose sea is a SeaOverTime's (core/waves/sea_over_time.h).
-    explicit Sea(Plan, const BuildWatch& watch = {}, std::shared_ptr<const SpectrumTable> table = nullptr);
+    // `coast`: of another sea of the same scene and trains, whose breaking waves are resolved alike; another one is made.
+    explicit Sea(Plan, const BuildWatch& watch = {}, std::shared_ptr<const SpectrumTable> table = nullptr,
+                 std::shared_ptr<const Coast<T>> coast = nullptr);
     // Of a scene that has the same waves: they are shared.
     Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from);
     // Between two of one plan, which `from` takes the place of the scene of: energies in shares, that of `second` with its rate [1/s].
@@ -89,7 +91,7 @@ class Sea {
     std::span<const Cascade<T>> cascades() const { return *cascades_; }
     const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
     // How the trains go where they feel the floor; null where they don't.
-    const Coast<T>* coast() const { return coast_.get(); }
+    const std::shared_ptr<const Coast<T>>& coast() const { return coast_; }
     double loop_s() const { return loop_s_; }
     // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
     const SpectralMoments& total() const { return total_; }

@@ -12,7 +12,8 @@ SeaOverTime<T>::SeaOverTime(Plan plan, const BuildWatch& watch, const SeaOverTim
         return like ? like->seas_[key]->spectrum_table() : nullptr;
     };
     if (!plan_.from->weather) {
-        seas_.push_back(std::make_shared<const Sea<T>>(plan_, watch, table_of(0)));
+        seas_.push_back(std::make_shared<const Sea<T>>(plan_, watch, table_of(0),
+                                                       like ? like->seas_[0]->coast() : nullptr));
         return;
     }
     const std::vector<Weather::Key>& keys = plan_.from->weather->keys;

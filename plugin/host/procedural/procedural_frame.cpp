@@ -104,7 +104,7 @@ double most_of(const Frame<float>& frame, Field field) {
         const auto add = [&](const std::vector<float>& amplitudes) {
             for (const float amplitude : amplitudes) most += std::abs(static_cast<double>(amplitude));
         };
-        if (const Coast<float>* coast = frame.sea().coast()) {
+        if (const Coast<float>* coast = frame.sea().coast().get()) {
             for (std::size_t i = 0; i < trains.count(); ++i) {
                 const double gain = coast->most_gain[std::min(i, coast->feeling)],
                              sideways = i < coast->feeling ? coast->most_sideways[i]

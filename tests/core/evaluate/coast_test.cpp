@@ -273,7 +273,7 @@ TEST(Coast, BoundsHoldWhatItReaches) {
     const DisplacementBounds all = bounds.everywhere();
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    for (int region = 0; region < 120; ++region) {
+    for (int region = 0; region < 60; ++region) {
         const double side_m = std::exp(std::log(0.2) + unit(random) * std::log(500.0));
         const glm::dvec2 corner_m(-260.0 + 480.0 * unit(random), -260.0 + 480.0 * unit(random));
         const RestRegion where{corner_m, corner_m + side_m};
@@ -313,6 +313,8 @@ TEST(Coast, IsRefusedWithoutDepthsAndSaysItsBytes) {
                                                    sizeof(float));
     EXPECT_GT(plan.sea_bytes(), plain.sea_bytes() + plan.trains->coast_bytes(false) - 1);
     EXPECT_EQ(Sea<float>(plain).coast(), nullptr);
+    // Foam's own seas don't hold it again.
+    EXPECT_EQ(Sea<float>(plan_of_foam_level(plan, 1.5), {}, nullptr, sea.coast()).coast(), sea.coast());
 }
 
 }  // namespace

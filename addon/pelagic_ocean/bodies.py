@@ -33,6 +33,21 @@ def members(obj, is_another):
     return found
 
 
+def triangles_of(evaluated):
+    """(points, triangles) of an evaluated object in its own coordinates, float32 (n, 3) and int32 (m, 3); None of what has no faces."""
+    mesh = evaluated.to_mesh()
+    try:
+        if mesh is None or not mesh.polygons:
+            return None
+        mesh.calc_loop_triangles()
+        points, corners = np.empty((len(mesh.vertices), 3), np.float32), np.empty((len(mesh.loop_triangles), 3), np.int32)
+        mesh.vertices.foreach_get("co", points.ravel())
+        mesh.loop_triangles.foreach_get("vertices", corners.ravel())
+    finally:
+        evaluated.to_mesh_clear()
+    return points, corners
+
+
 def shape_of(parts, depsgraph, into):
     """The Shape of some objects, with their modifiers and the collections that they stand for, as evaluated; into: a matrix from the world
     to the shape's coordinates. And sentences about what of their materials it leaves out."""

@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from . import compat
+from .gpu_hulls import Hulls
 from .gpu_shadow import Shadow
 from .module import pelagic
 
@@ -127,7 +128,8 @@ class Drawing:
         self._time_s = None
         self._air, self._air_height_m = {}, ()
         self._sky_batch = None
-        self.shadow, self._has_shadow = Shadow(), False
+        self.shadow, self.hulls = Shadow(), Hulls()
+        self._has_shadow = self._has_hulls = False
         self._foam_asked = None  # for what, and whether it hasn't come yet
         self.awaits_foam = False
         self.is_under_water = False  # the view that was drawn last, which then stayed empty
@@ -161,8 +163,8 @@ class Drawing:
         cell_px = scene.surface.cell_px
         self._cell_px = cell_px
         has_shadow = bool(throw) and self.light.uniforms["sun_direction"][2] > 0.0
-        if has_shadow != self._has_shadow:
-            self._has_shadow = has_shadow
+        if (has_shadow, bool(throw)) != (self._has_shadow, self._has_hulls):
+            self._has_shadow, self._has_hulls = has_shadow, bool(throw)
             self._shaders.clear()
         self._prepare(time_s)
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
@@ -187,7 +189,7 @@ class Drawing:
 
     def _prepare(self, time_s):
         if not self._shaders:
-            for name, text in self.sea.shaders(self.light, self._has_shadow).items():
+            for name, text in self.sea.shaders(self.light, self._has_shadow, self._has_hulls).items():
                 if text not in self._compiled:
                     self._compiled[text] = compat.shader(*text)
                 self._shaders[name] = self._compiled[text]
@@ -237,6 +239,9 @@ class Drawing:
         if self._has_shadow:
             self.shadow.draw(throw, sea_from_world, grid.origin_m, light["sun_direction"], light["sun_angular_radius"])
             light = {**light, **self.shadow.uniforms, "view_height_m": light["eye_height_m"]}
+        if self._has_hulls:
+            self.hulls.draw(throw, sea_from_world, grid.origin_m, _texture)
+            light = {**light, "view_height_m": light["eye_height_m"]}
         if self.sea.has_living_foam:
             self._follow_foam()
         tables, cycles = self.sea.at_origin(grid.origin_m)
@@ -253,6 +258,8 @@ class Drawing:
             textures["train_cycles"] = _texture(cycles)
         if self._has_shadow:
             textures["sun_blockers"] = self.shadow.texture
+        if self._has_hulls:
+            textures["hull_maps"], textures["hull_places"] = self.hulls.map, self.hulls.places
         _bind(shader, textures)
         grid.batch.draw(shader)
 

@@ -31,12 +31,12 @@ class Shadow:
         self.uniforms, self.texture = {}, None
 
     def parts(self, context):
-        """What throws a shadow: (name, evaluated object) of what the view shows of the scene's bodies."""
+        """What the view shows of the scene's bodies: (name, evaluated object, evaluated body) of each part."""
         chosen = [obj for obj in in_light.of_scene(context.scene) if obj.visible_get()]
         if not chosen:
             return []
         depsgraph = context.evaluated_depsgraph_get()
-        return [(part.name, part.evaluated_get(depsgraph)) for obj in chosen for part in bodies.members(obj, in_light.is_body)
+        return [(part.name, part.evaluated_get(depsgraph), obj.evaluated_get(depsgraph)) for obj in chosen for part in bodies.members(obj, in_light.is_body)
                 if part.type in bodies.SHAPES and part.visible_get()]
 
     def draw(self, parts, sea_from_world, origin_m, to_sun, sun_radius):
@@ -46,7 +46,7 @@ class Shadow:
         _dirty.clear()
         from_world = Matrix.Translation((-origin_m[0], -origin_m[1], 0.0)) @ sea_from_world
         placed = []
-        for name, evaluated in parts:
+        for name, evaluated, _ in parts:
             if name not in self._batches:
                 self._batches[name] = _batch(evaluated)
                 self._drawn = None
@@ -99,16 +99,10 @@ class Shadow:
 
 
 def _batch(evaluated):
-    mesh = evaluated.to_mesh()
-    try:
-        if mesh is None or not mesh.polygons:
-            return None
-        mesh.calc_loop_triangles()
-        points, corners = np.empty((len(mesh.vertices), 3), np.float32), np.empty((len(mesh.loop_triangles), 3), np.int32)
-        mesh.vertices.foreach_get("co", points.ravel())
-        mesh.loop_triangles.foreach_get("vertices", corners.ravel())
-    finally:
-        evaluated.to_mesh_clear()
+    triangles = bodies.triangles_of(evaluated)
+    if triangles is None:
+        return None
+    points, corners = triangles
     form = gpu.types.GPUVertFormat()
     form.attr_add(id="place", comp_type="F32", len=3, fetch_mode="FLOAT")
     vertices = gpu.types.GPUVertBuf(format=form, len=len(points))

@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, gpu_shadow, handlers, keyed, light, ocean, play
+from . import compat, gpu_hulls, gpu_shadow, handlers, keyed, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -268,6 +268,7 @@ def _tend():
 def _see_changes(_bpy_scene, depsgraph):
     if _preview is not None:
         gpu_shadow.changed(depsgraph)
+        gpu_hulls.changed(depsgraph)
 
 
 @persistent

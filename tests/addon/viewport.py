@@ -424,8 +424,29 @@ def steps():
         block.location.x += 200.0
         bpy.context.view_layer.update()
         assert (change_of(picture(), plain)[part] < 2 / 255).all(), "it goes along"
+        bpy.data.objects.remove(block)
+        with checking("no sea is drawn in a hull, wherever it goes"):
+            tub = bpy.data.meshes.new("tub")
+            corners = [(x, y, z) for z in (-2.0, 1.0) for y in (-4.0, 4.0) for x in (-6.0, 6.0)]
+            tub.from_pydata(corners, [], [(0, 1, 3, 2), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)])
+            tub = bpy.data.objects.new("tub", tub)
+            bpy.context.scene.collection.objects.link(tub)
+            look(-24.0, 16.0, 34.0)
+            full = picture()
+            tub.pelagic_in_light.enabled = True
+            dry = picture()
+            assert not viewport._preview.problem, viewport._preview.problem
+            row, column = place_of((0.0, 0.0, 0.0))
+            inside = np.s_[row - 3:row + 3, column - 4:column + 4]
+            was, now = full[inside].mean((0, 1)), dry[inside].mean((0, 1))
+            print(f"    in the hull {np.round(was, 3)} before, {np.round(now, 3)} now")
+            assert was[1] > was[0] + 0.03, "there was no sea in it"
+            assert abs(now[1] - now[0]) < 0.02, "its bottom is grey"
+            tub.location.x += 200.0
+            bpy.context.view_layer.update()
+            assert (change_of(picture(), full)[inside] < 2 / 255).all(), "it goes along"
         viewport.turn_off()
-        for each in (block, obj):
+        for each in (tub, obj):
             bpy.data.objects.remove(each)
 
     with checking("the add-on goes while it is on"):

@@ -29,6 +29,7 @@
 #include "core/surface/projected_grid.h"
 #include "plugin/host/gpu/foam_worker.h"
 #include "plugin/host/gpu/packed_frame.h"
+#include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/shader_variants.h"
 #include "plugin/host/gpu/sky_atlas.h"
 #include "plugin/host/gpu/uniforms.h"
@@ -95,6 +96,85 @@ struct GpuLight {
     };
     Metered metered{};
 };
+
+// The hulls of a host's own objects.
+class GpuHulls {
+  public:
+    using Points = py::array_t<float, py::array::c_style | py::array::forcecast>;
+    using Triangles = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+    using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+    explicit GpuHulls(const std::vector<std::pair<Points, Triangles>>& meshes) {
+        std::vector<ObjectMeshData> all;
+        for (const auto& [points, triangles] : meshes) {
+            if (points.ndim() != 2 || points.shape(1) != 3 || triangles.ndim() != 2 ||
+                triangles.shape(1) != 3)
+                throw py::value_error("meshes: accepted: pairs of points (n, 3) and triangles (m, 3)");
+            ObjectMeshData& data = all.emplace_back();
+            data.materials.resize(1);
+            for (py::ssize_t i = 0; i < points.shape(0); ++i)
+                data.points_m.emplace_back(points.at(i, 0), points.at(i, 1), points.at(i, 2));
+            data.triangles.assign(triangles.data(), triangles.data() + triangles.size());
+            data.normals.assign(data.triangles.size(), glm::vec3(0.0f, 0.0f, 1.0f));  // no hull asks for them
+            data.material.assign(static_cast<std::size_t>(triangles.shape(0)), 0);
+        }
+        const OthersMayRun others_may_run;
+        for (ObjectMeshData& data : all) {
+            hulls_.emplace_back();
+            try {
+                meshes_.push_back(std::make_shared<const ObjectMesh>(std::move(data)));
+                hulls_.back() = hull_of(*meshes_.back());
+            } catch (const std::invalid_argument&) {  // an artist's mesh may be anything
+            }
+        }
+        packed_ = PackedHulls(hulls_);
+    }
+
+    py::array map() const {
+        const int rows = std::max(packed_.rows(), 1);
+        std::vector<float> texels = packed_.maps();
+        texels.resize(static_cast<std::size_t>(rows) * kHullColumns);
+        return array_of<float>(std::move(texels), {rows, kHullColumns, 1});
+    }
+    py::array places(const std::vector<Matrix>& grid_from) const {
+        if (grid_from.size() != hulls_.size())
+            throw py::value_error("grid_from: accepted: a matrix for each mesh");
+        std::vector<PlacedHull> placed;
+        for (std::size_t i = 0; i < hulls_.size(); ++i) {
+            if (grid_from[i].ndim() != 2 || grid_from[i].shape(0) != 4 || grid_from[i].shape(1) != 4)
+                throw py::value_error("grid_from: accepted: matrices (4, 4)");
+            PlacedHull& hull = placed.emplace_back(hulls_[i].get());
+            for (int row = 0; row < 4; ++row)
+                for (int column = 0; column < 4; ++column)
+                    hull.grid_from[column][row] = grid_from[i].at(row, column);
+        }
+        std::vector<glm::vec4> texels = packed_.places(placed);
+        const auto rows = static_cast<py::ssize_t>(texels.size() / kHullPlaceColumns);
+        return array_of<float>(std::move(texels), {rows, kHullPlaceColumns});
+    }
+
+  private:
+    std::vector<std::shared_ptr<const ObjectMesh>> meshes_;
+    std::vector<std::shared_ptr<const Hull>> hulls_;
+    PackedHulls packed_{{}};
+};
+
+void add_gpu_hulls(py::module_& module) {
+    py::class_<GpuHulls>(
+        module, "GpuHulls", py::module_local(),
+        "Where a host's own objects keep water out, for GpuSea's shader with hulls: as the objects of a shot do.\n\n"
+        "meshes: (points, triangles) of each, float32 (n, 3) [m] in its own axes, z up, and indices (m, 3). Some tenths of a second "
+        "for a large one; other threads run meanwhile, and equal meshes are made once. What keeps no water out does nothing: a sheet, a mesh without "
+        "area, one with indices out of range or numbers that aren't finite.")
+        .def(py::init<const std::vector<std::pair<GpuHulls::Points, GpuHulls::Triangles>>&>(),
+             py::arg("meshes"))
+        .def_property_readonly("map", &GpuHulls::map,
+                               "The texture hull_maps: float32 (height, width, 1), texels as they are.")
+        .def(
+            "places", &GpuHulls::places, py::arg("grid_from"),
+            "The texture hull_places, float32 (height, width, 4): of matrices (4, 4), one for each mesh, from its axes to the grid's "
+            "coordinates.");
+}
 
 glm::dvec2 checked_origin(std::array<double, 2> origin_m) {
     const glm::dvec2 origin(origin_m[0], origin_m[1]);
@@ -223,8 +303,9 @@ class GpuSea {
             [&] { return surface_above_camera(frame_, view, projected_grid_options(*prepared_)); });
     }
 
-    py::dict shaders(const GpuLight& light, bool shadows) const {
-        DrawOptions options{.lighting = lighting_, .has_shadow = shadows, .for_host = true};
+    py::dict shaders(const GpuLight& light, bool shadows, bool hulls) const {
+        DrawOptions options{
+            .lighting = lighting_, .has_shadow = shadows, .has_hulls = hulls, .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
         options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
@@ -529,6 +610,7 @@ void add_gpu_grid(py::module_& module) {
 void add_viewport(py::module_& module) {
     add_gpu_light(module);
     add_gpu_grid(module);
+    add_gpu_hulls(module);
     py::class_<GpuSea, std::shared_ptr<GpuSea>>(
         module, "GpuSea", py::module_local(),
         "A sea for pictures from any camera, with what a GPU needs to draw it by itself: the preview's "
@@ -561,6 +643,7 @@ void add_viewport(py::module_& module) {
             "in the air, the only one that can be drawn.")
         .def(
             "shaders", &GpuSea::shaders, py::arg("light"), py::arg("shadows") = false,
+            py::arg("hulls") = false,
             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
             "Equal for seas with as many cascades and footprints.\n\n"
             "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
@@ -573,7 +656,8 @@ void add_viewport(py::module_& module) {
             "shadows: the host's own objects shadow the sea. It draws their depth towards the sun, 0 … 1, into a texture sun_blockers (1 "
             "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth), vec4 "
             "shadow_reach (its width, height and depth [m], the tangent of the sun's radius), shadow_off (of depth), and view_height_m as "
-            "eye_height_m.")
+            "eye_height_m.\n\n"
+            "hulls: with the textures of GpuHulls, no sea is drawn in them.")
         .def_property_readonly(
             "uniforms", &GpuSea::uniforms,
             "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "

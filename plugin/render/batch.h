@@ -42,6 +42,12 @@ struct BodiesInSea {
     }
 };
 
+// Drops before a sample, where deep pixels are asked for: the part that they leave, their light, and how far they are.
+struct DropsBefore {
+    float left = 1.0f, distance_m = 0.0f;
+    glm::vec3 light{0.0f};
+};
+
 // What a batch of samples holds, by sample of the batch or by sample that shows the sea.
 template <class T>
 struct Batch {
@@ -51,6 +57,7 @@ struct Batch {
     std::vector<float>
         veil;  // by sample: what spray and water that climbs the glass hide of the sky; empty where nobody asks
     std::vector<float> sea_m;         // by sample: how far the sea is; empty where nobody asks
+    std::vector<DropsBefore> drops;   // by sample; likewise
     std::vector<std::uint8_t> under;  // by sample: it looks through water; empty where none may
     std::vector<double> glass_m;  // by sample: its height above the water at the camera's glass [m]; likewise
     std::vector<std::size_t> climbed;  // which samples look through what climbs the glass, rising

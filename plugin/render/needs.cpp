@@ -123,6 +123,12 @@ void check_render(const Scene& scene, const RenderOptions& options) {
     if (!(options.shutter_frames >= 0.0 && options.shutter_frames <= kLongestShutter_frames))
         throw std::invalid_argument("a shutter that is open for " + number_text(options.shutter_frames) +
                                     " frames: 0 to " + number_text(kLongestShutter_frames) + " are accepted");
+    if (options.deep && !options.alpha)
+        throw std::invalid_argument(
+            "deep pixels without alpha: what they lie over isn't in them; alpha is accepted with them");
+    if (options.deep && options.samples > 1 && (options.shutter_frames > 0.0 || scene.camera.f_stop > 0.0))
+        throw std::invalid_argument(
+            "deep pixels of a blurred picture: no shutter, and no camera.f_stop, or 1 sample a pixel, are accepted with them");
     const glm::ivec2 display = scene.camera.resolution;
     check_window(display, options);
     const glm::ivec2 all = (display + 2 * options.overscan_px) * options.samples;
@@ -160,6 +166,15 @@ std::size_t file_bytes(const RenderOptions& options, bool has_objects) {
     return light * 3 * 2 / 2 + 2 + sizeof(float) * data_components(layers) + (options.alpha ? 3 : 0);
 }
 constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 4;
+
+// [bytes/pixel] of deep pixels at most: with the rows that they come from, and with what is encoded of them.
+std::size_t deep_bytes(const Scene& scene, const RenderOptions& options) {
+    const auto places = static_cast<std::size_t>(options.samples * options.samples);
+    const bool has_drops = options.lighting.spray && scene.effects.spray_drops;
+    const std::size_t most = most_deep_samples(has_drops ? 2 * places : places, scene.objects.size(),
+                                               options.lighting.spray);
+    return sizeof(std::uint32_t) + most * sizeof(DeepSample);
+}
 
 // [bytes] of a point of the grid: as it is laid out, with the one of the frame before, in T, displaced, on the screen
 // and in triangles. Of the rasteriser's pieces of triangles, which are fewer where most lie outside the picture, and
@@ -242,6 +257,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      glare_bytes(intersection(data, {.high = scene.camera.resolution}).size()),
                  "set camera.glare to 0");
     const std::size_t pixels = pixels_of(data);
+    if (options.deep)
+        need.add("deep pixels",
+                 pixels * deep_bytes(scene, options) * (2 * static_cast<std::size_t>(in_flight.value_or(0)) + 2),
+                 "leave --deep out, or ask for a smaller picture (--size)");
     need.add(
         "pictures",
         pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (picture_bytes(options, has_objects) +

@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <tuple>
 #include <utility>
 
 #include "core/lighting/air.h"
@@ -140,11 +141,13 @@ exr::Matrix packed(const glm::dmat4& matrix) {
     return rows;
 }
 
-std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
+// What a picture's file says of all that its layers don't.
+std::vector<exr::Attribute> common_attributes(const PictureContext& context, int frame,
+                                              const std::string& content, const std::string& name) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
-        {"content", "radiance; the layers " + light_names(!scene.objects.empty()) + " add up to R, G, B"},
+        {"content", content},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},
@@ -167,16 +170,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
     for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg))
         attributes.push_back(std::move(attribute));
-    const PictureLayerSet layers = layers_of(!scene.objects.empty(), context.options.layers);
-    for (const PictureLayerRow& row : kPictureLayers)
-        if (!row.light && layers[index(row.layer)])
-            attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
-    if (layers[index(PictureLayer::Cryptomatte)]) {
-        std::vector<std::string> names;
-        for (const SceneObject& object : scene.objects) names.push_back(object.called());
-        for (auto& [name, value] : matte_attributes(names)) attributes.push_back({name, value});
-    }
-    for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
+    for (exr::Attribute& attribute : seal_attributes(name))
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
     describe(scene, parts_beside_the_view(context.options), attributes);
@@ -186,6 +180,27 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
             if (const Key& key = key_of(table_key(number));
                 is_of_sea(number) && attribute.name == "pelagic." + key.path)
                 attribute.value = value_text(key, value_of(*context.shot, key));
+    return attributes;
+}
+
+std::vector<std::pair<std::string, std::string>> mattes_of(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const SceneObject& object : scene.objects) names.push_back(object.called());
+    return matte_attributes(names);
+}
+
+std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
+    const Scene& scene = context.scene;
+    std::vector<exr::Attribute> attributes = common_attributes(
+        context, frame,
+        "radiance; the layers " + light_names(!scene.objects.empty()) + " add up to R, G, B",
+        picture_file(scene.shot, frame, "exr"));
+    const PictureLayerSet layers = layers_of(!scene.objects.empty(), context.options.layers);
+    for (const PictureLayerRow& row : kPictureLayers)
+        if (!row.light && layers[index(row.layer)])
+            attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
+    if (layers[index(PictureLayer::Cryptomatte)])
+        for (auto& [name, value] : mattes_of(scene)) attributes.push_back({name, value});
     return attributes;
 }
 
@@ -202,6 +217,10 @@ std::string layers_text(const Scene& scene, PictureLayerSet layers) {
 
 std::string picture_file(const Shot& shot, int frame, const char* extension) {
     return FilePattern{shot.name + '.', std::string(".") + extension}.file(frame);
+}
+
+std::string deep_file(const Shot& shot, int frame) {
+    return FilePattern{shot.name + ".deep.", ".exr"}.file(frame);
 }
 
 PictureFingerprint::PictureFingerprint(const PictureSource& source)
@@ -352,6 +371,44 @@ std::string encode_exr(const PictureContext& context, const Picture& rendered, i
     const exr::Header header{.attributes = attributes_of(context, frame),
                              .compression = exr::Compression::Zip};
     std::string file = exr::encode_scanline(header, image);
+    seal(file);
+    return file;
+}
+
+std::string encode_deep(const PictureContext& context, const Picture& picture, int frame) {
+    std::vector<DeepSample> converted;
+    if (context.colours.acescg) {
+        const glm::mat3 to_acescg(conversion(kRec709, kAcesCg));
+        converted = picture.deep.samples;
+        for (DeepSample& sample : converted) sample.light = to_acescg * sample.light;
+    }
+    const std::vector<DeepSample>& samples = context.colours.acescg ? converted : picture.deep.samples;
+    exr::DeepImage image{.width = picture.resolution.x,
+                         .height = picture.resolution.y,
+                         .counts = picture.deep.counts,
+                         .channels = {},
+                         .x = picture.low.x,
+                         .y = picture.low.y};
+    if (picture.display) image.display = {picture.display->x, picture.display->y};
+    constexpr DeepSample kNone;
+    const DeepSample& first = samples.empty() ? kNone : samples.front();
+    const exr::PixelType light =
+        ranges_of(context.scene, context.sky, context.options.lighting.spray).sun;
+    for (const auto& [name, data, type] :
+         {std::tuple("R", &first.light.x, light), {"G", &first.light.y, light}, {"B", &first.light.z, light},
+          {"A", &first.alpha, exr::PixelType::Float}, {"Z", &first.z_m, exr::PixelType::Float},
+          {"ZBack", &first.z_back_m, exr::PixelType::Float}, {"id", &first.id, exr::PixelType::Float}})
+        image.channels.push_back({.name = name,
+                                  .data = data,
+                                  .pixel_stride_bytes = sizeof(DeepSample),
+                                  .type = type});
+    exr::Header header{.attributes = common_attributes(
+                           context, frame,
+                           "deep radiance times alpha; laid over each other the samples are the picture's R, G, B, A",
+                           deep_file(context.scene.shot, frame))};
+    for (const auto& [name, value] : mattes_of(context.scene))
+        if (name.ends_with("/manifest")) header.attributes.push_back({"manifest", value});
+    std::string file = exr::encode_deep_scanline(header, image);
     seal(file);
     return file;
 }

@@ -77,6 +77,9 @@ class PictureFingerprint {
 // PNG: display_bytes() of the whole at the context's exposure, or what PictureColours::show makes of it; with alpha of the light
 // divided by it, as the format wants.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
+// NAME.deep.0012.exr: deep scan lines; R, G, B, A, from Z to ZBack, and id, a Cryptomatte's identifiers, whose names are in `manifest`.
+std::string deep_file(const Shot& shot, int frame);
+std::string encode_deep(const PictureContext& context, const Picture& picture, int frame);
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame);
 
 // A picture's light with the lens' glare, in linear Rec. 709; empty where it has none.

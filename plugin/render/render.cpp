@@ -10,6 +10,8 @@
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -22,6 +24,7 @@
 #include "core/lighting/background.h"
 #include "core/lighting/meniscus.h"
 #include "core/lighting/object.h"
+#include "core/lighting/spray.h"
 #include "core/plan/hulls.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
@@ -58,6 +61,11 @@ struct SamplesOfPass {
     int stride = 1;  // samples between two that are taken
     glm::dvec2 first{0.0};
     bool is_by_pixel = false;
+};
+
+// A row of a window's pixels, from the picture's pixel `first` on.
+struct DeepRow : DeepPixels {
+    std::size_t first = 0;
 };
 
 constexpr float kSprayEndless_m = 1e30f;  // where there is no sea
@@ -165,6 +173,7 @@ class RendererOf final : public Impl {
         std::sort(picture.skyline.begin(), picture.skyline.end(),
                   [](const SkylinePixel& a, const SkylinePixel& b) { return a.pixel < b.pixel; });
         if (objects_) end_objects(picture);
+        if (options_.deep) end_deep(picture);
     }
 
     void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
@@ -211,6 +220,9 @@ class RendererOf final : public Impl {
         picture.resolution = data_.size();
         unranked_.assign(objects_ ? static_cast<std::size_t>(picture.resolution.y) : 0, {});
         picture.low = data_.low;
+        picture.deep.counts.clear();
+        picture.deep.samples.clear();
+        deep_rows_.clear();
         picture.display.reset();
         if (data_ != PixelWindow{.high = display_}) picture.display = display_;
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
@@ -818,6 +830,7 @@ class RendererOf final : public Impl {
         const PixelWindow window = drawn_window();
         const int width = window.size().x;
         batch_.sea_m.assign(batch_.triangles.size(), kSprayEndless_m);
+        batch_.drops.assign(options_.deep ? batch_.triangles.size() : 0, DropsBefore{});
         for (std::size_t i = 0; i < batch_.sea.size(); ++i)
             batch_.sea_m[batch_.sea[i]] = batch_.seen.distance_m[i];
         for (std::size_t i = 0; i < batch_.body.size(); ++i)
@@ -859,6 +872,14 @@ class RendererOf final : public Impl {
             batch_.in_sea[sample] *= 1.0f - hidden;
         }
         seen.air += hidden * drop.radiance;
+        if (!batch_.drops.empty()) {
+            DropsBefore& before = batch_.drops[sample];
+            const float behind = (1.0f - hidden) * (1.0f - before.left);
+            before.distance_m =
+                (behind * before.distance_m + hidden * drop.distance_m) / (behind + hidden);
+            before.left *= 1.0f - hidden;
+            before.light = (1.0f - hidden) * before.light + hidden * drop.radiance;
+        }
         if (!batch_.veil.empty() && batch_.triangles[sample] == Rasteriser::kNone && !is_covered(sample))
             batch_.veil[sample] += hidden * (1.0f - batch_.veil[sample]);
     }
@@ -943,8 +964,10 @@ class RendererOf final : public Impl {
         const float share = 1.0f / static_cast<float>(options_.samples * options_.samples);
         const bool has_skyline = has_places() && !sampling_.is_by_pixel && !options_.alpha;
         std::vector<std::vector<SkylinePixel>> skyline(rows / n);
+        std::vector<DeepRow> deep(options_.deep ? rows / n : 0);
         tbb::parallel_for(0, rows / n, [&](int row) {
             const std::size_t to = first_pixel(picture, first_row / n + row);
+            if (options_.deep) deep[row].first = to;
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
                 glm::vec3 of_sky(0.0f);
@@ -974,6 +997,7 @@ class RendererOf final : public Impl {
                 pixel.air += sum.air * share;
                 if (objects_) add_objects(row, x, n, share, picture, to + x);
                 if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(covered) + of_veil) * share;
+                if (options_.deep) add_deep(first_row, row, x, picture, deep[row]);
                 if (has_skyline && of_sea > 0 && of_sea < n * n)
                     skyline[row].push_back({.pixel = to + x,
                                             .sky = 1.0f - static_cast<float>(of_sea) * share,
@@ -982,6 +1006,100 @@ class RendererOf final : public Impl {
         });
         for (const std::vector<SkylinePixel>& of_row : skyline)
             picture.skyline.insert(picture.skyline.end(), of_row.begin(), of_row.end());
+        std::move(deep.begin(), deep.end(), std::back_inserter(deep_rows_));
+    }
+
+    // The next pixel of a row, all of whose samples are in the batch.
+    void add_deep(int first_row, int row, std::size_t x, const Picture& picture, DeepRow& to) const {
+        const int n = options_.samples;
+        const auto sample_width = static_cast<std::size_t>(drawn_window().size().x);
+        const std::size_t pixel = to.first + x;
+        const float share = 1.0f / static_cast<float>(n * n);
+        const auto sample_at = [&](int i) {
+            return sample_width * static_cast<std::size_t>(row * n + i / n) + x * static_cast<std::size_t>(n) +
+                   static_cast<std::size_t>(i % n);
+        };
+        const auto of_picture = [&](PictureLayer layer) {
+            const std::vector<float>& of = picture.data[index(layer)];
+            return of.empty() ? glm::vec3(0.0f)
+                              : glm::vec3(of[3 * pixel], of[3 * pixel + 1], of[3 * pixel + 2]);
+        };
+        // What the sea shows of bodies is known of the pixel alone, and end_objects() leaves out bodies' light that is below 0.
+        int of_sea = 0;
+        for (int i = 0; i < n * n; ++i) of_sea += batch_.triangles[sample_at(i)] != Rasteriser::kNone;
+        const glm::vec3 reflection =
+            of_picture(PictureLayer::Reflection) / (share * static_cast<float>(std::max(of_sea, 1)));
+        const glm::vec3 object_counts(glm::greaterThanEqual(of_picture(PictureLayer::Object), glm::vec3(0.0f)));
+        std::vector<DeepSight> sights;
+        for (int i = 0; i < n * n; ++i) {
+            const std::size_t at = sample_at(i);
+            const bool has_surface = batch_.triangles[at] != Rasteriser::kNone;
+            const glm::dvec3 direction = view_.direction(seen_at(first_row, at));
+            const auto along = static_cast<float>(glm::dot(direction, view_.forward));
+            std::optional<float> distance_m;
+            DeepSight sight;
+            glm::vec3 light = radiance_of(batch_.radiance[at]);
+            if (is_object(at)) {
+                distance_m = batch_.body[at].distance_m;
+                sight.id = mattes_[static_cast<std::size_t>(batch_.body[at].body)];
+            } else if (is_sea(at)) {
+                sight.id = kSeaMatte;
+                if (has_surface)
+                    distance_m =
+                        static_cast<float>(glm::length(glm::dvec3(sea_place(first_row, at)) - eye_place()));
+                else if (direction.z < 0.0 && sea_.water().floor_m < 1e6f)
+                    distance_m = static_cast<float>(sea_.floor().distance_m(view_.position_m, direction));
+            }
+            if (objects_) light += object_counts * batch_.object[at];
+            if (has_surface) light += reflection;
+            sight.z_m = std::min(along * distance_m.value_or(kSkyDepth_m), kSkyDepth_m);
+            const DropsBefore drops = batch_.drops.empty() ? DropsBefore{} : batch_.drops[at];
+            light -= drops.light;
+            if (is_covered(at)) {
+                SpraySeen spray;
+                if (!is_under(at))
+                    spray = spray_before(spray_, glm::vec3(direction), distance_m, has_surface);
+                sight.alpha = drops.left * spray.transmittance;
+                sight.veil = drops.left - sight.alpha;
+                sight.veil_light = drops.left * spray.scattered;
+                sight.light = light - sight.veil_light;
+            } else {
+                sight.veil = batch_.veil.empty() ? 0.0f : batch_.veil[at] - (1.0f - drops.left);
+                sight.veil_light = light;
+            }
+            for (float* of : {&sight.alpha, &sight.veil}) *of = std::max(*of, 0.0f) * share;
+            for (glm::vec3* of : {&sight.light, &sight.veil_light}) *of *= share;
+            if (sight.alpha > 0.0f || sight.veil > 0.0f) sights.push_back(sight);
+            if (drops.left < 1.0f)
+                sights.push_back({.z_m = std::min(along * drops.distance_m, sight.z_m),
+                                  .alpha = share * (1.0f - drops.left),
+                                  .light = share * drops.light});
+        }
+        const std::size_t middle = sample_at(n / 2 * n + n / 2);
+        const glm::dvec3 direction = view_.direction(seen_at(first_row, middle));
+        const auto along = static_cast<float>(glm::dot(direction, view_.forward));
+        to.counts.push_back(add_deep_pixel(
+            sights,
+            [&](float z_m) {
+                std::optional<float> distance_m;
+                if (z_m < kSkyDepth_m) distance_m = z_m / along;
+                return 1.0f - spray_before(spray_, glm::vec3(direction), distance_m, false).transmittance;
+            },
+            to.samples));
+    }
+
+    // The rows of all windows as those of the picture.
+    void end_deep(Picture& picture) {
+        std::sort(deep_rows_.begin(), deep_rows_.end(),
+                  [](const DeepRow& a, const DeepRow& b) { return a.first < b.first; });
+        std::size_t samples = 0;
+        for (const DeepRow& row : deep_rows_) samples += row.samples.size();
+        picture.deep.samples.reserve(samples);
+        for (const DeepRow& row : deep_rows_) {
+            picture.deep.counts.insert(picture.deep.counts.end(), row.counts.begin(), row.counts.end());
+            picture.deep.samples.insert(picture.deep.samples.end(), row.samples.begin(), row.samples.end());
+        }
+        deep_rows_ = {};
     }
 
     static std::span<float, kMatteFloats> ranks_of(std::vector<float>& mattes, std::size_t pixel) {
@@ -1174,6 +1292,7 @@ class RendererOf final : public Impl {
     };
     mutable std::vector<std::vector<Unranked>> unranked_;
     std::vector<float> mattes_;  // by object
+    mutable std::vector<DeepRow> deep_rows_;
     const std::atomic<bool>* cancel_ = nullptr;
 };
 

@@ -28,6 +28,7 @@
 #include "core/plan/plan.h"
 #include "core/waves/sea.h"
 #include "pelagic/scene.h"
+#include "plugin/render/deep.h"
 #include "plugin/render/layers.h"
 #include "plugin/render/picture_window.h"
 
@@ -59,6 +60,7 @@ struct Picture {
     std::array<std::vector<float>, kPictureLayerCount> data{};
     // In rising order, of pictures that aren't blurred and have their sky.
     std::vector<SkylinePixel> skyline{};
+    DeepPixels deep{};  // where RenderOptions ask for them
     // Of the first pixel, where it isn't the display window's; and that one's size, where the picture isn't all of it.
     glm::ivec2 low{0};
     std::optional<glm::ivec2> display{};
@@ -91,6 +93,8 @@ struct RenderOptions {
     double shutter_frames = 0.0;
     bool alpha =
         false;  // transparent where there is no sea, nor spray, nor object; the light is then multiplied by alpha
+    // Deep pixels as well: needs alpha, without a shutter or an aperture (check_render()).
+    bool deep = false;
     PictureLayerSet layers = light_layers();
     // Computed round the display window: at the left and the right, above and below [pixels], each no more than half of it. The
     // camera's keys are those of the display window, and so are the exposure, the lens and motion vectors.

@@ -24,13 +24,17 @@ namespace {
 
 struct PictureSlot : RunSlot {
     Picture picture;
-    std::array<std::string, 2> files;  // by part
+    std::array<std::string, 3> files;  // by part
     // Of a shot whose numbers have keys, the frame's own.
     std::optional<Scene> scene;
     std::optional<Sky> sky;
     float exposure = 0.0f;
 };
-constexpr std::array kExtensions{"png", "exr"};
+constexpr std::size_t kPng = 0, kExr = 1, kDeep = 2;  // parts; the last one where it is asked for
+
+std::string file_of(const Shot& shot, std::size_t part, int frame) {
+    return part == kDeep ? deep_file(shot, frame) : picture_file(shot, frame, part == kPng ? "png" : "exr");
+}
 
 class Pictures final : public Sequence {
   public:
@@ -71,19 +75,23 @@ class Pictures final : public Sequence {
                                      .colours = order_.colours,
                                      .chosen = chosen_,
                                      .shot = &order_.scene};
-        if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);
-        if (slot.wants(1)) slot.files[1] = encode_exr(context, slot.picture, slot.frame);
+        if (slot.wants(kPng)) slot.files[kPng] = encode_png(context, slot.picture, slot.frame);
+        if (slot.wants(kExr)) slot.files[kExr] = encode_exr(context, slot.picture, slot.frame);
+        if (wants_deep(slot)) slot.files[kDeep] = encode_deep(context, slot.picture, slot.frame);
     }
 
     void write(RunSlot& any, const FileSink& sink) const override {
         const PictureSlot& slot = static_cast<const PictureSlot&>(any);
-        for (std::size_t p = 0; p < kExtensions.size(); ++p)
-            if (slot.wants(p))
-                sink({picture_file(order_.scene.shot, slot.frame, kExtensions[p]),
-                      [&](const auto& take) { take(slot.files[p]); }});
+        // Others are looked at to see whether a frame is there: the deep one is there before them.
+        for (const std::size_t part : {kDeep, kPng, kExr})
+            if (part == kDeep ? wants_deep(slot) : slot.wants(part))
+                sink({file_of(order_.scene.shot, part, slot.frame),
+                      [&](const auto& take) { take(slot.files[part]); }});
     }
 
   private:
+    bool wants_deep(const PictureSlot& slot) const { return order_.options.deep && slot.wants(kDeep); }
+
     const PictureOrder& order_;
     const PictureFingerprint& made_of_;
     std::string chosen_;
@@ -111,6 +119,9 @@ RunReport render_files(const PictureOrder& order, const RunOptions& options) {
                         for (const char* suffix : {".png", ".exr"})
                             parts.push_back(
                                 {{shot.name + '.', suffix}, [&](int frame) { return made_of->of(frame); }});
+                        if (order.options.deep)
+                            parts.push_back({{shot.name + ".deep.", ".exr"},
+                                             [&](int frame) { return made_of->of(frame); }});
                         return parts;
                     },
                 .build = [&](std::span<const int> frames, const auto& watch) -> std::unique_ptr<Sequence> {

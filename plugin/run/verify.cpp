@@ -156,7 +156,16 @@ bool are_before_a_record(const fs::path& folder, const std::vector<std::string>&
 
 bool is_picture(const std::string& name) {
     const std::string shot = shot_of(name) + '.';
-    return frame_of(name, {shot, ".exr"}) || frame_of(name, {shot, ".png"});
+    return frame_of(name, {shot, ".exr"}) || frame_of(name, {shot, ".png"}) ||
+           frame_of(name, {shot + "deep.", ".exr"});
+}
+
+// What lies beside a picture: of a deep one the flat one.
+std::string beside_picture(const std::string& name) {
+    const std::string shot = shot_of(name) + '.';
+    if (const auto frame = frame_of(name, {shot + "deep.", ".exr"}))
+        return FilePattern{shot, ".exr"}.file(*frame);
+    return fs::path(name).replace_extension(name.ends_with(".png") ? ".exr" : ".png").string();
 }
 
 }  // namespace
@@ -207,8 +216,7 @@ Verification verify(const fs::path& folder, const BuildWatch& watch, const std::
                                       "was made by another instruction set: render it again with "
                                       "--instruction-set " +
                                           instruction_set});
-        const std::string other =
-            fs::path(file.path).replace_extension(file.path.ends_with(".png") ? ".exr" : ".png").string();
+        const std::string other = beside_picture(file.path);
         if (!names.contains(other))
             found.findings.push_back({other, Flaw::Missing, "is missing beside " + file.path});
     }

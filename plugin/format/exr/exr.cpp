@@ -16,6 +16,8 @@
 
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -25,6 +27,7 @@
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfPartType.h>
 #include <ImfRationalAttribute.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
@@ -321,6 +324,76 @@ std::string encode_scanline(const Header& header, const Image& image) {
             const int rows = std::min(band, image.height - y);
             file.setFrameBuffer(scratch.load(image, {0, y, image.width, rows}, false));
             file.writePixels(rows);
+        }
+    }
+    return stream.take();
+}
+
+std::string encode_deep_scanline(const Header& header, const DeepImage& image) {
+    const Image flat{.width = image.width,
+                     .height = image.height,
+                     .channels = image.channels,
+                     .x = image.x,
+                     .y = image.y,
+                     .display = image.display};
+    check_image(flat);
+    const auto width = static_cast<std::size_t>(image.width);
+    if (image.counts.size() != width * static_cast<std::size_t>(image.height))
+        throw std::invalid_argument("deep pixels without a count for each: give width times height");
+    Imf::Header deep = imf_header(header, flat);
+    deep.setType(Imf::DEEPSCANLINE);
+    deep.compression() = Imf::ZIPS_COMPRESSION;
+    StringStream stream(1 << 16);
+    {
+        Imf::DeepScanLineOutputFile file(stream, deep, 0);
+        // One row at a time. The library adds x and y times the strides to where a slice begins: strides of y are 0.
+        std::vector<std::uint32_t> counts(width);
+        std::vector<std::vector<char>> packed(image.channels.size());
+        std::vector<std::vector<char*>> begins(image.channels.size(), std::vector<char*>(width));
+        const auto base = [&](auto* first) {
+            return reinterpret_cast<char*>(reinterpret_cast<std::intptr_t>(first) -
+                                           image.x * static_cast<std::intptr_t>(sizeof(*first)));
+        };
+        std::size_t sample = 0;
+        for (int y = 0; y < image.height; ++y) {
+            const auto row = image.counts.subspan(width * static_cast<std::size_t>(y), width);
+            std::copy(row.begin(), row.end(), counts.begin());
+            std::size_t samples = 0;
+            for (const std::uint32_t count : row) samples += count;
+            Imf::DeepFrameBuffer buffer;
+            buffer.insertSampleCountSlice(
+                Imf::Slice(Imf::UINT, base(counts.data()), sizeof(std::uint32_t), 0));
+            for (std::size_t c = 0; c < image.channels.size(); ++c) {
+                const Channel& channel = image.channels[c];
+                const std::size_t bytes = channel.type == PixelType::Half ? sizeof(half) : sizeof(float);
+                const float limit =
+                    channel.type == PixelType::Half ? kHalfOverflow : std::numeric_limits<float>::infinity();
+                packed[c].resize(bytes * samples);
+                for (std::size_t i = 0; i < samples; ++i) {
+                    float value;
+                    std::memcpy(&value,
+                                reinterpret_cast<const char*>(channel.data) +
+                                    static_cast<std::ptrdiff_t>(sample + i) * channel.pixel_stride_bytes,
+                                sizeof value);
+                    if (!(std::abs(value) < limit))
+                        throw std::invalid_argument("channel '" + channel.name + "', deep sample " +
+                                                    std::to_string(sample + i) + ", is " +
+                                                    std::to_string(value) +
+                                                    ": finite values that its type holds are written");
+                    const half rounded(channel.type == PixelType::Half ? value : 0.0f);
+                    if (channel.type == PixelType::Half)
+                        std::memcpy(packed[c].data() + bytes * i, &rounded, bytes);
+                    else
+                        std::memcpy(packed[c].data() + bytes * i, &value, bytes);
+                }
+                char* at = packed[c].data();
+                for (std::size_t x = 0; x < width; at += bytes * row[x], ++x) begins[c][x] = at;
+                buffer.insert(channel.name, Imf::DeepSlice(imf_type(channel.type), base(begins[c].data()),
+                                                           sizeof(char*), 0, bytes));
+            }
+            sample += samples;
+            file.setFrameBuffer(buffer);
+            file.writePixels(1);
         }
     }
     return stream.take();

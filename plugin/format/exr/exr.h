@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -94,6 +95,19 @@ std::string text_attribute_bytes(std::string_view name, std::string_view value);
 // (with channel, column and row); a sample beyond ±65504, the largest half, in a Half channel. It isn't
 // clamped, because a clamped map looks right and is wrong; Float can store the value.
 std::string encode_scanline(const Header& header, const Image& image);
+
+// Deep pixels: each has samples of its own number.
+struct DeepImage {
+    int width = 0, height = 0;              // > 0
+    std::span<const std::uint32_t> counts;  // width × height, rows from the top, x fastest
+    std::vector<Channel> channels;          // of all pixels' samples one after another; no row stride
+    int x = 0, y = 0;                       // as Image's
+    std::array<int, 2> display{};
+};
+
+// As the bytes of a file of deep scan lines, each compressed alone (ZIPS, whatever the header says: the format has no more).
+// Throws as encode_scanline(), naming the sample's number in place of column and row.
+std::string encode_deep_scanline(const Header& header, const DeepImage& image);
 
 // The number of mip levels of a picture of this size, down to 1 × 1. Level 0 is the picture itself; each
 // further level has half the size, rounded down, at least 1 (OpenEXR's ROUND_DOWN).

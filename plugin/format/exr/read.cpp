@@ -254,7 +254,8 @@ bool ends_whole(const std::filesystem::path& path) {
     try {
         refuse_no_file(path);
         const Context file(path);
-        if (file.get<exr_storage_t>(exr_get_storage) != EXR_STORAGE_SCANLINE) return false;
+        const auto storage = file.get<exr_storage_t>(exr_get_storage);
+        if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_DEEP_SCANLINE) return false;
         const auto window = file.get<exr_attr_box2i_t>(exr_get_data_window);
         std::error_code ignored;
         refuse_short_file(file, std::filesystem::file_size(path, ignored), window, false);

@@ -61,7 +61,7 @@ struct RgbPixels {
 };
 RgbPixels read_rgb(const std::filesystem::path& path);
 
-// Whether the file is an image in scan lines whose last line is there, judged as RgbFile does: false for a file that
+// Whether the file is an image in scan lines, flat or deep, whose last line is there, judged as RgbFile does: false for a file that
 // was cut short, is missing, or can't be read.
 bool ends_whole(const std::filesystem::path& path);
 

@@ -36,6 +36,7 @@ extern const char* const kSkyQuality;
 extern const char* const kTerms;
 extern const char* const kShutter;
 extern const char* const kAlpha;
+extern const char* const kDeep;
 extern const char* const kLayers;
 extern const char* const kOcio;
 extern const char* const kOcioDisplay;

@@ -159,6 +159,12 @@ PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
                          number_text(kLongestShutter_frames));
     options.shutter_frames = arguments.shutter_frames;
     options.alpha = arguments.alpha;
+    options.deep = arguments.deep;
+    if (options.deep && !options.alpha)
+        throw WrongUsage("--deep without --alpha: a sky behind all has no place in it; accepted: both");
+    if (options.deep && (options.shutter_frames > 0.0 || order.scene.camera.f_stop > 0.0))
+        throw WrongUsage(
+            "--deep of a blurred picture; accepted: no --shutter, and a shot without camera.f_stop");
     if (arguments.layers) options.layers = asked([&] { return parse_picture_layers(*arguments.layers); });
     if (arguments.sky_quality) options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
     const glm::ivec2 size = order.scene.camera.resolution;
@@ -250,6 +256,7 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
     command.add_option("--overscan", arguments.overscan, help::kOverscan)->type_name("P%|PX");
     command.add_option("--region", arguments.region, help::kRegion)->type_name("X0,Y0,X1,Y1");
     command.add_flag("--alpha", arguments.alpha, help::kAlpha);
+    command.add_flag("--deep", arguments.deep, help::kDeep);
     command.add_option("--layers", arguments.layers, help::kLayers)->type_name("LAYERS");
     command.add_option("--ocio", arguments.ocio, help::kOcio)->type_name("CONFIG");
     command.add_option("--ocio-display", arguments.display, help::kOcioDisplay)->type_name("NAME");

@@ -15,7 +15,7 @@ struct RenderArguments : RunArguments {
     std::optional<std::string> terms, sky_quality, layers;
     std::optional<int> samples;
     double exposure_stops = 0.0, shutter_frames = 0.0;
-    bool alpha = false;
+    bool alpha = false, deep = false;
     std::optional<std::string> overscan, region;
     std::string size, ocio, display, view, space, primaries = "rec709";
 };

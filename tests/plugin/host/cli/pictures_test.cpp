@@ -154,6 +154,38 @@ TEST_F(Pictures, OverscanAndRegionsAreInTheDataWindow) {
 }
 
 // Every other layer of the table, the others, none and all: their channels and no others beside the picture's.
+// It has the records, the checks and the threads of the other files.
+TEST_F(Pictures, DeepOnesLieBesideTheOthers) {
+    refused({"render", "small.toml", "--deep"}, 2, {"--deep without --alpha"});
+    refused({"render", "small.toml", "--deep", "--alpha", "--shutter", "0.5"}, 2,
+            {"--deep of a blurred picture"});
+    const auto render = [&](const std::string& out, const std::string& threads) {
+        return cli({"render", "small.toml", "--frames", "2", "--alpha", "--deep", "--out", out, "--threads",
+                    threads});
+    };
+    ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--alpha", "--out", "out"}).status, 0);
+    const std::string exr = read_file(folder() / "out/small.0002.exr");
+    EXPECT_FALSE(fs::exists(folder() / "out/small.deep.0002.exr"));
+    ASSERT_EQ(render("out", "2").status, 0);
+    const fs::path file = folder() / "out/small.deep.0002.exr";
+    const std::string deep = read_file(file);
+    EXPECT_FALSE(deep.empty());
+    EXPECT_EQ(read_file(folder() / "out/small.0002.exr"), exr);
+    ASSERT_EQ(render("one", "1").status, 0);
+    EXPECT_EQ(read_file(folder() / "one/small.deep.0002.exr"), deep);
+    EXPECT_TRUE(has(render("out", "2").out, "kept"));
+    EXPECT_EQ(cli({"verify", "out"}).status, 0);
+    std::string damaged = deep;
+    damaged[damaged.size() / 2] ^= 1;
+    write_file(file, damaged);
+    const Ended verified = cli({"verify", "out"});
+    EXPECT_EQ(verified.status, 3);
+    EXPECT_TRUE(has(verified.out + verified.err, "small.deep.0002.exr")) << verified.out << verified.err;
+    write_file(file, deep.substr(0, deep.size() / 2));
+    ASSERT_EQ(render("out", "2").status, 0);
+    EXPECT_EQ(read_file(file), deep);
+}
+
 TEST_F(Pictures, RenderWritesTheLayersThatAreAskedFor) {
     const auto channels = [&](const std::string& layers, std::vector<std::string> more = {}) {
         std::vector<std::string> arguments{"render", "small.toml", "--frames", "2",        "--size",

@@ -45,6 +45,29 @@ class Seas(unittest.TestCase):
         with self.assertRaises(ValueError):
             sea.textures["cell_fields"][0, 0, 0] = 1.0
 
+    def test_hulls_are_textures_and_a_shader_of_their_own(self):
+        corners = np.array([(x, y, z) for z in (-1, 1) for y in (-2, 2) for x in (-3, 3)], np.float32)
+        tub = np.array([(0, 1, 3), (0, 3, 2), (0, 1, 5), (0, 5, 4), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 3, 7), (1, 7, 5)])
+        sheet = corners[:4], tub[:2]
+        hulls = pelagic.GpuHulls([(corners, tub), sheet, (corners[:1], np.zeros((1, 3), int))])
+        matrix = np.eye(4)
+        matrix[:3, 3] = 5.0, 6.0, 0.5
+        places = hulls.places([matrix] * 3).reshape(-1, 4)
+        self.assertEqual(places[0, 0], 1.0)  # the others keep no water out
+        # Where (5, 6, 0.5) is the middle of it: nodes, by column, row and level.
+        at = places[1:4] @ (5.0, 6.0, 0.5, 1.0)
+        columns, rows = places[4, :2]
+        np.testing.assert_allclose(at, ((columns - 1) / 2, (rows - 1) / 2, 48.0), atol=1.0)
+        nodes = hulls.map.ravel()[:int(columns * rows) * 96].reshape(96, int(rows), int(columns))
+        self.assertAlmostEqual(float(nodes[48, int(rows) // 2, int(columns) // 2]), -2.0, delta=0.1)
+        self.assertGreater(nodes[48, 0, 0], 0.0)
+        with self.assertRaises(ValueError):
+            hulls.places([matrix])
+        sea, light = self.sea, pelagic.GpuLight(small_scene())
+        sea.set(0.0)
+        self.assertNotIn("hull_maps", sea.shaders(light)["sea"][1])
+        self.assertIn("hull_maps", sea.shaders(light, hulls=True)["sea"][1])
+
     def test_pictures_of_masks_are_a_texture(self):
         picture = str(pathlib.Path(__file__).parents[4] / "examples" / "data" / "tiles.exr")
         scene = small_scene(masks=[pelagic.WaveMask(0.0, 0.0, length_m=40.0, width_m=30.0, edge_m=8.0, waves=0.5, picture=picture),

@@ -232,7 +232,8 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
     if (plan.trains && !query.only_cascade) {
         const Trains<T>& trains = frame.sea().trains();
         for (std::size_t i = 0; i < trains.count(); ++i) {
-            if (const Coast<T>* coast = frame.sea().coast().get()) {  // its weights are those of its local length
+            if (const Coast<T>* coast =
+                    frame.sea().coast().get()) {  // its weights are those of its local length
                 if (!(static_cast<double>(coast->longest_m[i]) > plan.filter.n_min * cells_.finest_m)) break;
                 finest_weight_.push_back(1.0);
                 coarsest_weight_.push_back(1.0);

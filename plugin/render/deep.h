@@ -47,8 +47,8 @@ inline constexpr std::size_t kVeilCuts = 13;
 // Adds a pixel's samples, in rising distance and none across another. hides: which part of what lies at a distance along the view's axis
 // the veil hides, at the pixel's middle: it says where the veils of all places are thick, not how much they hide.
 // Returns how many.
-std::uint32_t add_deep_pixel(std::span<const DeepSight> sights,
-                             const std::function<float(float z_m)>& hides, std::vector<DeepSample>& to);
+std::uint32_t add_deep_pixel(std::span<const DeepSight> sights, const std::function<float(float z_m)>& hides,
+                             std::vector<DeepSample>& to);
 
 // At most, of a pixel whose places show so many sights.
 std::size_t most_deep_samples(std::size_t sights, std::size_t objects, bool has_veil);

@@ -171,8 +171,8 @@ constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 4;
 std::size_t deep_bytes(const Scene& scene, const RenderOptions& options) {
     const auto places = static_cast<std::size_t>(options.samples * options.samples);
     const bool has_drops = options.lighting.spray && scene.effects.spray_drops;
-    const std::size_t most = most_deep_samples(has_drops ? 2 * places : places, scene.objects.size(),
-                                               options.lighting.spray);
+    const std::size_t most =
+        most_deep_samples(has_drops ? 2 * places : places, scene.objects.size(), options.lighting.spray);
     return sizeof(std::uint32_t) + most * sizeof(DeepSample);
 }
 
@@ -258,9 +258,10 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                  "set camera.glare to 0");
     const std::size_t pixels = pixels_of(data);
     if (options.deep)
-        need.add("deep pixels",
-                 pixels * deep_bytes(scene, options) * (2 * static_cast<std::size_t>(in_flight.value_or(0)) + 2),
-                 "leave --deep out, or ask for a smaller picture (--size)");
+        need.add(
+            "deep pixels",
+            pixels * deep_bytes(scene, options) * (2 * static_cast<std::size_t>(in_flight.value_or(0)) + 2),
+            "leave --deep out, or ask for a smaller picture (--size)");
     need.add(
         "pictures",
         pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (picture_bytes(options, has_objects) +

@@ -170,8 +170,7 @@ std::vector<exr::Attribute> common_attributes(const PictureContext& context, int
     if (!context.chosen.empty()) attributes.push_back({"chosen", context.chosen});
     for (exr::Attribute& attribute : radiance_attributes(scene, context.colours.acescg))
         attributes.push_back(std::move(attribute));
-    for (exr::Attribute& attribute : seal_attributes(name))
-        attributes.push_back(std::move(attribute));
+    for (exr::Attribute& attribute : seal_attributes(name)) attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
     describe(scene, parts_beside_the_view(context.options), attributes);
     // The sea between two keys is no sea of plain numbers.
@@ -192,8 +191,7 @@ std::vector<std::pair<std::string, std::string>> mattes_of(const Scene& scene) {
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene& scene = context.scene;
     std::vector<exr::Attribute> attributes = common_attributes(
-        context, frame,
-        "radiance; the layers " + light_names(!scene.objects.empty()) + " add up to R, G, B",
+        context, frame, "radiance; the layers " + light_names(!scene.objects.empty()) + " add up to R, G, B",
         picture_file(scene.shot, frame, "exr"));
     const PictureLayerSet layers = layers_of(!scene.objects.empty(), context.options.layers);
     for (const PictureLayerRow& row : kPictureLayers)
@@ -392,20 +390,21 @@ std::string encode_deep(const PictureContext& context, const Picture& picture, i
     if (picture.display) image.display = {picture.display->x, picture.display->y};
     constexpr DeepSample kNone;
     const DeepSample& first = samples.empty() ? kNone : samples.front();
-    const exr::PixelType light =
-        ranges_of(context.scene, context.sky, context.options.lighting.spray).sun;
-    for (const auto& [name, data, type] :
-         {std::tuple("R", &first.light.x, light), {"G", &first.light.y, light}, {"B", &first.light.z, light},
-          {"A", &first.alpha, exr::PixelType::Float}, {"Z", &first.z_m, exr::PixelType::Float},
-          {"ZBack", &first.z_back_m, exr::PixelType::Float}, {"id", &first.id, exr::PixelType::Float}})
-        image.channels.push_back({.name = name,
-                                  .data = data,
-                                  .pixel_stride_bytes = sizeof(DeepSample),
-                                  .type = type});
-    exr::Header header{.attributes = common_attributes(
-                           context, frame,
-                           "deep radiance times alpha; laid over each other the samples are the picture's R, G, B, A",
-                           deep_file(context.scene.shot, frame))};
+    const exr::PixelType light = ranges_of(context.scene, context.sky, context.options.lighting.spray).sun;
+    for (const auto& [name, data, type] : {std::tuple("R", &first.light.x, light),
+                                           {"G", &first.light.y, light},
+                                           {"B", &first.light.z, light},
+                                           {"A", &first.alpha, exr::PixelType::Float},
+                                           {"Z", &first.z_m, exr::PixelType::Float},
+                                           {"ZBack", &first.z_back_m, exr::PixelType::Float},
+                                           {"id", &first.id, exr::PixelType::Float}})
+        image.channels.push_back(
+            {.name = name, .data = data, .pixel_stride_bytes = sizeof(DeepSample), .type = type});
+    exr::Header header{
+        .attributes = common_attributes(
+            context, frame,
+            "deep radiance times alpha; laid over each other the samples are the picture's R, G, B, A",
+            deep_file(context.scene.shot, frame))};
     for (const auto& [name, value] : mattes_of(context.scene))
         if (name.ends_with("/manifest")) header.attributes.push_back({"manifest", value});
     std::string file = exr::encode_deep_scanline(header, image);

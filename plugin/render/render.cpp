@@ -875,8 +875,7 @@ class RendererOf final : public Impl {
         if (!batch_.drops.empty()) {
             DropsBefore& before = batch_.drops[sample];
             const float behind = (1.0f - hidden) * (1.0f - before.left);
-            before.distance_m =
-                (behind * before.distance_m + hidden * drop.distance_m) / (behind + hidden);
+            before.distance_m = (behind * before.distance_m + hidden * drop.distance_m) / (behind + hidden);
             before.left *= 1.0f - hidden;
             before.light = (1.0f - hidden) * before.light + hidden * drop.radiance;
         }
@@ -1016,8 +1015,8 @@ class RendererOf final : public Impl {
         const std::size_t pixel = to.first + x;
         const float share = 1.0f / static_cast<float>(n * n);
         const auto sample_at = [&](int i) {
-            return sample_width * static_cast<std::size_t>(row * n + i / n) + x * static_cast<std::size_t>(n) +
-                   static_cast<std::size_t>(i % n);
+            return sample_width * static_cast<std::size_t>(row * n + i / n) +
+                   x * static_cast<std::size_t>(n) + static_cast<std::size_t>(i % n);
         };
         const auto of_picture = [&](PictureLayer layer) {
             const std::vector<float>& of = picture.data[index(layer)];
@@ -1029,7 +1028,8 @@ class RendererOf final : public Impl {
         for (int i = 0; i < n * n; ++i) of_sea += batch_.triangles[sample_at(i)] != Rasteriser::kNone;
         const glm::vec3 reflection =
             of_picture(PictureLayer::Reflection) / (share * static_cast<float>(std::max(of_sea, 1)));
-        const glm::vec3 object_counts(glm::greaterThanEqual(of_picture(PictureLayer::Object), glm::vec3(0.0f)));
+        const glm::vec3 object_counts(
+            glm::greaterThanEqual(of_picture(PictureLayer::Object), glm::vec3(0.0f)));
         std::vector<DeepSight> sights;
         for (int i = 0; i < n * n; ++i) {
             const std::size_t at = sample_at(i);

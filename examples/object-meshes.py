@@ -359,7 +359,7 @@ def lighthouse():
     return body
 
 
-# ---- A sailing boat: 11 m long, 3.6 m wide, 2 m deep in the water, on the port tack: its sails are to starboard
+# A sailing boat: 11 m long, 3.6 m wide, 2 m deep in the water, on the port tack: its sails are to starboard
 
 def sheer(x):
     u = x / 11.0 + 0.5

@@ -1,9 +1,9 @@
-"""Makes the bodies of some shots: a fishing trawler, a navigation buoy and a lighthouse on its rock.
+"""Makes the bodies of some shots: a fishing trawler, a navigation buoy, a lighthouse on its rock and a sailing boat.
 
     python3 examples/object-meshes.py DIR
 
-Makes trawler, buoy and lighthouse .obj and .mtl in that folder (the shots have them in examples/data): metres, z up and 0 at the
-waterline, bow along +x, closed parts, normals outwards.
+Makes trawler, buoy, lighthouse and sailboat .obj and .mtl in that folder (the shots have them in examples/data): metres, z up and 0 at
+the waterline, bow along +x, closed parts, normals outwards.
 """
 
 import math
@@ -20,7 +20,9 @@ PAINTS = {
     "lamp": ((0.9, 0.85, 0.7), 0.3, (1.0, 0.86, 0.6)), "port light": ((0.7, 0.05, 0.04), 0.3, (0.5, 0.02, 0.01)),
     "starboard light": ((0.05, 0.5, 0.15), 0.3, (0.02, 0.4, 0.12)), "red": ((0.55, 0.025, 0.018), 0.45),
     "white": ((0.82, 0.81, 0.78), 0.5), "rock": ((0.12, 0.11, 0.095), 0.9), "wet rock": ((0.035, 0.034, 0.028), 0.5),
-    "gallery": ((0.05, 0.06, 0.055), 0.5),
+    "gallery": ((0.05, 0.06, 0.055), 0.5), "topsides": ((0.80, 0.79, 0.75), 0.25), "teak": ((0.30, 0.19, 0.10), 0.8),
+    "sail": ((0.82, 0.79, 0.72), 0.9), "sail's edge": ((0.03, 0.07, 0.16), 0.9), "alloy": ((0.50, 0.50, 0.50), 0.35),
+    "wire": ((0.25, 0.25, 0.25), 0.4), "oilskin": ((0.60, 0.12, 0.03), 0.7), "skin": ((0.45, 0.26, 0.17), 0.7),
 }
 
 
@@ -357,6 +359,261 @@ def lighthouse():
     return body
 
 
+# A sailing boat: 11 m long, 3.6 m wide, 2 m deep in the water, on the port tack: its sails are to starboard
+
+def sheer(x):
+    u = x / 11.0 + 0.5
+    return 1.02 + 0.30 * max(0.0, u - 0.35) ** 1.6 + 0.10 * max(0.0, 0.35 - u) ** 1.5
+
+
+def yacht_beam(x):
+    """Half of it, at the sheer."""
+    u = x / 11.0 + 0.5
+    return max(0.02, 1.80 * (1.0 - max(0.0, (u - 0.42) / 0.58) ** 2.3 - 0.30 * max(0.0, (0.42 - u) / 0.42) ** 2.2))
+
+
+def yacht_bottom(x):
+    """Without the keel: out of the water at the stern, and the stem goes straight up."""
+    u = x / 11.0 + 0.5
+    return -0.58 * (1.0 - max(0.0, (0.50 - u) / 0.445) ** 2.0 - 0.93 * max(0.0, (u - 0.50) / 0.50) ** 2.3)
+
+
+def yacht_section(x, floor):
+    """A loop as the trawler's. floor: of the cockpit, below the deck; 0 where there is none."""
+    top, bottom, wide = sheer(x), yacht_bottom(x), yacht_beam(x)
+    stem = max(0.0, x / 5.5) ** 4 * 0.30
+
+    def at(y, z):
+        return (x + stem * (z - top), y, z)
+
+    def bilge(z):
+        """A superellipse round the middle of the deck."""
+        return wide * max(0.0, 1.0 - ((top - z) / (top - bottom)) ** 2.5) ** (1.0 / 2.5)
+
+    boot = max(0.07, bottom + 0.03)
+    side = [at(0.0, bottom)] + [at(bilge(z), z) for z in (mix(bottom, boot, t) for t in (0.03, 0.12, 0.3, 0.6, 1.0))]
+    side += [at(bilge(z), z) for z in (boot + 0.09, *(mix(boot + 0.09, top, t) for t in (0.3, 0.6, 0.85, 1.0)))]
+    inner = max(wide - 0.05, 0.5 * wide)
+    side += [at(wide, top + 0.05), at(inner, top + 0.05), at(inner, top)]
+    well = min(0.62, 0.5 * inner)
+    side += [at(well, top + 0.04), at(well, top + 0.04 - floor), at(0.0, top + 0.06 - floor)]
+    return side + [(px, -py, pz) for px, py, pz in side[-2:0:-1]]
+
+
+def wing(low, high, low_chord, high_chord, thick):
+    """Rings of a fin from below upwards: (x of the leading edge, z) of both ends."""
+    outline = [(0.0, 0.0), (0.03, 0.35), (0.12, 0.8), (0.3, 1.0), (0.6, 0.72), (0.85, 0.3), (1.0, 0.04)]
+    loop = outline + [(c, -h) for c, h in outline[:0:-1]]
+    rings = []
+    for t in (0.0, 0.04, 0.35, 0.7, 1.0):
+        chord = mix(low_chord, high_chord, t) * (0.93 if t == 0.0 else 1.0)
+        rings.append([(mix(low[0], high[0], t) - c * chord, -h * 0.5 * thick * chord, mix(low[1], high[1], t)) for c, h in loop])
+    return rings
+
+
+def cloth(body, at, rows, columns, paint, thick=0.016):
+    """A sail: at(s, c) up its luff and back along its chord, leeward its bulge. A closed shell: both its sides are seen."""
+    def normal(s, c):
+        e = 1e-3
+        up = minus(at(min(s + e, 1.0), c), at(max(s - e, 0.0), c))
+        back = minus(at(s, min(c + e, 1.0)), at(s, max(c - e, 0.0)))
+        return unit(cross(up, back))  # to leeward
+
+    grid = [[(i / rows, k / columns) for k in range(columns + 1)] for i in range(rows + 1)]
+    sides = []
+    for sign in (1.0, -1.0):
+        sides.append([body.add([tuple(p + sign * 0.5 * thick * n for p, n in zip(at(s, c), normal(s, c))) for s, c in row]) for row in grid])
+    lee, luv = sides
+    for i in range(rows):
+        for k in range(columns):
+            name = paint(i, k)
+            body.face([lee[i][k], lee[i + 1][k], lee[i + 1][k + 1], lee[i][k + 1]], name)
+            body.face([luv[i][k], luv[i][k + 1], luv[i + 1][k + 1], luv[i + 1][k]], name)
+    edge = [(0, k) for k in range(columns)] + [(i, columns) for i in range(rows)]
+    edge += [(rows, k) for k in range(columns, 0, -1)] + [(i, 0) for i in range(rows, 0, -1)]
+    for (i, k), (j, l) in zip(edge, edge[1:] + edge[:1]):
+        body.face([lee[i][k], lee[j][l], luv[j][l], luv[i][k]], paint(min(i, rows - 1), min(k, columns - 1)))
+
+
+def sailor(body, seat, faces, jacket):
+    """One who sits, his knees towards `faces`."""
+    x, y, z = seat
+    fx, fy = faces
+
+    def turned(a, b, h):
+        return (x + a * fx - b * fy, y + a * fy + b * fx, z + h)
+
+    body.loft([[turned(lean + deep * math.cos(a), wide * math.sin(a), h) for a in (2 * math.pi * k / 10 for k in range(10))]
+               for lean, deep, wide, h in ((0.0, 0.12, 0.17, 0.0), (0.0, 0.16, 0.21, 0.06), (0.02, 0.14, 0.20, 0.3), (0.03, 0.12, 0.22, 0.48), (0.04, 0.06, 0.09, 0.57))], jacket)
+    body.loft([[turned(0.07 + r * math.cos(a), 0.9 * r * math.sin(a), h) for a in (2 * math.pi * k / 10 for k in range(10))]
+               for r, h in ((0.04, 0.55), (0.08, 0.60), (0.105, 0.68), (0.095, 0.76), (0.04, 0.82))], "skin")
+    for side in (-1, 1):
+        body.tube(turned(0.03, 0.21 * side, 0.47), turned(0.20, 0.25 * side, 0.22), 0.055, jacket, 7)
+        body.tube(turned(0.20, 0.25 * side, 0.22), turned(0.45, 0.16 * side, 0.26), 0.045, jacket, 7)
+        body.tube(turned(0.0, 0.10 * side, 0.06), turned(0.46, 0.13 * side, 0.08), 0.085, "dark", 7)
+        body.tube(turned(0.46, 0.13 * side, 0.10), turned(0.50, 0.13 * side, -0.36), 0.065, "dark", 7)
+
+
+def sailboat():
+    boat = Body("sailboat")
+    wells = [(-5.5, 0.0), (-5.3, 0.0), (-5.3, 0.42), (-4.4, 0.42), (-3.4, 0.42), (-2.4, 0.42), (-1.5, 0.42), (-1.5, 0.0)]
+    stations = wells + [(x, 0.0) for x in (-0.6, 0.4, 1.3, 2.2, 3.0, 3.7, 4.3, 4.8, 5.15, 5.35, 5.5)]
+    names = ["antifouling"] * 5 + ["boot-topping"] + ["topsides"] * 4 + ["teak"] * 3 + ["house", "topsides", "teak"]
+    rings = [yacht_section(*station) for station in stations]
+    boat.loft(rings, lambda ring, point: names[point if point < 16 else 31 - point], caps=False)
+    stern = boat.add(rings[0])
+    boat.face([stern[k] for k in (0, *range(1, 6), *range(27, 32))][::-1], "antifouling")
+    boat.face([stern[k] for k in (*range(5, 28),)][::-1], "topsides")
+    boat.face(boat.add(rings[-1]), "topsides")
+
+    boat.loft(wing((0.75, -1.95), (1.10, -0.42), 1.25, 1.85, 0.11), "antifouling")
+    boat.loft([[(mix(-0.95, 1.1, t), r * math.cos(a), -1.88 + 0.8 * r * math.sin(a)) for a in (2 * math.pi * k / 12 for k in range(12))]
+               for t, r in ((0.0, 0.01), (0.2, 0.10), (0.5, 0.18), (0.8, 0.19), (0.95, 0.12), (1.0, 0.02))], "antifouling")
+    boat.loft(wing((-4.35, -1.65), (-4.15, -0.02), 0.42, 0.68, 0.10), "antifouling")
+
+    # The cabin trunk: its sides lean in, its front slopes to the foredeck.
+    def trunk(x):
+        u = (x + 1.5) / 5.3
+        wide = min(1.22, yacht_beam(x) - 0.52) * (1.0 - 0.25 * u ** 3)
+        low, rise = sheer(x) - 0.02, 0.50 * max(0.05, 1.0 - max(0.0, (u - 0.55) / 0.45) ** 1.6)
+        return wide, low, rise
+
+    def trunk_ring(x):
+        wide, low, rise = trunk(x)
+        half = [(x, wide, low), (x, wide - 0.13 * rise, low + 0.75 * rise), (x, wide - 0.32 * rise, low + 0.96 * rise), (x, 0.55 * wide, low + 1.06 * rise)]
+        return half + [(x, 0.0, low + 1.12 * rise)] + [(px, -py, pz) for px, py, pz in half[::-1]]
+
+    boat.loft([trunk_ring(x) for x in (-1.5, -0.5, 0.5, 1.4, 2.1, 2.7, 3.2, 3.6, 3.8)], "house")
+
+    def pane(x, t, side, out):
+        wide, low, rise = trunk(x)
+        return (x, side * (wide - 0.13 * rise * t / 0.75 + out), low + t * rise)
+
+    for side in (-1, 1):
+        for start, end in ((-1.2, -0.15), (0.05, 1.05), (1.25, 2.1)):
+            outline = [(end, 0.24), (start, 0.24), (start, 0.66), (end - 0.12, 0.66)]
+            outline = outline if side > 0 else outline[::-1]
+            boat.loft([[pane(x, t, side, out) for x, t in outline] for out in (-0.06, 0.012)], "glass")
+        boat.tube((-0.9, side * 1.02, sheer(0.0) + 0.52), (2.2, side * 0.82, sheer(2.2) + 0.48), 0.018, "teak", 6)
+        boat.box((-4.3, side * 0.80 - 0.17, sheer(-3.0)), (-1.5, side * 0.80 + 0.17, sheer(-3.0) + 0.24), "topsides", 0.06)  # coamings
+        for x in (-3.3, -2.0):  # winches
+            boat.lathe([(0.001, sheer(x) + 0.2), (0.10, sheer(x) + 0.2), (0.07, sheer(x) + 0.28), (0.07, sheer(x) + 0.36), (0.10, sheer(x) + 0.4), (0.001, sheer(x) + 0.41)],
+                       "alloy", 12, (x, side * 0.80))
+    roof = sheer(-1.0) + 0.52
+    boat.box((-1.54, -0.33, sheer(-1.5) - 0.30), (-1.48, 0.33, roof + 0.02), "dark", 0.01)  # the way down
+    boat.box((-1.5, -0.42, roof), (-0.35, 0.42, roof + 0.11), "house", 0.04)
+    boat.loft([[(x, y, z) for y, z in ((-1.0, roof - 0.12), (-0.95, roof + 0.28), (-0.6, roof + 0.56), (0.0, roof + 0.64), (0.6, roof + 0.56), (0.95, roof + 0.28), (1.0, roof - 0.12))][::-1]
+               for x in (-1.45, -1.0)] + [[(-0.35, y, z) for y, z in ((-0.9, roof - 0.1), (-0.85, roof), (-0.5, roof + 0.02), (0.0, roof + 0.03), (0.5, roof + 0.02),
+                                                                    (0.85, roof), (0.9, roof - 0.1))][::-1]], "sail's edge")  # the spray hood
+    boat.box((2.35, -0.27, sheer(2.6) + 0.38), (2.9, 0.27, sheer(2.6) + 0.50), "glass", 0.03)
+
+    # The wheel, and two who sail.
+    hub = (-3.85, 0.0, sheer(-3.85) + 0.48)
+    boat.tube((-3.72, 0.0, sheer(-3.7) - 0.40), (-3.72, 0.0, hub[2] + 0.1), 0.08, "topsides", 10, 0.06)
+    boat.tube((-3.72, 0.0, hub[2]), hub, 0.03, "alloy", 6)
+    rim = [(hub[0], 0.46 * math.cos(a), hub[2] + 0.46 * math.sin(a)) for a in (2 * math.pi * k / 16 for k in range(16))]
+    for a, b in zip(rim, rim[1:] + rim[:1]):
+        boat.tube(a, b, 0.018, "alloy", 5)
+    for k in range(0, 16, 4):
+        boat.tube(hub, rim[k], 0.010, "alloy", 4)
+    sailor(boat, (-4.25, 0.78, sheer(-4.2) + 0.22), (0.55, -0.84), "oilskin")
+    sailor(boat, (-2.35, 0.86, sheer(-2.4) + 0.22), (0.1, -0.995), "sail's edge")
+
+    # Mast and boom: the mast leans aft, and the boom to starboard.
+    foot, head = 1.05, 15.3
+
+    def mast(z):
+        return 0.95 - 0.018 * (z - foot)
+
+    def spar(start, end, along, across, paint, end_scale=1.0):
+        way = unit(minus(end, start))
+        ahead = unit(cross((0.0, 1.0, 0.0), way))
+        beside = cross(way, ahead)
+        boat.loft([[tuple(p + scale * (along * math.cos(a) * v + across * math.sin(a) * w) for p, v, w in zip(at, ahead, beside)) for a in
+                    (2 * math.pi * k / 12 for k in range(12))] for at, scale in ((start, 1.0), (end, end_scale))], paint)
+
+    spar((mast(foot), 0.0, foot), (mast(head), 0.0, head), 0.12, 0.075, "alloy", 0.65)
+    goose, out, reach = 2.35, math.radians(17.0), 4.75
+
+    def boom(d):
+        return (mast(goose) - 0.10 - d * math.cos(out), -d * math.sin(out), goose + 0.035 * d)
+
+    spar(boom(0.0), boom(reach), 0.085, 0.06, "alloy")
+    boat.tube(boom(1.5), (mast(1.5) - 0.1, 0.0, roof + 0.05), 0.022, "alloy", 6)
+    boat.tube(boom(3.3), (-2.0, -0.3, sheer(-2.0) + 0.2), 0.016, "wire", 5)
+    boat.tube(boom(3.5), (-2.0, 0.3, sheer(-2.0) + 0.2), 0.016, "wire", 5)
+
+    def main(s, c):
+        chord = 4.6 * (1.0 - s ** 1.45) + 0.22 * s
+        z = mix(goose + 0.12, head - 0.25, s)
+        a = out + math.radians(13.0) * s ** 0.8
+        bulge = (0.085 + 0.04 * math.sin(math.pi * min(1.0, s + 0.2))) * chord * 6.2 * c * (1.0 - c) * (1.0 - 0.45 * c) / 1.2 * (0.45 + 0.55 * min(1.0, 5.0 * s))
+        return (mast(z) - 0.12 - chord * c * math.cos(a) + bulge * math.sin(a), -chord * c * math.sin(a) - bulge * math.cos(a),
+                z + 0.035 * chord * c * (1.0 - s) - 0.02 * chord * c * s)
+
+    cloth(boat, main, 20, 12, lambda i, k: "sail")
+    for s, width in ((0.22, 1.0), (0.42, 1.0), (0.62, 1.0), (0.82, 1.0)):  # battens
+        line = [main(s, mix(1.0 - 0.55 * width, 0.995, k / 4)) for k in range(5)]
+        for a, b in zip(line, line[1:]):
+            boat.tube(a, b, 0.022, "sail", 4)
+
+    tack, halyard = (5.18, 0.0, 1.62), (mast(14.6) + 0.12, 0.0, 14.6)
+    clew = (0.10, -1.52, 2.0)
+
+    def genoa(s, c):
+        luff = tuple(mix(a, b, s) for a, b in zip(tack, halyard))
+        leech = [mix(a, b, s) for a, b in zip(clew, halyard)]
+        leech[1] -= 1.0 * s * (1.0 - s) ** 0.8  # it twists off
+        leech[0] += 0.30 * 4.0 * s * (1.0 - s)  # and is hollow
+        chord = math.dist(luff, leech)
+        way = unit((leech[0] - luff[0], leech[1] - luff[1], 0.0))
+        bulge = 0.135 * chord * 6.75 * c * (1.0 - c) ** 1.6 / 1.31 * (0.55 + 0.45 * min(1.0, 4.0 * s))
+        foot_round = -0.22 * 4.0 * c * (1.0 - c) * max(0.0, 1.0 - 5.0 * s)
+        x, y, z = (mix(a, b, c) for a, b in zip(luff, leech))
+        return (x - way[1] * bulge * -1.0, y - abs(way[0]) * bulge, z + foot_round)
+
+    cloth(boat, genoa, 20, 12, lambda i, k: "sail's edge" if k == 11 or i == 0 else "sail")
+
+    def wire(*points, radius=0.011):
+        for a, b in zip(points, points[1:]):
+            boat.tube(a, b, radius, "wire", 5)
+
+    wire((5.32, 0.0, sheer(5.3) + 0.04), (mast(14.85) + 0.1, 0.0, 14.85), radius=0.022)
+    boat.tube((5.28, 0.0, sheer(5.3) + 0.08), (5.24, 0.0, sheer(5.3) + 0.24), 0.09, "dark", 10)
+    masthead = (mast(head) - 0.08, 0.0, head - 0.05)
+    wire(masthead, (-4.4, 0.0, 3.6))
+    for side in (-1, 1):
+        wire((-4.4, 0.0, 3.6), (-5.35, side * 1.0, sheer(-5.4) + 0.05))
+        plate = (0.70, side * 1.66, sheer(0.7) + 0.03)
+        tips = []
+        for z, reach_out in ((6.0, 1.18), (10.6, 0.86)):
+            tip = (mast(z) - 0.28 * reach_out, side * reach_out, z + 0.06)
+            boat.tube((mast(z), 0.0, z), tip, 0.032, "alloy", 6, 0.022)
+            tips.append(tip)
+        wire(plate, tips[0], tips[1], (mast(head), side * 0.05, head - 0.1))
+        wire((0.85, side * 1.60, sheer(0.85) + 0.03), (mast(5.9), side * 0.05, 5.9))
+        wire(tips[0], (mast(10.5), side * 0.05, 10.5))
+        # The rail: pulpit, stanchions with two lines, pushpit.
+        posts = [(x, side * (yacht_beam(x) - 0.07), sheer(x)) for x in (4.65, 3.4, 2.0, 0.5, -1.1, -2.7, -4.3)]
+        for x, y, z in posts:
+            boat.tube((x, y, z), (x, y, z + 0.62), 0.014, "alloy", 6)
+        for up in (0.33, 0.61):
+            wire(*[(x, y, z + up) for x, y, z in posts], radius=0.008)
+        bow, quarter = (5.48, side * 0.10, sheer(5.5) + 0.64), (-5.38, side * (yacht_beam(-5.4) - 0.08), sheer(-5.4))
+        boat.tube((posts[0][0], posts[0][1], posts[0][2] + 0.62), bow, 0.016, "alloy", 6)
+        boat.tube((5.3, side * 0.06, sheer(5.3)), bow, 0.016, "alloy", 6)
+        boat.tube(quarter, (quarter[0], quarter[1], quarter[2] + 0.62), 0.016, "alloy", 6)
+        for up in (0.33, 0.61):
+            boat.tube((posts[-1][0], posts[-1][1], posts[-1][2] + up), (quarter[0], quarter[1], quarter[2] + up), 0.014, "alloy", 6)
+            boat.tube((quarter[0], quarter[1], quarter[2] + up), (quarter[0], side * 0.35, quarter[2] + up), 0.014, "alloy", 6)
+        boat.tube((quarter[0], side * 0.35, quarter[2]), (quarter[0], side * 0.35, quarter[2] + 0.62), 0.014, "alloy", 6)
+    boat.tube((5.48, -0.10, sheer(5.5) + 0.64), (5.48, 0.10, sheer(5.5) + 0.64), 0.016, "alloy", 6)
+    wire(clew, (-1.6, -1.30, sheer(-1.6) + 0.08), (-3.3, -0.80, sheer(-3.3) + 0.3), radius=0.014)  # the genoa's sheet
+    boat.tube((mast(head), 0.0, head), (mast(head), 0.0, head + 0.75), 0.008, "wire", 5)
+    boat.tube((mast(head) + 0.12, 0.0, head), (mast(head) + 0.12, 0.0, head + 0.14), 0.05, "dark", 8)
+    return boat
+
+
 if __name__ == "__main__":
-    for made in (trawler(), buoy(), lighthouse()):
+    for made in (trawler(), buoy(), lighthouse(), sailboat()):
         made.write(Path(sys.argv[1]))

@@ -11,7 +11,7 @@ import math
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 from mathutils import Matrix
 
 from . import bodies, camera, catcher, compat, courses, floating, ocean
@@ -50,6 +50,8 @@ class PELAGIC_PG_in_light(bpy.types.PropertyGroup):
     buoyancy: EnumProperty(name="Buoyancy", description="How it floats in the pictures of a shot; in Blender it lies on the water", items=(
         ("plane", "On the Water", "It lies on the water under it"),
         ("response", "By Its Mass", "It answers late, and rolls on, as a ship as long, wide and deep does")))
+    roll_damping: FloatProperty(name="Roll damping", default=0.1, min=0.01, max=10.0, soft_max=1.0,
+                                description="By its mass: a bare hull has 0.05, one with bilge keels 0.1, a yacht under sail 0.4")
 
 
 # ---- Out
@@ -96,7 +98,8 @@ def put(context, sea, scene, folder):
         file = folder / f"{_free(ocean.clean_name(obj.name), files)}.obj"
         light = bodies.write(shape, file)
         made.append(entry | {"file": str(file.absolute()), "name": _free(_name(obj.name), names), "floats": floating.is_afloat(obj),
-                             "buoyancy": obj.pelagic_in_light.buoyancy, "holdout": obj.is_holdout, "glow_cd_m2": float(f"{1000.0 * light:.6g}")})
+                             "buoyancy": obj.pelagic_in_light.buoyancy,
+                             "roll_damping": shortest(obj.pelagic_in_light.roll_damping), "holdout": obj.is_holdout, "glow_cd_m2": float(f"{1000.0 * light:.6g}")})
     scene.objects = [pelagic.SceneObject(**each) for each in made]
     return remarks
 
@@ -210,7 +213,7 @@ def add(context, shot, name):
                 point.interpolation = "LINEAR"
         obj.is_holdout = entry.holdout
         obj.pelagic_in_light.enabled = True
-        obj.pelagic_in_light.buoyancy = entry.buoyancy
+        obj.pelagic_in_light.buoyancy, obj.pelagic_in_light.roll_damping = entry.buoyancy, entry.roll_damping
         if entry.floats:
             obj.pelagic_float.enabled = True
         made.append(obj)
@@ -265,6 +268,8 @@ class InLightPanel:
             layout.prop(context.object.pelagic_in_light, "proxy")
             if floating.is_afloat(context.object):
                 layout.prop(context.object.pelagic_in_light, "buoyancy")
+                if context.object.pelagic_in_light.buoyancy == "response":
+                    layout.prop(context.object.pelagic_in_light, "roll_damping")
             return
         chosen = of_scene(context.scene)
         for obj in chosen:

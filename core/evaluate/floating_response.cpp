@@ -22,7 +22,7 @@ constexpr double kSmallest_m = 1e-3;  // of a box's sides
 // Of a displacement ship, by rule of thumb (floating_response.h).
 constexpr double kMetacentricShare = 0.1, kHighestGravityShare = 0.5, kTrimGyration = 0.25,
                  kHeelGyration = 0.35;
-constexpr double kHeaveDamping = 0.2, kTrimDamping = 0.2, kHeelDamping = 0.05;
+constexpr double kHeaveDamping = 0.2, kTrimDamping = 0.2;
 double sinc(double q) {
     return std::abs(q) < 1e-4 ? 1.0 - q * q / 6.0 : std::sin(q) / q;
 }
@@ -232,7 +232,7 @@ FloatingBox floating_box(const SceneObject& object, const ObjectPose& pose) {
     return {narrower * length_m, narrower * beam_m, depth_m, middle_m};
 }
 
-FloatingModel floating_model(const FloatingBox& box) {
+FloatingModel floating_model(const FloatingBox& box, double heel_damping) {
     const double length = box.length_m, beam = box.beam_m, draught = box.draught_m;
     FloatingModel model;
     model.box = box;
@@ -252,7 +252,7 @@ FloatingModel floating_model(const FloatingBox& box) {
     model.trim = damped(righting(length),
                         draught * trim_radius * trim_radius + strip * length * length / 12.0, kTrimDamping);
     model.heel = damped(righting(beam),
-                        draught * heel_radius * heel_radius + kPi * beam * beam * beam / 256.0, kHeelDamping);
+                        draught * heel_radius * heel_radius + kPi * beam * beam * beam / 256.0, heel_damping);
     return model;
 }
 

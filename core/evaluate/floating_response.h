@@ -11,7 +11,7 @@
 // C − M ω_e² − i b ω_e. So a frame alone is that frame of a run: there is no state.
 //
 // Added masses are half of a flat strip's in unbounded water (Lamb 1932, §71), πρB²/8 and πρB⁴/256 a metre of length. Radii of gyration,
-// a quarter of the length and 0.35 of the beam, the damping, 0.2, 0.2 and 0.05 of the critical, and the place of the centre of gravity,
+// a quarter of the length and 0.35 of the beam, the damping of heave and pitch, 0.2 of the critical, and the place of the centre of gravity,
 // which leaves a metacentric height of a tenth of the smaller side, are a displacement ship's, by rule of thumb. With that damping a beam
 // sea lifts a ship of 7.5 m beam by up to 1.5 times its waves, about as an estimate by Ursell's half circle (1949) and Haskind's relation
 // has it: diffraction, which isn't there, takes a third of the pull, and less is radiated. Nor are there sway, surge and yaw, what is not
@@ -46,7 +46,8 @@ struct FloatingModel {
     double gravity_m = 0.0;        // height of the centre of gravity over the water
     Oscillator heave, trim, heel;  // [m/s²]; [m²/s²]: angles, over ρ L B
 };
-FloatingModel floating_model(const FloatingBox& box);
+// heel_damping: over the critical.
+FloatingModel floating_model(const FloatingBox& box, double heel_damping = 0.1);
 
 struct FloatingMotion {
     double heave_m = 0.0;   // of the box's middle

@@ -76,7 +76,7 @@ PlacedObject place_object(const Frame<T>& state, const Scene& scene, const Scene
     if (object.buoyancy == Buoyancy::Response)
         if (const FloatingBox box = floating_box(object, pose); box.draught_m > 0.0) {
             const FloatingMotion motion =
-                floating_motion(state, floating_model(box),
+                floating_motion(state, floating_model(box, object.roll_damping),
                                 {.middle_m = origin_m + box.middle_m.x * ahead + box.middle_m.y * port,
                                  .ahead = ahead,
                                  .velocity_mps = velocity_mps(scene, object, at.frame),

@@ -412,7 +412,8 @@ std::string hulls_text(const Scene& scene, bool has_foam) {
             interpolation = vessel.interpolation;
             text += " vessel";  // in the sea's time
         }
-        if (object.floats && object.buoyancy == Buoyancy::Response) text += " response";
+        if (object.floats && object.buoyancy == Buoyancy::Response)
+            text += " response " + number_text(object.roll_damping);
         if (!path.empty())
             text += ' ' + quoted_text(path) +
                     (interpolation == CameraInterpolation::Smooth ? " smooth" : " linear");

@@ -1064,6 +1064,13 @@ void add_objects(Built& out) {
              .help =
                  "of what floats: plane: it lies on the water under it; response: it moves by its mass as well, late, and rolls on, as linear "
                  "theory has a ship as long, wide and deep"}),
+        row<&SceneObject::roll_damping>(
+            {.name = "roll_damping",
+             .help =
+                 "of what floats by response, over the damping that lets it swing no more: a bare hull has 0.05, one with bilge keels 0.1, a "
+                 "yacht under sail 0.4",
+             .range = limits::kRollDamping,
+             .soft = SoftRange{0.02, 1.0}}),
         row<&SceneObject::foam>(
             {.name = "foam",
              .help =

@@ -134,6 +134,7 @@ inline constexpr std::size_t kObjectMaterials = 4096;        // of a body
 inline constexpr std::size_t kObjectCorners = 1000;  // of a face: to cut it goes with the square and more
 inline constexpr Range kObjectPoint_m{-1e6, 1e6};    // a float holds 6 cm there
 inline constexpr Range kObjectUp_m{-1e4, 1e5};
+inline constexpr Range kRollDamping{0.01, 10.0};  // at 0 a swell of its own period would roll it over
 inline constexpr Range kObjectScale{1e-4, 1e4};
 inline constexpr Range kObjectColour{0.0, 1.0};
 inline constexpr Range kObjectGlow_cd_m2{0.0, 1e9};  // the sun has 1.6e9

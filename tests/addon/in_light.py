@@ -128,10 +128,11 @@ with checking("imported again it is at the same place, with its wake, afloat and
         if name == "points_m":
             assert np.allclose(values, again.object_mesh(0)[name], atol=2e-3)
     assert ship.pelagic_in_light.buoyancy == shot.objects[0].buoyancy == "plane"
-    ship.pelagic_in_light.buoyancy = "response"
-    assert exported("by-mass").objects[0].buoyancy == "response"
+    ship.pelagic_in_light.buoyancy, ship.pelagic_in_light.roll_damping = "response", 0.3
+    body = exported("by-mass").objects[0]
+    assert (body.buoyancy, body.roll_damping) == ("response", 0.3)
     assert bpy.ops.pelagic.import_shot(filepath=str(FOLDER / "by-mass.toml")) == {"FINISHED"}
-    assert {obj.pelagic_in_light.buoyancy for obj in in_light.of_scene(bpy.context.scene)} == {"response"}
+    assert {(obj.pelagic_in_light.buoyancy, round(obj.pelagic_in_light.roll_damping, 6)) for obj in in_light.of_scene(bpy.context.scene)} == {("response", 0.3)}
 
 
 # ---- Hard cases

@@ -310,6 +310,7 @@ struct SceneObject {
     double scale = 1.0;                      // > 0
     bool floats = false;  // heaves, pitches and rolls with the waves that are as long as it is
     Buoyancy buoyancy = Buoyancy::Plane;  // of what floats
+    double roll_damping = 0.1;            // of Buoyancy::Response, over the critical; > 0
     double foam = 1.0;                    // times the foam where hull and water meet, 0 … 1
     glm::dvec3 colour{1.0};               // times its materials', 0 … 1
     double glow_cd_m2 = 0.0;              // luminance of materials that glow, ≥ 0

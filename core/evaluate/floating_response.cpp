@@ -18,10 +18,9 @@
 namespace pelagic {
 namespace {
 
-constexpr double kSmallest_m = 1e-3;  // of a box's sides
 // Of a displacement ship, by rule of thumb (floating_response.h).
 constexpr double kMetacentricShare = 0.1, kHighestGravityShare = 0.5, kTrimGyration = 0.25,
-                 kHeelGyration = 0.35;
+                 kHeelGyration = 0.35, kDeepGyration = 0.6;
 constexpr double kHeaveDamping = 0.2, kTrimDamping = 0.2;
 double sinc(double q) {
     return std::abs(q) < 1e-4 ? 1.0 - q * q / 6.0 : std::sin(q) / q;
@@ -176,70 +175,16 @@ void add_cascade(const Cascade<T>& cascade, const std::vector<TileCopy>& copies,
     }
 }
 
-// A polygon's part under z = 0, of a triangle's corners: at most four.
-struct Wetted {
-    std::array<glm::dvec3, 4> points;
-    int count = 0;
-};
-Wetted wetted(const std::array<glm::dvec3, 3>& corners) {
-    Wetted part;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
-        if (a.z <= 0.0) part.points[static_cast<std::size_t>(part.count++)] = a;
-        if ((a.z < 0.0 && b.z > 0.0) || (a.z > 0.0 && b.z < 0.0))
-            part.points[static_cast<std::size_t>(part.count++)] = glm::mix(a, b, a.z / (a.z - b.z));
-    }
-    return part;
-}
-
 }  // namespace
-
-FloatingBox floating_box(const SceneObject& object, const ObjectPose& pose) {
-    const ObjectMeshData& mesh = object.mesh->data();
-    const double level = std::hypot(pose.turn[0].x, pose.turn[0].y);
-    const glm::dvec2 ahead = level > 1e-6 ? glm::dvec2(pose.turn[0]) / level : glm::dvec2(1.0, 0.0);
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    glm::dvec3 least(kFar), most(-kFar);
-    // By Gauss's theorem: what is open at the water's level adds nothing to the volume, and is the waterplane.
-    double volume_m3 = 0.0, plane_m2 = 0.0;
-    const auto placed = [&](std::uint32_t i) {
-        const glm::dvec3 p = pose.turn * (pose.scale * glm::dvec3(mesh.points_m[i]));
-        return glm::dvec3(p.x * ahead.x + p.y * ahead.y, p.y * ahead.x - p.x * ahead.y, p.z + pose.place_m.z);
-    };
-    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
-        const Wetted part =
-            wetted({placed(mesh.triangles[t]), placed(mesh.triangles[t + 1]), placed(mesh.triangles[t + 2])});
-        for (int i = 0; i < part.count; ++i) {
-            least = glm::min(least, part.points[static_cast<std::size_t>(i)]);
-            most = glm::max(most, part.points[static_cast<std::size_t>(i)]);
-        }
-        for (int i = 2; i < part.count; ++i) {
-            const glm::dvec3 &a = part.points[0], &b = part.points[static_cast<std::size_t>(i) - 1],
-                             &c = part.points[static_cast<std::size_t>(i)];
-            const double up_m2 = 0.5 * glm::cross(b - a, c - a).z;
-            plane_m2 -= up_m2;
-            volume_m3 += up_m2 * (a.z + b.z + c.z) / 3.0;
-        }
-    }
-    if (!(least.z < 0.0) || !(most.x - least.x > kSmallest_m && most.y - least.y > kSmallest_m)) return {};
-    const double length_m = most.x - least.x, beam_m = most.y - least.y;
-    const glm::dvec2 middle_m = 0.5 * glm::dvec2(least + most);
-    const double fullness = plane_m2 / (length_m * beam_m), depth_m = volume_m3 / plane_m2;
-    // A mesh with holes, or whose faces look inwards, has numbers that no body has.
-    if (!(fullness > 0.2 && fullness < 1.01 && depth_m > 0.0 && depth_m < -1.01 * least.z))
-        return {length_m, beam_m, -least.z, middle_m};
-    const double narrower = std::sqrt(std::min(fullness, 1.0));
-    return {narrower * length_m, narrower * beam_m, depth_m, middle_m};
-}
 
 FloatingModel floating_model(const FloatingBox& box, double heel_damping) {
     const double length = box.length_m, beam = box.beam_m, draught = box.draught_m;
     FloatingModel model;
     model.box = box;
     const double side = std::min(length, beam);
-    model.gravity_m =
-        std::min(side * side / (12.0 * std::max(draught, 1e-9)) - 0.5 * draught - kMetacentricShare * side,
-                 kHighestGravityShare * draught);
+    model.gravity_m = std::min(side * side / (12.0 * std::max(draught, 1e-9)) - 0.5 * draught -
+                                   kMetacentricShare * std::max(side, draught),
+                               kHighestGravityShare * draught);
     const auto righting = [&](double width) {
         return kGravity * (width * width / 12.0 - draught * (0.5 * draught + model.gravity_m));
     };
@@ -247,7 +192,8 @@ FloatingModel floating_model(const FloatingBox& box, double heel_damping) {
         return Oscillator{stiffness, mass, 2.0 * share * std::sqrt(stiffness * mass)};
     };
     const double strip = kPi * beam / 8.0;  // added mass of heave over ρ L B
-    const double trim_radius = kTrimGyration * length, heel_radius = kHeelGyration * beam;
+    const double trim_radius = std::max(kTrimGyration * length, kDeepGyration * draught),
+                 heel_radius = std::max(kHeelGyration * beam, kDeepGyration * draught);
     model.heave = damped(kGravity, draught + strip, kHeaveDamping);
     model.trim = damped(righting(length),
                         draught * trim_radius * trim_radius + strip * length * length / 12.0, kTrimDamping);

@@ -1,21 +1,23 @@
-// How a body moves in the sea by its own mass: heave, pitch and roll as linear theory has them of a box that floats (objects[].motion =
-// "response").
+// How a body moves in the sea by its own mass: heave, pitch and roll as linear theory has them of a box that floats
+// (objects[].buoyancy = "response").
 //
 // A wave a e^{i(k·x − ωt)} presses on the box with ρg a e^{i(k·x − ωt)} cosh k(z + d)/cosh kd, as if the box weren't there (Froude and
-// Krylov; Newman 1977, "Marine hydrodynamics", §6.16). On length L, beam B and draught T, over ρ g L B a, with sinc q = sin q/q, j₁(q) = sin q/q² − cos q/q,
-// qx = kx L/2, qy = ky B/2, e = cosh k(d − T)/cosh kd and J = ∫ (z − z_G) cosh k(z + d)/cosh kd dz over the draught:
+// Krylov; Newman 1977, "Marine hydrodynamics", §6.16). On length L, beam B and draught T, over ρ g L B a, with sinc q = sin q/q,
+// j₁(q) = sin q/q² − cos q/q, qx = kx L/2, qy = ky B/2, e = cosh k(d − T)/cosh kd and J = ∫ (z − z_G) cosh k(z + d)/cosh kd dz over the
+// draught:
 //   heave  e sinc qx sinc qy
 //   trim   i sinc qy (½ L e j₁(qx) + 2 J sin qx/L)        the slope along the body; a long wave's is i kx a
 //   heel   i sinc qx (½ B e j₁(qy) + 2 J sin qy/B)        the slope across it, to port
 // The box answers as a damped oscillator at the frequency with which it meets the wave, ω_e = ω − k·U: its motion is the pull over
 // C − M ω_e² − i b ω_e. So a frame alone is that frame of a run: there is no state.
 //
-// Added masses are half of a flat strip's in unbounded water (Lamb 1932, §71), πρB²/8 and πρB⁴/256 a metre of length. Radii of gyration,
-// a quarter of the length and 0.35 of the beam, the damping of heave and pitch, 0.2 of the critical, and the place of the centre of gravity,
-// which leaves a metacentric height of a tenth of the smaller side, are a displacement ship's, by rule of thumb. With that damping a beam
-// sea lifts a ship of 7.5 m beam by up to 1.5 times its waves, about as an estimate by Ursell's half circle (1949) and Haskind's relation
-// has it: diffraction, which isn't there, takes a third of the pull, and less is radiated. Nor are there sway, surge and yaw, what is not
-// linear (a roll's own damping, slamming), and the wakes of vessels.
+// Added masses are half of a flat strip's in unbounded water (Lamb 1932, §71), πρB²/8 and πρB⁴/256 a metre of length. By rule of thumb, of
+// a displacement ship: the radii of gyration are a quarter of the length and 0.35 of the beam, or 0.6 of the draught where that is more; the
+// damping of heave and pitch is 0.2 of the critical; the centre of gravity leaves a metacentric height of a tenth of the smaller side, or of
+// the draught, but is no higher over the water than half the draught. With that damping a beam sea lifts a ship of 7.5 m beam by up to 1.5
+// times its waves, about as an estimate by Ursell's half circle (1949) and Haskind's relation has it: diffraction, which isn't there, takes a
+// third of the pull, and less is radiated. Nor are there sway, surge and yaw, what is not linear (slamming, a roll's own damping), and the
+// wakes of vessels.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -25,17 +27,6 @@
 #include "pelagic/scene.h"
 
 namespace pelagic {
-
-// Of a body that lies in calm water: as large as its waterplane and as what it displaces, as long to as wide as the waterline's box. The
-// waterline's and the depth's own box where the mesh isn't closed.
-struct FloatingBox {
-    double length_m = 0.0, beam_m = 0.0;
-    double draught_m = 0.0;    // 0: nothing of it is under water
-    glm::dvec2 middle_m{0.0};  // from its origin, ahead and to port
-};
-
-// `pose`: of that object in calm water, z = 0 the water. O(triangles).
-FloatingBox floating_box(const SceneObject& object, const ObjectPose& pose);
 
 // Of one of its three motions, over ρ L B: C − M ω² − i b ω.
 struct Oscillator {

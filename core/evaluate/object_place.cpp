@@ -74,15 +74,19 @@ PlacedObject place_object(const Frame<T>& state, const Scene& scene, const Scene
         return placed;
     };
     if (object.buoyancy == Buoyancy::Response)
-        if (const FloatingBox box = floating_box(object, pose); box.draught_m > 0.0) {
+        if (const FloatingBox box = floating_box(object); box.draught_m > 0.0) {
+            const double c = std::cos(box.turn), s = std::sin(box.turn);
+            const glm::dvec2 along = c * ahead + s * port, across = c * port - s * ahead;
             const FloatingMotion motion =
                 floating_motion(state, floating_model(box, object.roll_damping),
                                 {.middle_m = origin_m + box.middle_m.x * ahead + box.middle_m.y * port,
-                                 .ahead = ahead,
+                                 .ahead = along,
                                  .velocity_mps = velocity_mps(scene, object, at.frame),
                                  .cell_m = floating_cell_m(object),
                                  .late_s = at.late_s});
-            return lie_on({motion.heave_m - glm::dot(motion.slope, box.middle_m), motion.slope});
+            const glm::dvec2 leans = motion.slope.x * along + motion.slope.y * across,
+                             slope(glm::dot(leans, ahead), glm::dot(leans, port));
+            return lie_on({motion.heave_m - glm::dot(slope, box.middle_m), slope});
         }
     const glm::dvec2 least(object.mesh->least_m()), most(object.mesh->most_m());
     const glm::dvec2 size = pose.scale * (most - least);

@@ -18,15 +18,15 @@ double contact_level_m(double foam_m) {
     return first_level_m(std::max(foam_m, kFinest_m));
 }
 
-std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
-    std::set<double> levels_m;
-    for (const std::size_t i : hulls_of(scene)) {
-        const SceneObject& object = scene.objects[i];
-        if (!has_places) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
-        if (!object.floats) continue;
-        const double below_m = level_below_m(floating_cell_m(object));
-        levels_m.insert({below_m, 2.0 * below_m});
-    }
+namespace {
+
+void add_floating_levels(const SceneObject& object, std::set<double>& levels_m) {
+    if (!object.floats || !object.mesh || answers_by_mass(object)) return;  // the latter asks no grid
+    const double below_m = level_below_m(floating_cell_m(object));
+    levels_m.insert({below_m, 2.0 * below_m});
+}
+
+std::optional<Query> query_of(const std::set<double>& levels_m) {
     if (levels_m.empty()) return std::nullopt;
     Query query;
     query.name = kHullsQuery;
@@ -36,10 +36,25 @@ std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
     return query;
 }
 
+}  // namespace
+
+std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
+    std::set<double> levels_m;
+    for (const std::size_t i : hulls_of(scene)) {
+        const SceneObject& object = scene.objects[i];
+        if (!has_places) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
+        add_floating_levels(object, levels_m);
+    }
+    return query_of(levels_m);
+}
+
 std::optional<Query> hulls_query_of_picture(const Scene& scene) {
-    const bool has_foam =
-        std::ranges::any_of(scene.objects, [](const SceneObject& object) { return object.foam > 0.0; });
-    return has_foam ? hulls_query(scene, false) : std::nullopt;
+    std::set<double> levels_m;
+    for (const std::size_t i : hulls_of(scene))
+        if (const SceneObject& object = scene.objects[i]; object.foam > 0.0)
+            levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
+    for (const SceneObject& object : scene.objects) add_floating_levels(object, levels_m);
+    return query_of(levels_m);
 }
 
 std::optional<int> hulls_query(const Plan& plan) {
@@ -52,7 +67,7 @@ bool knows_hulls(const Plan& plan) {
     const Scene& scene = plan.from->scene;
     const std::vector<std::size_t> hulls = hulls_of(scene);
     return !hulls.empty() && (hulls_query(plan) || std::ranges::none_of(hulls, [&](std::size_t i) {
-                                  return scene.objects[i].floats;
+                                  return scene.objects[i].floats && !answers_by_mass(scene.objects[i]);
                               }));
 }
 

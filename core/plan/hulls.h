@@ -15,7 +15,7 @@ struct Plan;
 // Positions and velocities, with the footprints that hulls have of them, as a picture's levels are: round the floating_cell_m() of what floats,
 // and contact_level_m() where somebody asks who has no places or velocities of its own. None where nobody asks.
 std::optional<Query> hulls_query(const Scene& scene, bool has_places);
-// Of pictures: none where no object has foam.
+// Of pictures: where hulls have foam, and of all that floats, so that it is where it is whatever else a picture shows.
 std::optional<Query> hulls_query_of_picture(const Scene& scene);
 // Its number in a plan that has it.
 std::optional<int> hulls_query(const Plan& plan);

@@ -22,6 +22,7 @@
 #include "core/plan/weather.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/hull.h"
+#include "core/scene/object_pose.h"
 #include "core/spectrum/dispersion.h"
 #include "core/surface/earth.h"
 #include "core/surface/footprint_levels.h"
@@ -453,14 +454,18 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
                     : "the spectrum has no energy in its band";
     }
     if (plan.second_order_gain > 0.0) add_second_order(plan);
-    if (plan.trains && plan.trains->hero_trains > 0)
-        for (CascadePlan& cascade : plan.cascades) {
-            const double end =
-                std::min(plan.trains->hero_ends.height, cascade.k_upper) * cascade.size_m / kTwoPi;
-            if (!(plan.trains->hero_ends.height > cascade.k_lower)) continue;
-            cascade.hero_radius = std::min(static_cast<int>(std::ceil(end)) + 1, cascade.resolution / 2);
-            cascade.mode_radius = std::max(cascade.mode_radius, cascade.hero_radius);
-        }
+    double known_to = 0.0;  // [rad/m]
+    if (plan.trains && plan.trains->hero_trains > 0) known_to = plan.trains->hero_ends.height;
+    for (const SceneObject& object : scene.objects)
+        if (object.mesh && answers_by_mass(object))
+            known_to = std::max(known_to, plan.filter.cutoff(floating_cell_m(object)));
+    for (CascadePlan& cascade : plan.cascades) {
+        if (!(known_to > cascade.k_lower)) continue;
+        const double end = std::min(known_to, cascade.k_upper) * cascade.size_m / kTwoPi;
+        cascade.known_radius =
+            std::min(static_cast<int>(std::min(std::ceil(end), 1e6)) + 1, cascade.resolution / 2);
+        cascade.mode_radius = std::max(cascade.mode_radius, cascade.known_radius);
+    }
     for (VesselPlan& vessel : plan_vessels(scene)) {
         CascadePlan cascade;
         cascade.size_m = vessel.size_m;
@@ -594,7 +599,7 @@ std::size_t Plan::vessel_bytes() const {
 }
 
 int CascadePlan::amplitude_radius() const {
-    int radius = std::max(hero_radius, second_order ? second_order->radius : 0);
+    int radius = std::max(known_radius, second_order ? second_order->radius : 0);
     for (const Grid& grid : grids) radius = std::max(radius, grid.radius);
     return radius;
 }

@@ -79,14 +79,14 @@ struct CascadePlan {
 
     std::optional<SecondOrderPlan> second_order{};  // of the one cascade that has it
 
-    // Of the waves that heroes must know, whatever is asked for: a hero is the same in every plan. 0 without heroes.
-    int hero_radius = 0;
+    // Of the waves that heroes, and what floats by its mass, must know whatever is asked for: these are the same in every plan. 0 without.
+    int known_radius = 0;
 
     // Of a vessel's waves, which are none of the spectrum's, and lie within the tile round its middle alone: behind all cascades of the sea.
     std::optional<VesselPlan> vessel{};
 
     bool moves() const;  // whether somebody asks for velocities
-    // Modes within it have amplitudes: the largest of its grids', of its second order and of heroes; 0 without any.
+    // Modes within it have amplitudes: the largest of its grids', of its second order and known_radius; 0 without any.
     int amplitude_radius() const;
 };
 

@@ -1058,7 +1058,9 @@ void add_objects(Built& out) {
                                   .range = limits::kObjectScale,
                                   .soft = SoftRange{0.01, 100.0, true}}),
         row<&SceneObject::floats>(
-            {.name = "floats", .help = "heaves, pitches and rolls with the waves that are as long as it is"}),
+            {.name = "floats",
+             .help =
+                 "heaves, pitches and rolls with the waves that are as long as it is, or as buoyancy has it"}),
         row<&SceneObject::buoyancy>(
             {.name = "buoyancy",
              .help =

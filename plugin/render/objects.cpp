@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/random.h"
+#include "core/plan/hulls.h"
 #include "core/surface/earth.h"
 
 namespace pelagic {
@@ -121,6 +122,7 @@ std::size_t LitObjects::bytes(const Scene& scene) {
 template <class T>
 void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
     const double step_s = scene_.shot.time_scale / scene_.shot.fps;
+    const int query = hulls_query(state.sea().plan()).value_or(SeaLight<T>::kQuery);
     std::vector<glm::mat4x3> transforms;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         Body& body = bodies_[i];
@@ -128,11 +130,9 @@ void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
         const glm::dvec3 least = body.mesh->least_m(), most = body.mesh->most_m();
         for (const int beside : {-1, 1, 0}) {
             if (beside != 0 && !sea.has_motion) continue;
-            const auto [pose, water_m] = place_object(state, scene_, object,
-                                                      {.query = SeaLight<T>::kQuery,
-                                                       .frame = frame + beside,
-                                                       .rest_m = sea.rest_m,
-                                                       .late_s = beside * step_s});
+            const auto [pose, water_m] = place_object(
+                state, scene_, object,
+                {.query = query, .frame = frame + beside, .rest_m = sea.rest_m, .late_s = beside * step_s});
             Placed& placed = body.placed[beside + 1];
             const glm::dvec3 flat_m = pose.place_m - glm::dvec3(sea.origin_m, 0.0);
             const glm::dvec3 vertical = earth_up(glm::dvec2(flat_m), sea.curvature_per_m);

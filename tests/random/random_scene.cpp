@@ -585,7 +585,8 @@ class Drawing {
             for (const char* needed : {"effects.spray_drops", "effects.spray", "effects.whitecaps"})
                 give(needed, true);
             give("effects.spray_law", std::string("andreas-1998"));
-            give("surface.size_m", std::min(number("surface.size_m"), cap(kDropsSide_m).high));
+            if (draw_.chance(0.95))
+                give("surface.size_m", std::min(number("surface.size_m"), cap(kDropsSide_m).high));
         }
         const auto* volumes = list<std::vector<std::string>>("output.volumes");
         if (!volumes || volumes->empty()) return;

@@ -308,12 +308,12 @@ struct SceneObject {
         0.0;  // of its +x, counter-clockwise from east; with a path or a vessel from its course
     double pitch_deg = 0.0, roll_deg = 0.0;  // bow up; to starboard down
     double scale = 1.0;                      // > 0
-    bool floats = false;  // heaves, pitches and rolls with the waves that are as long as it is
-    Buoyancy buoyancy = Buoyancy::Plane;  // of what floats
-    double roll_damping = 0.1;            // of Buoyancy::Response, over the critical; > 0
-    double foam = 1.0;                    // times the foam where hull and water meet, 0 … 1
-    glm::dvec3 colour{1.0};               // times its materials', 0 … 1
-    double glow_cd_m2 = 0.0;              // luminance of materials that glow, ≥ 0
+    bool floats = false;                     // heaves, pitches and rolls with the waves
+    Buoyancy buoyancy = Buoyancy::Plane;     // of what floats
+    double roll_damping = 0.1;               // of Buoyancy::Response, over the critical; > 0
+    double foam = 1.0;                       // times the foam where hull and water meet, 0 … 1
+    glm::dvec3 colour{1.0};                  // times its materials', 0 … 1
+    double glow_cd_m2 = 0.0;                 // luminance of materials that glow, ≥ 0
     bool holdout =
         false;  // it is rendered elsewhere: nothing, with alpha 0, where it stands, but mirrored and shadowing
 

@@ -52,13 +52,15 @@ std::vector<DrawnObject> drawn_objects(const Frame<float>& state, const Scene& s
                                        const ObjectMoment& at) {
     std::vector<DrawnObject> drawn;
     std::vector<Hulls::Beside> beside(scene.objects.size());
+    ObjectMoment moment = at;
     if (const std::optional<int> query = hulls_query(state.sea().plan())) {
+        moment.query = *query;
         Hulls hulls(scene);
         hulls.place(state, query, at.frame, at.rest_m);
         beside = hulls.beside(state, query);
     }
     for (const SceneObject& object : scene.objects) {
-        const auto [pose, water_m] = place_object(state, scene, object, at);
+        const auto [pose, water_m] = place_object(state, scene, object, moment);
         drawn.push_back(
             {.mesh = object.mesh,
              .place_m = pose.place_m,

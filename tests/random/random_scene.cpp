@@ -531,10 +531,13 @@ class Drawing {
                 leave_out(path);
             return;
         }
+        if (is("waves.coast", true)) {
+            if (is("sea.depth_file", std::string(kFoamName)))
+                for (const char* path : {"waves.cascades", "waves.heroes"}) leave_out(path);
+            else
+                leave_out("waves.coast");
+        }
         const auto* cascades = list<std::vector<KeyEntry>>("waves.cascades");
-        if (!is("sea.depth_file", std::string(kFoamName)) || made_.value("waves.heroes") ||
-            (cascades && !cascades->empty()))
-            leave_out("waves.coast");
         if (cascades && !cascades->empty() && made_.value("waves.shortest_m")) {
             const auto& first = cascades->front().values;
             const auto& last = cascades->back().values;

@@ -49,6 +49,25 @@ double smaller(double a, double b) {  // 0 where their signs differ
     return std::abs(a) < std::abs(b) ? a : b;
 }
 
+// Whether a train is marched along y. Of the floor's mean slope over the map, as deep as waves feel it, the larger part says so, if it is
+// larger by far and the train goes that way at all.
+bool goes_along_y(const CoastDepths& of, glm::dvec2 direction) {
+    constexpr double kDeepest_m = 40.0, kClearly = 1.5, kLeastFall = 0.05, kLeastAlong = 0.35;
+    const auto felt_m = [&](int x, int y) { return std::clamp(of.depth_m[of.at(x, y)], 0.0, kDeepest_m); };
+    glm::dvec2 fall(0.0);
+    double deepest_m = 0.0;
+    for (int y = 0; y < of.count.y; ++y) fall.x += felt_m(of.count.x - 1, y) - felt_m(0, y);
+    for (int x = 0; x < of.count.x; ++x) fall.y += felt_m(x, of.count.y - 1) - felt_m(x, 0);
+    for (const double depth_m : of.depth_m) deepest_m = std::max(deepest_m, std::min(depth_m, kDeepest_m));
+    const glm::dvec2 size_m = glm::dvec2(of.count) * of.cell_m, ways = glm::abs(direction),
+                     slope = glm::abs(fall) / glm::dvec2(of.count.y, of.count.x) / size_m;
+    const bool nearest = ways.y > ways.x, steepest = slope.y > slope.x;
+    const double larger = std::max(slope.x, slope.y), smaller = std::min(slope.x, slope.y);
+    const double size_along_m = steepest ? size_m.y : size_m.x;
+    const bool is_clear = larger > kClearly * smaller && larger * size_along_m > kLeastFall * deepest_m;
+    return is_clear && (steepest ? ways.y : ways.x) >= kLeastAlong ? steepest : nearest;
+}
+
 // The map as a march sees it: `u` along it, `v` across.
 struct March {
     const CoastDepths& depths;
@@ -58,7 +77,7 @@ struct March {
 
     March(const CoastDepths& of, glm::dvec2 direction)
         : depths(of),
-          along_y(std::abs(direction.y) > std::abs(direction.x)),
+          along_y(goes_along_y(of, direction)),
           backwards((along_y ? direction.y : direction.x) < 0.0),
           steps(along_y ? of.count.y : of.count.x),
           width(along_y ? of.count.x : of.count.y),
@@ -271,7 +290,7 @@ CoastWave march_coast(const CoastDepths& depths, double depth_m, double omega, g
 
 CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> m0,
                              std::span<const glm::dvec2> flux, glm::dvec2 towards, double peak_hz) {
-    constexpr double kGamma = 0.42, kMostTurn = 2.0;
+    constexpr double kGamma = 0.42, kMostTurn = 1.0 / kSteepestRay;
     const double scale = 3.0 * std::sqrt(kPi) / 16.0 * peak_hz / std::pow(kGamma, 4.0);
     const March march(depths, towards);
     CoastBreaking breaking;

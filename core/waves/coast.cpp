@@ -105,9 +105,12 @@ class Front {
           of_(of),
           ku0_(std::abs(march.along_y ? k0.y : k0.x)),
           kv0_(march.along_y ? k0.x : k0.y),
+          k0_(glm::length(k0)),
           turn_(phase.size()),
           rate_(phase.size()),
           later_(phase.size()),
+          across_(phase.size()),
+          diagonal_(phase.size()),
           faces_(phase.size() + 1) {}
 
     // From one line of depths' places to another, du apart.
@@ -123,9 +126,15 @@ class Front {
         std::vector<double> begin(width), end(width);
         for (int p = 0; p < parts; ++p) {
             for (std::size_t v = 0; v < width; ++v) {
-                begin[v] = from[v] + (to[v] - from[v]) * p / parts;
-                end[v] = from[v] + (to[v] - from[v]) * (p + 1) / parts;
+                // Between land and water there are no depths between.
+                const bool is_shore = !(from[v] > 0.0) || !(to[v] > 0.0);
+                const auto between = [&](double t) {
+                    return is_shore ? (t < 0.5 ? from[v] : to[v]) : from[v] + (to[v] - from[v]) * t;
+                };
+                begin[v] = between(static_cast<double>(p) / parts);
+                end[v] = between((p + 1.0) / parts);
             }
+            for (std::size_t v = 0; v < width; ++v) across_[v] = slope_across(v);
             take_rates(phase, begin);
             for (std::size_t v = 0; v < width; ++v) later_[v] = phase[v] + part * rate_[v];
             const std::vector<double> first = rate_, first_turn = turn_;
@@ -134,16 +143,32 @@ class Front {
                 phase[v] += 0.5 * part * (first[v] + rate_[v]);
                 turn_[v] = 0.5 * (first_turn[v] + turn_[v]);
             }
+            hold_to_first(end);
             move_flux(part, end);
+            spread_flux(part, end);
         }
     }
 
     // Of the front as it is: S_u and S_v.
-    glm::dvec2 gradient(std::size_t v, double place) const {
-        return towards(phase, v, of_.wavenumber(place));
-    }
+    glm::dvec2 gradient(std::size_t v, double place) const { return towards(phase, v, wavenumber(place)); }
 
   private:
+    // On land that of the deep: what comes round it finds the phase hardly torn.
+    double wavenumber(double place) const { return place > 0.0 ? of_.wavenumber(place) : k0_; }
+    // |S_v| of the front, of first order.
+    double slope_across(std::size_t v) const {
+        const double before = kv0_ + (v > 0 ? phase[v] - phase[v - 1] : 0.0) / march_.dv,
+                     after = kv0_ + (v + 1 < phase.size() ? phase[v + 1] - phase[v] : 0.0) / march_.dv;
+        return std::max({before, -after, 0.0});
+    }
+    // The earliest arrival, if need be along the line: |S_v| ≤ k.
+    void hold_to_first(const std::vector<double>& places) {
+        const std::size_t width = phase.size();
+        for (std::size_t v = 1; v < width; ++v)
+            phase[v] = std::min(phase[v], phase[v - 1] + (wavenumber(places[v]) - kv0_) * march_.dv);
+        for (std::size_t v = width - 1; v-- > 0;)
+            phase[v] = std::min(phase[v], phase[v + 1] + (wavenumber(places[v]) + kv0_) * march_.dv);
+    }
     // S_v from both sides; Godunov's for S_u = √(k² − S_v²).
     glm::dvec2 towards(const std::vector<double>& s, std::size_t v, double k) const {
         const auto last = static_cast<std::ptrdiff_t>(s.size()) - 1;
@@ -161,7 +186,7 @@ class Front {
     }
     void take_rates(const std::vector<double>& s, const std::vector<double>& places) {
         for (std::size_t v = 0; v < s.size(); ++v) {
-            const glm::dvec2 k = towards(s, v, of_.wavenumber(places[v]));
+            const glm::dvec2 k = towards(s, v, wavenumber(places[v]));
             rate_[v] = k.x - ku0_;
             turn_[v] = std::clamp(k.y / k.x, -1.0 / kSteepestRay, 1.0 / kSteepestRay);
         }
@@ -182,16 +207,41 @@ class Front {
             faces_[face] = turn * carried;
         }
         for (std::size_t v = 0; v < width; ++v) {
-            const double k = of_.wavenumber(places[v]);
-            const bool ends = !(places[v] > 0.0) || !(std::abs(towards(phase, v, k).y) < k);
+            constexpr double kRounding = 1e-6;
+            const bool ends =
+                !(places[v] > 0.0) || across_[v] > (1.0 + kRounding) * of_.wavenumber(places[v]);
             flux[v] = ends ? 0.0 : std::max(flux[v] - du / march_.dv * (faces_[v + 1] - faces_[v]), 0.0);
         }
     }
 
+    // ∂f/∂u = ∂/∂v(D ∂f/∂v), implicit: none goes ashore or out at the sides. D = 1/(2k) of waves along the march; of others it is over cos³ of
+    // their angle, since ways are longer and lines across are cut obliquely.
+    void spread_flux(double du, const std::vector<double>& places) {
+        const std::size_t width = flux.size();
+        const double scale = 0.5 * du / (march_.dv * march_.dv) * std::pow(k0_ / ku0_, 3.0);
+        const auto per_k = [&](std::size_t v) { return 1.0 / of_.wavenumber(places[v]); };
+        faces_.front() = faces_.back() = 0.0;
+        for (std::size_t face = 1; face < width; ++face) {
+            const bool is_water = places[face - 1] > 0.0 && places[face] > 0.0;
+            faces_[face] = is_water ? scale * 0.5 * (per_k(face - 1) + per_k(face)) : 0.0;
+        }
+        // Thomas' algorithm.
+        for (std::size_t v = 0; v < width; ++v) {
+            diagonal_[v] = 1.0 + faces_[v] + faces_[v + 1];
+            if (v == 0) continue;
+            const double part = faces_[v] / diagonal_[v - 1];
+            diagonal_[v] -= part * faces_[v];
+            flux[v] += part * flux[v - 1];
+        }
+        flux[width - 1] /= diagonal_[width - 1];
+        for (std::size_t v = width - 1; v-- > 0;)
+            flux[v] = (flux[v] + faces_[v + 1] * flux[v + 1]) / diagonal_[v];
+    }
+
     const March& march_;
     const OfDepth& of_;
-    double ku0_, kv0_;
-    std::vector<double> turn_, rate_, later_, faces_;
+    double ku0_, kv0_, k0_;
+    std::vector<double> turn_, rate_, later_, across_, diagonal_, faces_;
 };
 
 // Over these cells, ends included. A spline lies between the coefficients that it reads, its derivative between their differences.

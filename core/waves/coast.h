@@ -4,7 +4,7 @@
 // speed, ∇·(k̂ c_g E) = 0. S is marched along one of the map's axes, S_u = √(k² − S_v²) (Heun's steps, one-sided differences of second
 // order, and Godunov's choice between them, which takes the earliest of arrivals that cross); the flux c_g E cos α along with it,
 // conservatively. The axis is the one along which the floor falls, for trains within 69° of it; where it falls along neither clearly, and
-// for all others, the axis that the train comes nearest to. Those others refract too little where the floor falls across their march.
+// for all others, the axis that the train comes nearest to. Those come in over the map's side as at sea, and turn from there on.
 // Trains enter at the map's edge as they are in sea.depth_m, by Snell's law.
 //
 // Where rays cross, E is no more than kMostCoastEnergy of what came in. A train that turns more than 75° from the march goes on at 75°, and
@@ -19,6 +19,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>
@@ -43,6 +44,10 @@ struct CoastDepths {
 };
 // Their means over a grid of so many cells.
 CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count);
+
+// Whether a train that goes this way is marched along y: of the floor's mean slope over the map, as deep as waves feel it, the larger part
+// says so, if it is larger by far and the train goes that way at all; else the train does.
+bool coast_goes_along_y(const CoastDepths& depths, glm::dvec2 direction);
 
 // What becomes of one train of unit energy without breaking, parallel to the depths.
 struct CoastWave {
@@ -79,7 +84,8 @@ struct Coast {
     // angular frequency, how far it moves water to the side over height times wavenumber [m], for its displacement and for that of the waves that
     // break, and how much of these is resolved at best.
     std::vector<T> kx, ky, height_m, omega, sideways_m, breaking_sideways_m, breaking;
-    std::vector<T> longest_m;  // no deeper water makes it longer
+    std::vector<T>
+        longest_m;  // no deeper water makes it longer, nor the way back to plain trains beyond the map
     // How far beyond the map gains and foam are 1 and none again [m]; of each train that feels the floor, one over how far its phase needs.
     double fade_m = 1.0;
     std::vector<T> phase_fade_per_m;
@@ -87,6 +93,10 @@ struct Coast {
     // The largest gain of each train that feels the floor, and of the others; the largest of gain times wavenumber [rad/m] of the former.
     std::vector<double> most_gain, most_sideways;
 
+    // From the map's nearest place to this one.
+    glm::dvec2 beyond_m(glm::dvec2 place_m) const {
+        return place_m - glm::clamp(place_m, from_m, from_m + glm::dvec2(count) * cell_m);
+    }
     std::size_t cells() const {
         return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y);
     }

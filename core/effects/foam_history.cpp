@@ -682,10 +682,15 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
                           sea_->plan().knobs.third_moment, {deviates(n), kNodes});
     else
         std::fill_n(deviates(n), kNodes, kNoBreaking);
-    // What breaks on the floor foams like the rest.
+    // A whitecap leaves its foam once, at foam_left_per_s() while it lasts. A roller breaks all the way in over water that foams already: of it
+    // such a share of that rate that what it leaves is on the mean no more than what breaks, however long foam lives. (Deviates between
+    // a crest and the trough lose up to half of it.)
+    const double lasting = sea_->foam_left_per_s() * foam_.weight(0.0, foam_.window_s).foam_s,
+                 source = 1.0 / std::max(lasting, 1.0);
     for (std::size_t i = 0; i < kNodes && coast; ++i) {
-        const double foam = coast_foam(*coast, origin_m + glm::dvec2(level.rest_m[i]),
-                                       static_cast<double>(moved[i].z), level.cell_m, sea_->plan().filter);
+        const double foam =
+            source * coast_foam(*coast, origin_m + glm::dvec2(level.rest_m[i]),
+                                static_cast<double>(moved[i].z), level.cell_m, sea_->plan().filter);
         deviates(n)[i] = std::max(deviates(n)[i], static_cast<float>(quick_deviate(foam)));
     }
     // In a calm J is 1 throughout, as far from breaking as can be.

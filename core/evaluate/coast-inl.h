@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -33,11 +34,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "core/plan/filter.inl"
 #include "core/waves/trains.inl"
 
-// The nine cells round a place, and their weights: of the value, and of how it changes [1/m].
+// The nine cells round a place, and their weights: of the value, and of how it changes [1/m]. `beyond_m`: how far outside the map it is, which
+// changes by `outwards`; `left`: of the map's gains there.
 template <class T>
 struct CoastTaps {
     std::array<std::size_t, 9> cell;
     std::array<T, 9> value, x, y;
+    T beyond_m = T(0), left = T(1), left_x = T(0), left_y = T(0);
+    glm::dvec2 outwards{0.0};
 };
 
 struct AxisTaps {
@@ -45,7 +49,7 @@ struct AxisTaps {
     std::array<double, 3> value, rate;
 };
 
-// Beyond the last cells, as at the edge.
+// Beyond the last cells, as at the edge; how far a place is beyond them is another thing.
 inline AxisTaps AxisTapsOf(double at_cells, int count, double cell_m) {
     const double at = at_cells > 0.0 ? std::min(at_cells, static_cast<double>(count)) : 0.0;
     const int own = std::min(static_cast<int>(at), count - 1);
@@ -69,6 +73,15 @@ CoastTaps<T> CoastTapsOf(const Coast<T>& coast, glm::dvec2 place_m) {
             taps.x[to] = static_cast<T>(columns.rate[i] * rows.value[j]);
             taps.y[to] = static_cast<T>(columns.value[i] * rows.rate[j]);
         }
+    const glm::dvec2 beyond_m = coast.beyond_m(place_m);
+    const double far_m = glm::length(beyond_m);
+    if (!(far_m > 0.0)) return taps;
+    taps.outwards = beyond_m / far_m;
+    taps.beyond_m = static_cast<T>(far_m);
+    const CoastFade fade = coast_fade(far_m / coast.fade_m);
+    taps.left = static_cast<T>(fade.left);
+    taps.left_x = static_cast<T>(fade.rate / coast.fade_m * taps.outwards.x);
+    taps.left_y = static_cast<T>(fade.rate / coast.fade_m * taps.outwards.y);
     return taps;
 }
 
@@ -314,6 +327,24 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                 gain_x = hn::MulAdd(rate_x, g, gain_x);
                 gain_y = hn::MulAdd(rate_y, g, gain_y);
             }
+            if (taps.beyond_m > T(0)) {
+                // As coast_fade(), of each train's own distance.
+                const V one = hn::Set(d, T(1)), two = hn::Set(d, T(2)), three = hn::Set(d, T(3)),
+                        six = hn::Set(d, T(6)), per_m = hn::LoadU(d, &coast.phase_fade_per_m[i]);
+                const V t = hn::Min(hn::Mul(hn::Set(d, taps.beyond_m), per_m), one);
+                const V left = hn::NegMulAdd(hn::Mul(t, t), hn::NegMulAdd(two, t, three), one);
+                const V rate = hn::Mul(hn::Mul(six, per_m), hn::Mul(t, hn::Sub(t, one)));
+                const V phase_rate = hn::Mul(phase, rate);
+                phase_x = hn::MulAdd(left, phase_x,
+                                     hn::Mul(phase_rate, hn::Set(d, static_cast<T>(taps.outwards.x))));
+                phase_y = hn::MulAdd(left, phase_y,
+                                     hn::Mul(phase_rate, hn::Set(d, static_cast<T>(taps.outwards.y))));
+                phase = hn::Mul(left, phase);
+                const V of_map = hn::Set(d, taps.left), more = hn::Sub(gain, one);
+                gain_x = hn::MulAdd(of_map, gain_x, hn::Mul(hn::Set(d, taps.left_x), more));
+                gain_y = hn::MulAdd(of_map, gain_y, hn::Mul(hn::Set(d, taps.left_y), more));
+                gain = hn::MulAdd(of_map, more, one);
+            }
             const V height = hn::IfThenElseZero(hn::FirstN(d, felt - i), hn::LoadU(d, &coast.height_m[i])),
                     turns = hn::Set(d, static_cast<T>(kTwoPi));
             const V all = hn::Sub(hn::LoadU(d, &cycles[i]), phase);
@@ -332,6 +363,12 @@ std::size_t AddCoastTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
             gain += taps.value[t] * own;
             gain_x += taps.x[t] * own;
             gain_y += taps.y[t] * own;
+        }
+        if (taps.beyond_m > T(0)) {
+            const T more = gain - T(1);
+            gain_x = taps.left * gain_x + taps.left_x * more;
+            gain_y = taps.left * gain_y + taps.left_y * more;
+            gain = T(1) + taps.left * more;
         }
         for (std::size_t i = feeling; i < end; i += lanes) {
             const V height = hn::IfThenElseZero(hn::FirstN(d, end - i), hn::LoadU(d, &coast.height_m[i]));

@@ -32,6 +32,9 @@ struct HeroEnds {
 // On a coast (core/waves/coast.h): a train's energy over what came in, and the height of one over the depth.
 inline constexpr double kMostCoastEnergy = 3.0, kMostCoastHeight = 0.78;
 
+// How wide a coast's cells are over a map of this size.
+double coast_cell_m(glm::dvec2 size_m);
+
 struct TrainsPlan {
     int count = 0;
     double longest_m = 0.0, shortest_m = 0.0;  // the bins' outer edges

@@ -488,8 +488,9 @@ void add_waves(Built& out) {
             {.name = "coast",
              .help =
                  "with trochoid: whether the trains feel the floor of sea.depth_file. They come from sea.depth_m, turn, shorten and rise "
-                 "over shallow water, lose height where they break, and end at the shore. There are no diffraction behind islands, "
-                 "no reflection, no run-up and no crests that overturn",
+                 "over shallow water, lose height where they break, and end at the shore; lees fill without the pattern of "
+                 "diffraction, and beyond the map waves are those of depth_m again. There is no reflection and no run-up, and no "
+                 "crest overturns",
              .key_parts = kWaves,
              .of_picture = "sea.depth_file"})));
 }

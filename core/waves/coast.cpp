@@ -14,7 +14,8 @@
 namespace pelagic {
 namespace {
 
-constexpr double kSteepestRay = 0.26;  // least cosine of the angle between a ray and the march: 75°
+constexpr double kMostFadeChange = 0.2;  // of the least wavenumber, where a phase fades
+constexpr double kSteepestRay = 0.26;    // least cosine of the angle between a ray and the march: 75°
 
 // Wavenumber and group speed by depth, linear between nodes that are 1 % apart.
 class OfDepth {
@@ -58,7 +59,7 @@ struct March {
 
     March(const CoastDepths& of, glm::dvec2 direction)
         : depths(of),
-          along_y(std::abs(direction.y) > std::abs(direction.x)),
+          along_y(coast_goes_along_y(of, direction)),
           backwards((along_y ? direction.y : direction.x) < 0.0),
           steps(along_y ? of.count.y : of.count.x),
           width(along_y ? of.count.x : of.count.y),
@@ -86,9 +87,12 @@ class Front {
           of_(of),
           ku0_(std::abs(march.along_y ? k0.y : k0.x)),
           kv0_(march.along_y ? k0.x : k0.y),
+          k0_(glm::length(k0)),
           turn_(phase.size()),
           rate_(phase.size()),
           later_(phase.size()),
+          across_(phase.size()),
+          diagonal_(phase.size()),
           faces_(phase.size() + 1) {}
 
     // From one line of depths' places to another, du apart.
@@ -104,9 +108,15 @@ class Front {
         std::vector<double> begin(width), end(width);
         for (int p = 0; p < parts; ++p) {
             for (std::size_t v = 0; v < width; ++v) {
-                begin[v] = from[v] + (to[v] - from[v]) * p / parts;
-                end[v] = from[v] + (to[v] - from[v]) * (p + 1) / parts;
+                // Between land and water there are no depths between.
+                const bool is_shore = !(from[v] > 0.0) || !(to[v] > 0.0);
+                const auto between = [&](double t) {
+                    return is_shore ? (t < 0.5 ? from[v] : to[v]) : from[v] + (to[v] - from[v]) * t;
+                };
+                begin[v] = between(static_cast<double>(p) / parts);
+                end[v] = between((p + 1.0) / parts);
             }
+            for (std::size_t v = 0; v < width; ++v) across_[v] = slope_across(v);
             take_rates(phase, begin);
             for (std::size_t v = 0; v < width; ++v) later_[v] = phase[v] + part * rate_[v];
             const std::vector<double> first = rate_, first_turn = turn_;
@@ -115,16 +125,32 @@ class Front {
                 phase[v] += 0.5 * part * (first[v] + rate_[v]);
                 turn_[v] = 0.5 * (first_turn[v] + turn_[v]);
             }
+            hold_to_first(end);
             move_flux(part, end);
+            spread_flux(part, end);
         }
     }
 
     // Of the front as it is: S_u and S_v.
-    glm::dvec2 gradient(std::size_t v, double place) const {
-        return towards(phase, v, of_.wavenumber(place));
-    }
+    glm::dvec2 gradient(std::size_t v, double place) const { return towards(phase, v, wavenumber(place)); }
 
   private:
+    // On land that of the deep: what comes round it finds the phase hardly torn.
+    double wavenumber(double place) const { return place > 0.0 ? of_.wavenumber(place) : k0_; }
+    // |S_v| of the front, of first order.
+    double slope_across(std::size_t v) const {
+        const double before = kv0_ + (v > 0 ? phase[v] - phase[v - 1] : 0.0) / march_.dv,
+                     after = kv0_ + (v + 1 < phase.size() ? phase[v + 1] - phase[v] : 0.0) / march_.dv;
+        return std::max({before, -after, 0.0});
+    }
+    // The earliest arrival, if need be along the line: |S_v| ≤ k.
+    void hold_to_first(const std::vector<double>& places) {
+        const std::size_t width = phase.size();
+        for (std::size_t v = 1; v < width; ++v)
+            phase[v] = std::min(phase[v], phase[v - 1] + (wavenumber(places[v]) - kv0_) * march_.dv);
+        for (std::size_t v = width - 1; v-- > 0;)
+            phase[v] = std::min(phase[v], phase[v + 1] + (wavenumber(places[v]) + kv0_) * march_.dv);
+    }
     // S_v from both sides; Godunov's for S_u = √(k² − S_v²).
     glm::dvec2 towards(const std::vector<double>& s, std::size_t v, double k) const {
         const auto last = static_cast<std::ptrdiff_t>(s.size()) - 1;
@@ -142,7 +168,7 @@ class Front {
     }
     void take_rates(const std::vector<double>& s, const std::vector<double>& places) {
         for (std::size_t v = 0; v < s.size(); ++v) {
-            const glm::dvec2 k = towards(s, v, of_.wavenumber(places[v]));
+            const glm::dvec2 k = towards(s, v, wavenumber(places[v]));
             rate_[v] = k.x - ku0_;
             turn_[v] = std::clamp(k.y / k.x, -1.0 / kSteepestRay, 1.0 / kSteepestRay);
         }
@@ -163,16 +189,41 @@ class Front {
             faces_[face] = turn * carried;
         }
         for (std::size_t v = 0; v < width; ++v) {
-            const double k = of_.wavenumber(places[v]);
-            const bool ends = !(places[v] > 0.0) || !(std::abs(towards(phase, v, k).y) < k);
+            constexpr double kRounding = 1e-6;
+            const bool ends =
+                !(places[v] > 0.0) || across_[v] > (1.0 + kRounding) * of_.wavenumber(places[v]);
             flux[v] = ends ? 0.0 : std::max(flux[v] - du / march_.dv * (faces_[v + 1] - faces_[v]), 0.0);
         }
     }
 
+    // ∂f/∂u = ∂/∂v(D ∂f/∂v), implicit: none goes ashore or out at the sides. D = 1/(2k) of waves along the march; of others it is over cos³ of
+    // their angle, since ways are longer and lines across are cut obliquely.
+    void spread_flux(double du, const std::vector<double>& places) {
+        const std::size_t width = flux.size();
+        const double scale = 0.5 * du / (march_.dv * march_.dv) * std::pow(k0_ / ku0_, 3.0);
+        const auto per_k = [&](std::size_t v) { return 1.0 / of_.wavenumber(places[v]); };
+        faces_.front() = faces_.back() = 0.0;
+        for (std::size_t face = 1; face < width; ++face) {
+            const bool is_water = places[face - 1] > 0.0 && places[face] > 0.0;
+            faces_[face] = is_water ? scale * 0.5 * (per_k(face - 1) + per_k(face)) : 0.0;
+        }
+        // Thomas' algorithm.
+        for (std::size_t v = 0; v < width; ++v) {
+            diagonal_[v] = 1.0 + faces_[v] + faces_[v + 1];
+            if (v == 0) continue;
+            const double part = faces_[v] / diagonal_[v - 1];
+            diagonal_[v] -= part * faces_[v];
+            flux[v] += part * flux[v - 1];
+        }
+        flux[width - 1] /= diagonal_[width - 1];
+        for (std::size_t v = width - 1; v-- > 0;)
+            flux[v] = (flux[v] + faces_[v + 1] * flux[v + 1]) / diagonal_[v];
+    }
+
     const March& march_;
     const OfDepth& of_;
-    double ku0_, kv0_;
-    std::vector<double> turn_, rate_, later_, faces_;
+    double ku0_, kv0_, k0_;
+    std::vector<double> turn_, rate_, later_, across_, diagonal_, faces_;
 };
 
 // Over these cells, ends included. A spline lies between the coefficients that it reads, its derivative between their differences.
@@ -232,6 +283,23 @@ CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count) {
     return depths;
 }
 
+bool coast_goes_along_y(const CoastDepths& of, glm::dvec2 direction) {
+    constexpr double kDeepest_m = 40.0, kClearly = 1.5, kLeastFall = 0.05, kLeastAlong = 0.35;
+    const auto felt_m = [&](int x, int y) { return std::clamp(of.depth_m[of.at(x, y)], 0.0, kDeepest_m); };
+    glm::dvec2 fall(0.0);
+    double deepest_m = 0.0;
+    for (int y = 0; y < of.count.y; ++y) fall.x += felt_m(of.count.x - 1, y) - felt_m(0, y);
+    for (int x = 0; x < of.count.x; ++x) fall.y += felt_m(x, of.count.y - 1) - felt_m(x, 0);
+    for (const double depth_m : of.depth_m) deepest_m = std::max(deepest_m, std::min(depth_m, kDeepest_m));
+    const glm::dvec2 size_m = glm::dvec2(of.count) * of.cell_m, ways = glm::abs(direction),
+                     slope = glm::abs(fall) / glm::dvec2(of.count.y, of.count.x) / size_m;
+    const bool nearest = ways.y > ways.x, steepest = slope.y > slope.x;
+    const double larger = std::max(slope.x, slope.y), smaller = std::min(slope.x, slope.y);
+    const double size_along_m = steepest ? size_m.y : size_m.x;
+    const bool is_clear = larger > kClearly * smaller && larger * size_along_m > kLeastFall * deepest_m;
+    return is_clear && (steepest ? ways.y : ways.x) >= kLeastAlong ? steepest : nearest;
+}
+
 CoastWave march_coast(const CoastDepths& depths, double depth_m, double omega, glm::dvec2 direction) {
     const March march(depths, direction);
     std::vector<double> places(depths.depth_m.size());
@@ -271,7 +339,7 @@ CoastWave march_coast(const CoastDepths& depths, double depth_m, double omega, g
 
 CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> m0,
                              std::span<const glm::dvec2> flux, glm::dvec2 towards, double peak_hz) {
-    constexpr double kGamma = 0.42, kMostTurn = 2.0;
+    constexpr double kGamma = 0.42, kMostTurn = 1.0 / kSteepestRay;
     const double scale = 3.0 * std::sqrt(kPi) / 16.0 * peak_hz / std::pow(kGamma, 4.0);
     const March march(depths, towards);
     CoastBreaking breaking;
@@ -350,7 +418,8 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
         coast.breaking_sideways_m.push_back(static_cast<T>(of_breaking * ratio / k));
         coast.breaking.push_back(trains.breaking[i]);
         coast.longest_m.push_back(
-            static_cast<T>(std::max(trains.wavelength_m[i], kTwoPi / Dispersion{}.wavenumber(omega))));
+            static_cast<T>(std::max(trains.wavelength_m[i], kTwoPi / Dispersion{}.wavenumber(omega)) /
+                           (1.0 - kMostFadeChange)));
         const double energy = 0.5 * trains.height_m[i] * trains.height_m[i];
         towards += energy * dispersion.domega_dk(k) * trains.wavelength_m[i] * way;
         if (energy > most) {
@@ -404,18 +473,46 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
         if (!broken.broken.empty()) coast.broken[cell] = static_cast<T>(broken.broken[cell]);
         coast.deviation_m[cell] = static_cast<T>(left * std::sqrt(m0[cell]));
     });
+    // Beyond the map, C¹. Its side over eight is some of its waves' lengths.
+    constexpr double kFade = 1.0 / 8.0, kSteepestFade = 1.5;
+    const glm::dvec2 size_m = glm::dvec2(coast.count) * coast.cell_m;
+    coast.fade_m = kFade * std::max(size_m.x, size_m.y);
+    coast.phase_fade_per_m.assign(coast.feeling + kVector, T(0));
+    tbb::parallel_for(std::size_t(0), coast.feeling, [&](std::size_t i) {
+        double most_phase = 0.0;
+        const auto look = [&](int x, int y) {
+            most_phase = std::max(
+                most_phase,
+                std::abs(kTwoPi * static_cast<double>(coast.phase[coast.cell(x, y) * coast.stride + i])));
+        };
+        for (int x = 0; x < coast.count.x; ++x)
+            for (const int y : {0, coast.count.y - 1}) look(x, y);
+        for (int y = 0; y < coast.count.y; ++y)
+            for (const int x : {0, coast.count.x - 1}) look(x, y);
+        const double k = Dispersion{}.wavenumber(static_cast<double>(coast.omega[i]));
+        coast.phase_fade_per_m[i] =
+            static_cast<T>(1.0 / std::max(coast.fade_m, kSteepestFade * most_phase / (kMostFadeChange * k)));
+    });
     // For bounds: over the nine cells that a place reads.
     coast.most_gain.assign(coast.feeling + 1, 0.0);
     coast.most_sideways.assign(coast.feeling + 1, 0.0);
     for (const T gain : coast.others)
-        coast.most_gain.back() = std::max(coast.most_gain.back(), static_cast<double>(gain));
+        coast.most_gain.back() = std::max({coast.most_gain.back(), static_cast<double>(gain), 1.0});
     tbb::parallel_for(std::size_t(0), coast.feeling, [&](std::size_t i) {
         for (int y = 0; y < coast.count.y; ++y)
             for (int x = 0; x < coast.count.x; ++x) {
                 const CoastRange at = range_of_cells(coast, i, {x, y}, {x, y});
                 coast.most_gain[i] = std::max(coast.most_gain[i], at.gain_hi);
-                coast.most_sideways[i] = std::max(coast.most_sideways[i], at.gain_hi * at.most_wavenumber());
+                // Beyond the edges, where gains may rise to 1 and wavenumbers change by so much more.
+                const bool is_edge = x == 0 || y == 0 || x == coast.count.x - 1 || y == coast.count.y - 1;
+                const double more =
+                    is_edge ? kMostFadeChange * Dispersion{}.wavenumber(static_cast<double>(coast.omega[i]))
+                            : 0.0;
+                coast.most_sideways[i] =
+                    std::max(coast.most_sideways[i],
+                             std::max(at.gain_hi, is_edge ? 1.0 : 0.0) * (at.most_wavenumber() + more));
             }
+        coast.most_gain[i] = std::max(coast.most_gain[i], 1.0);
     });
     return coast;
 }
@@ -432,6 +529,7 @@ double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, do
     // Linear between cells' middles: foam has no slope.
     const glm::dvec2 at = glm::clamp((place_m - coast.from_m) / coast.cell_m - 0.5, glm::dvec2(0.0),
                                      glm::dvec2(coast.count - 1));
+    const double left = coast_fade(glm::length(coast.beyond_m(place_m)) / coast.fade_m).left;
     const glm::ivec2 low(at), high = glm::min(low + 1, coast.count - 1);
     const glm::dvec2 t = at - glm::dvec2(low);
     const auto between = [&](const std::vector<T>& of) {
@@ -440,7 +538,7 @@ double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, do
                         glm::mix(value(low.x, high.y), value(high.x, high.y), t.x), t.y);
     };
     constexpr double kLeast = 1e-4, kSharpness = 4.0;
-    const double share = kRoller * between(coast.broken), deviation_m = between(coast.deviation_m);
+    const double share = left * kRoller * between(coast.broken), deviation_m = between(coast.deviation_m);
     if (!(share > kLeast && deviation_m > 0.0)) return 0.0;
     const double crest =
         0.5 * std::erfc(-kSharpness * (height_m / deviation_m + quick_deviate(share)) / std::sqrt(2.0));
@@ -461,6 +559,20 @@ CoastRange coast_range(const Coast<T>& coast, std::size_t train, glm::dvec2 min_
     const glm::dvec2 k0(coast.kx[train], coast.ky[train]);
     const std::size_t own = std::min(train, coast.feeling);
     CoastRange all{.is_anything = true, .gain_hi = coast.most_gain[own], .k_lo = k0, .k_hi = k0};
+    if (coast.beyond_m(min_m) != glm::dvec2(0.0) || coast.beyond_m(max_m) != glm::dvec2(0.0)) {
+        // Far outside it is a plain train. Between anything is possible, as far as this goes.
+        const double far_m =
+            1e-6 +
+            (train < coast.feeling ? 1.0 / static_cast<double>(coast.phase_fade_per_m[train]) : coast.fade_m);
+        const glm::dvec2 to_m = coast.from_m + glm::dvec2(coast.count) * coast.cell_m,
+                         apart_m = glm::max(glm::max(coast.from_m - max_m, min_m - to_m), glm::dvec2(0.0));
+        all.most_sideways =
+            train < coast.feeling ? coast.most_sideways[train] : all.gain_hi * glm::length(k0);
+        all.is_anything = train < coast.feeling;
+        if (glm::length(apart_m) > (1.0 + 1e-5) * far_m)
+            return {.gain_lo = 1.0, .gain_hi = 1.0, .k_lo = k0, .k_hi = k0, .most_sideways = glm::length(k0)};
+        return all;
+    }
     const glm::dvec2 low = (min_m - coast.from_m) / coast.cell_m,
                      high = (max_m - coast.from_m) / coast.cell_m,
                      within_low = glm::clamp(low, glm::dvec2(0.0), glm::dvec2(coast.count)),

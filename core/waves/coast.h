@@ -1,18 +1,25 @@
 // Waves that feel the floor of a coast (Waves::coast): each train's phase and amplitude over depths that vary slowly from place to place.
 //
 // Geometric optics (WKB): a train of frequency ω has the phase S(x) − ωt, |∇S| = k(ω, d), and its energy goes along ∇S at the group's
-// speed, ∇·(k̂ c_g E) = 0. S is marched along the axis of the map that the train comes nearest to, S_u = √(k² − S_v²) (Heun's steps, one-sided
-// differences of second order, and Godunov's choice between them, which takes the earliest of arrivals that cross); the flux c_g E cos α along
-// with it, conservatively. Trains enter at the map's edge as they are in sea.depth_m, by Snell's law.
+// speed, ∇·(k̂ c_g E) = 0. S is marched along one of the map's axes, S_u = √(k² − S_v²) (Heun's steps, one-sided differences of second
+// order, and Godunov's choice between them, which takes the earliest of arrivals that cross); the flux c_g E cos α along with it,
+// conservatively. The axis is the one along which the floor falls, for trains within 69° of it; where it falls along neither clearly, and
+// for all others, the axis that the train comes nearest to. Those come in over the map's side as at sea, and turn from there on.
+// Trains enter at the map's edge as they are in sea.depth_m, by Snell's law.
 //
-// Where rays cross, E is no more than kMostCoastEnergy of what came in. Nothing goes on where the water is shallower than kCoastShore_m: behind an
-// island it is calm but for rays that turn there, since there is no diffraction. Trains that turn back from the march (S_v ≥ k) end there.
+// Where rays cross, E is no more than kMostCoastEnergy of what came in. A train that turns more than 75° from the march goes on at 75°, and
+// ends where it turns back (S_v ≥ k). No energy goes on where the water is shallower than kCoastShore_m, but the phase does, as in sea.depth_m.
+// Behind land the phase is the earliest arrival from beside, |S_v| ≤ k, and the flux spreads across the march as wide as Fresnel diffraction
+// does on the mean, ∂f/∂u = ∂/∂v(1/(2k) ∂f/∂v): a lee fills over √(λx/2π). That is no pattern of diffraction, which has fringes.
+//
+// Outside the map gains go back to 1 over `fade_m`, and phases to the plain trains', slowly enough that wavenumbers change by a fifth at most.
 //
 // Breaking takes energy from all trains alike, by Thornton and Guza 1983: ε = (3√π/16) ρ g f_p H_rms⁷/(γ⁴ d⁵), γ = 0.42. Their law is of a
 // random sea: of one train alone, and of each for itself, the height is at most kMostCoastHeight of the depth.
 #pragma once
 
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>
@@ -38,6 +45,10 @@ struct CoastDepths {
 // Their means over a grid of so many cells.
 CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count);
 
+// Whether a train that goes this way is marched along y: of the floor's mean slope over the map, as deep as waves feel it, the larger part
+// says so, if it is larger by far and the train goes that way at all; else the train does.
+bool coast_goes_along_y(const CoastDepths& depths, glm::dvec2 direction);
+
 // What becomes of one train of unit energy without breaking, parallel to the depths.
 struct CoastWave {
     std::vector<double> phase;     // S − k₀·x from the map's corner [rad]
@@ -56,7 +67,7 @@ CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> 
                              std::span<const glm::dvec2> flux, glm::dvec2 towards, double peak_hz);
 
 // All of a sea's trains on its coast. Between cells' middles phases and amplitudes are quadratic B-splines, as pictures of masks are
-// (core/plan/masks.h): the surface is C¹. Beyond the map they go on as at its edge.
+// (core/plan/masks.h): the surface is C¹, beyond the map's edge too, where they fade.
 template <class T>
 struct Coast {
     glm::ivec2 count{0};
@@ -73,11 +84,19 @@ struct Coast {
     // angular frequency, how far it moves water to the side over height times wavenumber [m], for its displacement and for that of the waves that
     // break, and how much of these is resolved at best.
     std::vector<T> kx, ky, height_m, omega, sideways_m, breaking_sideways_m, breaking;
-    std::vector<T> longest_m;  // no deeper water makes it longer
+    std::vector<T>
+        longest_m;  // no deeper water makes it longer, nor the way back to plain trains beyond the map
+    // How far beyond the map gains and foam are 1 and none again [m]; of each train that feels the floor, one over how far its phase needs.
+    double fade_m = 1.0;
+    std::vector<T> phase_fade_per_m;
 
     // The largest gain of each train that feels the floor, and of the others; the largest of gain times wavenumber [rad/m] of the former.
     std::vector<double> most_gain, most_sideways;
 
+    // From the map's nearest place to this one.
+    glm::dvec2 beyond_m(glm::dvec2 place_m) const {
+        return place_m - glm::clamp(place_m, from_m, from_m + glm::dvec2(count) * cell_m);
+    }
     std::size_t cells() const {
         return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y);
     }
@@ -85,6 +104,15 @@ struct Coast {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);
     }
 };
+
+// What is left of a map's part at so many times the distance over which it fades: 1 … 0, with its derivative.
+struct CoastFade {
+    double left, rate;
+};
+inline CoastFade coast_fade(double t) {
+    if (t >= 1.0) return {0.0, 0.0};
+    return {1.0 - t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t)};
+}
 
 // Of make_trains()'s. The scene must have waves.coast, and its depths.
 template <class T>

@@ -18,6 +18,7 @@
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
+#include "core/waves/coast.h"
 #include "core/waves/hero_waves.h"
 #include "core/waves/whitecaps.h"
 
@@ -73,6 +74,65 @@ std::vector<std::string> map_warning(const PreparedScene& prepared) {
     return {
         "waves don't feel the depths of sea.depth_file: the floor is seen there, and waves are those of " +
         number_text(prepared.scene.sea.depth_m) + " m (sea.depth_m); waves.coast lets wave trains feel it"};
+}
+
+// Waves come over a map's edge as they are in sea.depth_m, and over cells that hold them.
+std::vector<std::string> coast_warning(const PreparedScene& prepared) {
+    constexpr double kMuch = 0.1, kSurf_m = 2.0;
+    const Scene& scene = prepared.scene;
+    const DirectionalSpectrum& spectrum = prepared.spectrum;
+    if (!scene.waves.coast || !scene.waves.coast_depths || !(spectrum.m0() > 0.0)) return {};
+    const DepthMap& map = *scene.waves.coast_depths;
+    std::vector<std::string> warnings;
+    // Where the peak goes.
+    const double peak = spectrum.longest_peak_wavenumber(), omega = spectrum.dispersion().omega(peak);
+    double most = -1.0;
+    glm::dvec2 towards(1.0, 0.0);
+    for (int i = 0; i < 72; ++i) {
+        const double angle = i * kTwoPi / 72.0, energy = spectrum.polar(peak, angle);
+        if (!(energy > most)) continue;
+        most = energy;
+        towards = {std::cos(angle), std::sin(angle)};
+    }
+    const glm::dvec2 from_m = map.from_m(), to_m = from_m + map.size_m();
+    // The mean of what is wet of the edge that they come over.
+    constexpr int kPlaces = 200;
+    const bool along_y = coast_goes_along_y(coast_depths(map, glm::ivec2(kPlaces)), towards);
+    const bool is_low = (along_y ? towards.y : towards.x) > 0.0;
+    double sum_m = 0.0;
+    int wet = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const glm::dvec2 on = glm::mix(from_m, to_m, (i + 0.5) / kPlaces), edge_m = is_low ? from_m : to_m;
+        const glm::dvec2 place_m = along_y ? glm::dvec2(on.x, edge_m.y) : glm::dvec2(edge_m.x, on.y);
+        const double depth_m = map.mean_m(place_m, place_m);
+        if (!(depth_m > kCoastShore_m)) continue;
+        sum_m += depth_m;
+        ++wet;
+    }
+    const std::string edge = along_y ? (is_low ? "southern" : "northern") : (is_low ? "western" : "eastern");
+    const std::string deep = number_text(scene.sea.depth_m);
+    if (wet == 0) {
+        warnings.push_back("no waves come in: the " + edge +
+                           " edge of sea.depth_file, where they would, is dry; a map that reaches out to " +
+                           deep + " m (sea.depth_m), or another direction");
+    } else {
+        const double edge_m = sum_m / wet, change = Dispersion{edge_m}.wavenumber(omega) / peak - 1.0;
+        if (std::abs(change) > kMuch)
+            warnings.push_back("the " + edge + " edge of sea.depth_file, where waves come in, is " +
+                               rough_text(edge_m) + " m deep on the mean, and they come from " + deep +
+                               " m: there their lengths jump by " + percent_text(std::abs(change)) +
+                               " %; sea.depth_m = " + rough_text(edge_m) + ", or a map that reaches out to " +
+                               deep + " m");
+    }
+    const double enough_m = 0.5 * kTwoPi / Dispersion{kSurf_m}.wavenumber(omega),
+                 cell_m = coast_cell_m(map.size_m());
+    if (cell_m > enough_m)
+        warnings.push_back("waves feel sea.depth_file in cells of " + rough_text(cell_m) +
+                           " m, more than half of their length where it is " + number_text(kSurf_m) +
+                           " m deep: surf is coarse; a map of at most " +
+                           rough_text(std::max(map.size_m().x, map.size_m().y) * enough_m / cell_m) +
+                           " m a side has cells small enough");
+    return warnings;
 }
 
 std::vector<std::string> folding_warning(const PreparedScene& prepared) {
@@ -305,8 +365,8 @@ namespace {
 // Of one sea, whatever sails on it.
 std::vector<std::string> still_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more : {&map_warning, &trough_warning, &unpressed_warning, &repeats_warning, &blending_warning,
-                       &hero_warning, &mask_warning})
+    for (auto* more : {&map_warning, &coast_warning, &trough_warning, &unpressed_warning, &repeats_warning,
+                       &blending_warning, &hero_warning, &mask_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene, prepared.extent.significant_height_m); !thin.empty())
         warnings.push_back(std::move(thin));

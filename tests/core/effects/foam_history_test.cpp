@@ -921,5 +921,49 @@ TEST(LivingFoam, IsNotPlannedUnlessAskedFor) {
     EXPECT_THROW(FoamHistory<float>{sea}, std::invalid_argument);
 }
 
+// What breaks on a beach's floor leaves half to all of that on the mean, however long foam lives. As many whitecaps would leave a carpet.
+TEST(FoamHistory, InSurfNoMoreIsLeftThanBreaks) {
+    constexpr int kTexels = 100;
+    constexpr double kSide_m = 400.0;
+    std::vector<float> depths;
+    for (int y = 0; y < kTexels; ++y)
+        for (int x = 0; x < kTexels; ++x)
+            depths.push_back(static_cast<float>((350.0 - (x + 0.5) * kSide_m / kTexels) / 30.0));
+    Scene scene;
+    scene.sea.wind_speed_mps = 5.0;
+    scene.sea.fetch_m = 4e3;
+    scene.sea.depth_m = 12.0;
+    scene.sea.depth_file = "bay.exr";
+    scene.sea.swell = {{.height_m = 1.3, .period_s = 9.0, .direction_deg = 0.0}};
+    scene.waves.model = WaveModel::Trochoid;
+    scene.waves.trains = 60;
+    scene.waves.coast = true;
+    scene.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(kTexels), std::move(depths),
+                                                                glm::dvec2(0.0), glm::dvec2(kSide_m));
+    std::vector<glm::vec2> rest;
+    for (const float x : {295.0f, 325.0f})
+        for (int y = 0; y < 20; ++y) rest.emplace_back(x, 150.0f + 5.0f * static_cast<float>(y));
+    for (const double decay_s : {1.5, 4.0}) {
+        scene.effects.foam_decay_s = decay_s;
+        Shown shown(sea_of(scene, 0.5));
+        double active[2] = {}, total[2] = {};
+        constexpr int kTimes = 18;
+        for (int n = 0; n < kTimes; ++n) {
+            const Foam foam = shown.at(100.0 + 2.0 * n, rest);
+            for (std::size_t i = 0; i < rest.size(); ++i) {
+                active[i / 20] += foam.active[i] / (20.0 * kTimes);
+                total[i / 20] += foam.total[i] / (20.0 * kTimes);
+            }
+        }
+        for (int place = 0; place < 2; ++place) {
+            const double breaks = active[place], whole = 1.0 - (1.0 - breaks) * (1.0 - breaks),
+                         third = 1.0 - (1.0 - breaks) * (1.0 - breaks / 3.0);
+            EXPECT_GT(breaks, 0.1) << place;
+            EXPECT_GT(total[place], third) << decay_s << ' ' << place;
+            EXPECT_LT(total[place], whole) << decay_s << ' ' << place;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace pelagic

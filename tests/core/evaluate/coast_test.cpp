@@ -86,7 +86,7 @@ TEST(Coast, ChangesNothingOverALevelFloor) {
 // Heights alone have exact slopes; of the displacement's gradient the turn of ∇S is left out.
 TEST(Coast, HasTheNormalsAndTheVelocityOfItsPositions) {
     constexpr double kStep = 1e-4;
-    const auto rest = random_points<double>(360.0, 800);
+    const auto rest = random_points<double>(560.0, 1600);  // also where the map's waves fade
     for (const double choppiness : {0.0, 1.0}) {
         Scene scene = coast(floor_of(beach));
         scene.waves.choppiness = choppiness;
@@ -127,7 +127,6 @@ TEST(Coast, IsDryAshoreAndLowOverShallowWater) {
     std::vector<glm::vec2> dry, low;
     for (int i = -15; i <= 15; ++i) {
         dry.emplace_back(178.0f, 10.0f * static_cast<float>(i));
-        dry.emplace_back(5e4f, 10.0f * static_cast<float>(i));
         low.emplace_back(130.0f, 10.0f * static_cast<float>(i));
     }
     const auto ashore = sample(frame, 0, dry);
@@ -266,6 +265,63 @@ TEST(Coast, IsTheSameOnOneThreadAndTwoAndFinite) {
         }
 }
 
+// A phase that is torn behind an island folds the surface along two lines to the horizon, which foam.
+TEST(Coast, FoldsNowhereInALee) {
+    constexpr double kRadius_m = 50.0;
+    const auto island = [](glm::dvec2 at) { return std::min(12.0, 0.2 * (glm::length(at) - kRadius_m)); };
+    const auto cliffs = [](glm::dvec2 at) { return glm::length(at) > kRadius_m ? 12.0 : -5.0; };
+    for (const auto& depths : {floor_of(island), floor_of(cliffs)}) {
+        Scene scene = coast(depths);
+        scene.sea.wind_speed_mps = 5.0;
+        scene.sea.fetch_m = 4e3;
+        scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 0.0}};
+        auto frame = frame_of<double>(scene, {unfiltered(products(Product::JacobianMoments))}, kTime_s);
+        std::vector<glm::dvec2> rest;
+        for (int x = 0; x < 70; ++x)
+            for (int y = -48; y <= 48; ++y) rest.emplace_back(70.0 + 5.0 * x, 1.7 * y);
+        for (const double t_s : {1.0, 4.0, 8.5}) {
+            frame.set(t_s);
+            const auto at = sample(frame, 0, rest).vectors(Product::JacobianMoments);
+            for (std::size_t i = 0; i < rest.size(); ++i)
+                EXPECT_GT(at[i].x, 0.0) << rest[i].x << ' ' << rest[i].y;
+        }
+    }
+}
+
+// The floor that is seen out there is that of sea.depth_m.
+TEST(Coast, BeyondTheMapWavesAreThoseOfTheDeep) {
+    const Scene scene = coast(floor_of(beach));
+    const std::vector<Query> queries{
+        unfiltered(products(Position, Normal, Velocity, Product::JacobianMoments, Product::Breaking))};
+    const auto with = frame_of<double>(scene, queries, kTime_s),
+               plain = frame_of<double>(without_coast(scene), queries, kTime_s);
+    std::vector<glm::dvec2> rest;
+    for (int i = 0; i < 40; ++i) rest.emplace_back(2e4 + 7.0 * i, -60.0 * i);
+    const auto far = sample(with, 0, rest), there = sample(plain, 0, rest);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        for (const Product product : {Position, Normal, Velocity, Product::JacobianMoments}) {
+            const VectorProduct of = VectorProduct::checked(product);
+            EXPECT_NEAR(glm::length(far.vectors(of)[i] - there.vectors(of)[i]), 0.0, 1e-6) << i;
+        }
+    // Where it begins and ends to fade neither heights nor normals jump, ashore as in the lee.
+    const double fade_m = with.sea().coast()->fade_m;
+    ASSERT_NEAR(fade_m, kSide_m / 8.0, 1e-9);
+    for (const glm::dvec2 edge : {glm::dvec2(200.0, 31.0), glm::dvec2(-20.0, 200.0)})
+        for (const double beyond_m : {0.0, fade_m}) {
+            const glm::dvec2 out = edge.x > 100.0 ? glm::dvec2(1.0, 0.0) : glm::dvec2(0.0, 1.0);
+            constexpr double kStep_m = 1e-4;
+            std::vector<glm::dvec2> line;
+            for (int i = -500; i <= 500; ++i) line.push_back(edge + (beyond_m + kStep_m * i) * out);
+            const auto at = sample(with, 0, line);
+            const auto places = at.vectors(Position), normals = at.vectors(Normal);
+            for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+                EXPECT_LT(std::abs(places[i].z - places[i - 1].z), kStep_m) << line[i].x << ' ' << line[i].y;
+                EXPECT_LT(glm::length(normals[i + 1] - 2.0 * normals[i] + normals[i - 1]), 3e-4)
+                    << line[i].x << ' ' << line[i].y;
+            }
+        }
+}
+
 TEST(Coast, BoundsHoldWhatItReaches) {
     const Scene scene = coast(floor_of(beach));
     const auto frame = frame_of<float>(scene, {filtered(products(Displacement), 0.5)}, 4.5);
@@ -275,7 +331,7 @@ TEST(Coast, BoundsHoldWhatItReaches) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (int region = 0; region < 60; ++region) {
         const double side_m = std::exp(std::log(0.2) + unit(random) * std::log(500.0));
-        const glm::dvec2 corner_m(-260.0 + 480.0 * unit(random), -260.0 + 480.0 * unit(random));
+        const glm::dvec2 corner_m(-280.0 + 520.0 * unit(random), -280.0 + 520.0 * unit(random));
         const RestRegion where{corner_m, corner_m + side_m};
         std::vector<glm::vec2> rest;
         for (int i = 0; i < 200; ++i) rest.emplace_back(side_m * glm::dvec2(unit(random), unit(random)));

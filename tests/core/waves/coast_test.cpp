@@ -38,34 +38,35 @@ TEST(CoastTest, APlaneBeachIsSnells) {
     const CoastDepths depths = depths_of({256, 64}, 4.0, [](glm::dvec2 at) { return beach_m(at.x); });
     const Dispersion far{40.0};
     const double k0 = far.wavenumber(kOmega);
-    for (const double degrees : {0.0, 20.0, -40.0}) {
+    for (const double degrees : {0.0, 20.0, -40.0, 50.0, -65.0}) {
         const glm::dvec2 direction = towards(degrees);
         const CoastWave wave = march_coast(depths, far.depth_m, kOmega, direction);
         const double flux0 = far.domega_dk(k0) * direction.x;
         int compared = 0;
-        for (int x = 1; x < 255; ++x) {
-            const std::size_t cell = depths.at(x, 32);
-            const double depth_m = depths.depth_m[cell];
-            if (depth_m < 0.5) continue;
-            const Dispersion here{depth_m};
-            const double k = here.wavenumber(kOmega), sine = k0 * direction.y / k,
-                         cosine = std::sqrt(1.0 - sine * sine);
-            const double expected = std::sqrt(flux0 / (here.domega_dk(k) * cosine));
-            if (!(expected * expected < kMostCoastEnergy)) continue;  // from 0.9 m on
-            EXPECT_NEAR(std::sqrt(wave.energy[cell]) / expected, 1.0, 0.02) << degrees << ' ' << depth_m;
-            EXPECT_NEAR(wave.flux[cell].x / flux0, 1.0, 0.02) << degrees << ' ' << depth_m;
-            const auto slope = [&](std::size_t before, std::size_t after) {
-                return (wave.phase[after] - wave.phase[before]) / (2.0 * 4.0);
-            };
-            const glm::dvec2 gradient =
-                k0 * direction + glm::dvec2(slope(depths.at(x - 1, 32), depths.at(x + 1, 32)),
-                                            slope(depths.at(x, 31), depths.at(x, 33)));
-            const double angle = std::atan2(gradient.y, gradient.x) * 180.0 / kPi;
-            EXPECT_NEAR(angle, std::asin(sine) * 180.0 / kPi, 1.0) << degrees << ' ' << depth_m;
-            EXPECT_NEAR(glm::length(gradient) / k, 1.0, 0.02) << degrees << ' ' << depth_m;
-            ++compared;
-        }
-        EXPECT_GT(compared, 200);
+        for (int x = 1; x < 255; ++x)
+            for (const int y : {6, 32, 57}) {
+                const std::size_t cell = depths.at(x, y);
+                const double depth_m = depths.depth_m[cell];
+                if (depth_m < 0.5) continue;
+                const Dispersion here{depth_m};
+                const double k = here.wavenumber(kOmega), sine = k0 * direction.y / k,
+                             cosine = std::sqrt(1.0 - sine * sine);
+                const double expected = std::sqrt(flux0 / (here.domega_dk(k) * cosine));
+                if (!(expected * expected < kMostCoastEnergy)) continue;  // from 0.9 m on
+                EXPECT_NEAR(std::sqrt(wave.energy[cell]) / expected, 1.0, 0.02) << degrees << ' ' << depth_m;
+                EXPECT_NEAR(wave.flux[cell].x / flux0, 1.0, 0.02) << degrees << ' ' << depth_m;
+                const auto slope = [&](std::size_t before, std::size_t after) {
+                    return (wave.phase[after] - wave.phase[before]) / (2.0 * 4.0);
+                };
+                const glm::dvec2 gradient =
+                    k0 * direction + glm::dvec2(slope(depths.at(x - 1, y), depths.at(x + 1, y)),
+                                                slope(depths.at(x, y - 1), depths.at(x, y + 1)));
+                const double angle = std::atan2(gradient.y, gradient.x) * 180.0 / kPi;
+                EXPECT_NEAR(angle, std::asin(sine) * 180.0 / kPi, 1.0) << degrees << ' ' << depth_m;
+                EXPECT_NEAR(glm::length(gradient) / k, 1.0, 0.02) << degrees << ' ' << depth_m;
+                ++compared;
+            }
+        EXPECT_GT(compared, 600);
     }
 }
 
@@ -160,6 +161,67 @@ TEST(CoastTest, BehindAnIslandItIsCalm) {
     EXPECT_LT(wave.energy[depths.at(56, 64)], 0.1);          // in its lee, 20 m behind
     EXPECT_NEAR(wave.energy[depths.at(100, 5)], 1.0, 0.05);  // far beside it
     EXPECT_NEAR(wave.energy[depths.at(10, 64)], 1.0, 0.05);  // before it
+}
+
+double island_m(glm::dvec2 at) {
+    return std::min(12.0, 0.2 * (glm::distance(at, glm::dvec2(200.0)) - 50.0));
+}
+double cliffs_m(glm::dvec2 at) {
+    return glm::distance(at, glm::dvec2(200.0)) > 50.0 ? 12.0 : -5.0;
+}
+
+// Without a limit to |S_v|, the phase behind the island lags by the shore's wavelengths: up to 70 k at its edges.
+TEST(CoastTest, BehindAnIslandTheWavesAreAsLongAsElsewhere) {
+    for (const auto& floor : {island_m, cliffs_m})
+        for (const double degrees : {0.0, 25.0}) {
+            const CoastDepths depths = depths_of({200, 200}, 2.0, floor);
+            const CoastWave wave = march_coast(depths, 12.0, kTwoPi / 9.0, towards(degrees));
+            const glm::dvec2 k0 = Dispersion{12.0}.wavenumber(kTwoPi / 9.0) * towards(degrees);
+            int compared = 0;
+            for (int y = 1; y < 199; ++y)
+                for (int x = 1; x < 199; ++x) {
+                    const std::size_t cell = depths.at(x, y);
+                    if (!(wave.energy[cell] > 0.01)) continue;
+                    const auto rate = [&](std::size_t before, std::size_t after) {
+                        return (wave.phase[after] - wave.phase[before]) / 4.0;
+                    };
+                    const glm::dvec2 gradient =
+                        k0 + glm::dvec2(rate(depths.at(x - 1, y), depths.at(x + 1, y)),
+                                        rate(depths.at(x, y - 1), depths.at(x, y + 1)));
+                    // Of the shallowest of the cells that these differences are over.
+                    double depth_m = depths.depth_m[cell];
+                    for (const std::size_t next :
+                         {depths.at(x - 1, y), depths.at(x + 1, y), depths.at(x, y - 1), depths.at(x, y + 1)})
+                        if (depths.depth_m[next] > kCoastShore_m)
+                            depth_m = std::min(depth_m, depths.depth_m[next]);
+                    const double k = Dispersion{depth_m}.wavenumber(kTwoPi / 9.0);
+                    EXPECT_LE(glm::length(gradient), 1.3 * k) << degrees << ' ' << x << ' ' << y;
+                    ++compared;
+                }
+            EXPECT_GT(compared, 30000);
+        }
+}
+
+// As wide as half of Fresnel's integral is on the mean, and none is lost or made.
+TEST(CoastTest, ALeeFillsWithDistance) {
+    const CoastDepths depths = depths_of({400, 200}, 2.0, cliffs_m);
+    const CoastWave wave = march_coast(depths, 12.0, kTwoPi / 9.0, {1.0, 0.0});
+    const auto sum = [&](int x) {
+        double flux = 0.0;
+        for (int y = 0; y < 200; ++y) flux += wave.flux[depths.at(x, y)].x;
+        return flux;
+    };
+    EXPECT_LT(sum(130), 0.9 * sum(10));
+    for (const int x : {150, 250, 399}) EXPECT_NEAR(sum(x) / sum(130), 1.0, 0.005) << x;
+    double before = 0.0;
+    for (const int x : {130, 170, 250, 399}) {
+        const double energy = wave.energy[depths.at(x, 100)];
+        EXPECT_GT(energy, before) << x;
+        before = energy;
+    }
+    EXPECT_LT(wave.energy[depths.at(130, 100)], 0.15);
+    // Half as much straight behind its flank, whatever the distance.
+    for (const int x : {170, 250}) EXPECT_NEAR(wave.energy[depths.at(x, 124)], 0.5, 0.15) << x;
 }
 
 TEST(CoastTest, AShoalGathersNoMoreThanItsLimit) {

@@ -78,6 +78,7 @@ Json settings(const Scene& scene) {
         if (cascade["choppiness"].is_null()) cascade.erase("choppiness");
     for (Json& mask : json["waves.masks"])  // likewise
         if (mask["picture"].is_null()) mask.erase("picture");
+    if (!scene.waves.coast) json.erase(std::string(kCoastKey));
     return json;
 }
 

@@ -93,6 +93,25 @@ inline BaseShot trains_shot() {
     return base;
 }
 
+// Trains on a beach; a small map, of which each edit's sea is marched anew.
+inline BaseShot coast_shot() {
+    BaseShot base{.name = "trains on a beach", .scene = small_shot()};
+    base.scene.waves.model = WaveModel::Trochoid;
+    base.scene.waves.trains = 12;
+    base.scene.waves.cascades.clear();
+    base.scene.waves.coast = true;
+    base.scene.sea.depth_m = 8.0;
+    base.scene.sea.depth_file = "beach.exr";
+    std::vector<float> depths_m;
+    for (int i = 0; i < 16; ++i)
+        depths_m.push_back(8.0f - 0.7f * static_cast<float>(i % 4) - 0.1f * static_cast<float>(i));
+    base.scene.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(4), std::move(depths_m),
+                                                                     glm::dvec2(-10.0), glm::dvec2(20.0));
+    base.scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
+    base.tables = {"waves"};
+    return base;
+}
+
 // The nearer the sea, the finer the grid's cells.
 inline void descend(Scene& scene) {
     scene.shot.first_frame = 2;

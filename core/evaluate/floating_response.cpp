@@ -5,10 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <limits>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -22,6 +19,7 @@ namespace {
 constexpr double kMetacentricShare = 0.1, kHighestGravityShare = 0.5, kTrimGyration = 0.25,
                  kHeelGyration = 0.35, kDeepGyration = 0.6;
 constexpr double kHeaveDamping = 0.2, kTrimDamping = 0.2;
+
 double sinc(double q) {
     return std::abs(q) < 1e-4 ? 1.0 - q * q / 6.0 : std::sin(q) / q;
 }
@@ -129,7 +127,7 @@ std::vector<TileCopy> copies_at(const Plan& plan, int c, glm::dvec2 place_m) {
                 cell[static_cast<std::size_t>(axis)] =
                     of.cell + (is_next ? (of.from_middle < 0.0 ? -1 : 1) : 0);
             }
-            if (weight < 1e-12) continue;
+            if (weight < 1e-12) continue;  // tiles that are told of where none blends
             const TileOffset<double> offset =
                 tile_offset<double>(key, static_cast<uint>(cell[0]), static_cast<uint>(cell[1]));
             copies.push_back({tiles + glm::dvec2(offset.x, offset.y), weight});

@@ -82,7 +82,7 @@ PlacedObject place_object(const Frame<T>& state, const Scene& scene, const Scene
                                 {.middle_m = origin_m + box.middle_m.x * ahead + box.middle_m.y * port,
                                  .ahead = along,
                                  .velocity_mps = velocity_mps(scene, object, at.frame),
-                                 .cell_m = floating_cell_m(object),
+                                 .cell_m = floating_cell_m(box),
                                  .late_s = at.late_s});
             const glm::dvec2 leans = motion.slope.x * along + motion.slope.y * across,
                              slope(glm::dot(leans, ahead), glm::dot(leans, port));

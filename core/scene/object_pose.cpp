@@ -190,13 +190,14 @@ bool answers_by_mass(const SceneObject& object) {
     return object.floats && object.buoyancy == Buoyancy::Response && floating_box(object).draught_m > 0.0;
 }
 
+double floating_cell_m(const FloatingBox& box) {
+    const double longer = std::max(box.length_m, box.beam_m), shorter = std::min(box.length_m, box.beam_m);
+    return std::max(shorter / 6.0, longer / 60.0);
+}
+
 double floating_cell_m(const SceneObject& object) {
-    if (answers_by_mass(object)) {
-        const FloatingBox box = floating_box(object);
-        const double longer = std::max(box.length_m, box.beam_m),
-                     shorter = std::min(box.length_m, box.beam_m);
-        return std::max(shorter / 6.0, longer / 60.0);
-    }
+    if (object.floats && object.buoyancy == Buoyancy::Response)
+        if (const FloatingBox box = floating_box(object); box.draught_m > 0.0) return floating_cell_m(box);
     const glm::dvec2 size(object.mesh->most_m() - object.mesh->least_m());
     return object.scale * std::max(size.x, size.y) / 3.0;
 }

@@ -34,5 +34,6 @@ bool answers_by_mass(const SceneObject& object);
 // The footprint of the waves that move what floats [m]: a third of its length, or, of one that answers by its mass, a sixth of its beam, and
 // of its length a sixtieth at least. The object has a mesh.
 double floating_cell_m(const SceneObject& object);
+double floating_cell_m(const FloatingBox& box);  // of one that answers by its mass
 
 }  // namespace pelagic

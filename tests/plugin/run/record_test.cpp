@@ -29,24 +29,32 @@ struct IsJsonOf {
     }
 };
 
-TEST(Record, HasEveryKeyAsAValue) {
-    Scene scene;
-    scene.surface.size_m = 40.0;
-    scene.surface.resolution = 16;
-    scene.sea.swell = {{1.0, 9.0, 10.0}, {0.5, 7.0, 90.0}};
-    set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {9, 5.0}}});
+// Settings that a shot is recorded with.
+nlohmann::json recorded_settings(const Scene& scene) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("pelagic-record-" + std::to_string(getpid()) + ".json");
     Record record;
     record.describe(plan_bake(scene), SpectralMoments{}, 0.0, 0.0);
     record.begin(file);
     std::ifstream stream(file);
-    const auto settings = nlohmann::json::parse(stream).at("settings");
+    nlohmann::json shot = nlohmann::json::parse(stream);
     std::filesystem::remove(file);
+    return shot.at("settings");
+}
+
+TEST(Record, HasEveryKeyAsAValue) {
+    Scene scene;
+    scene.surface.size_m = 40.0;
+    scene.surface.resolution = 16;
+    scene.sea.swell = {{1.0, 9.0, 10.0}, {0.5, 7.0, 90.0}};
+    set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {9, 5.0}}});
+    const nlohmann::json settings = recorded_settings(scene);
     std::size_t found = 0;
     EXPECT_FALSE(settings.contains(std::string(kObjectsKey))) << "in fingerprints alone";
+    EXPECT_FALSE(settings.contains(std::string(kCoastKey)))
+        << "a record without a coast is one of before coasts";
     for (const Key& key : keys()) {
-        if (key.path == kObjectsKey) continue;
+        if (key.path == kObjectsKey || key.path == kCoastKey) continue;
         ASSERT_TRUE(settings.contains(key.path)) << key.path;
         ++found;
         EXPECT_TRUE(std::visit(IsJsonOf{settings.at(key.path)}, value_of(scene, key)))
@@ -61,6 +69,19 @@ TEST(Record, HasEveryKeyAsAValue) {
     EXPECT_TRUE(settings.at("sea.depth_m").is_null()) << "infinite";
     EXPECT_TRUE(settings.at("waves.longest_m").is_null()) << "not given";
     EXPECT_EQ(settings.at("camera.look_at_m"), (nlohmann::json{0.0, 0.0, 0.0}));
+}
+
+TEST(Record, SaysThatWavesFeelACoast) {
+    Scene scene;
+    scene.surface.resolution = 16;
+    scene.sea.depth_m = 5.0;
+    scene.sea.depth_file = "beach.exr";
+    scene.waves.model = WaveModel::Trochoid;
+    scene.waves.cascades.clear();
+    scene.waves.coast = true;
+    scene.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2), std::vector<float>(4, 5.0f),
+                                                                glm::dvec2(-50.0), glm::dvec2(100.0));
+    EXPECT_EQ(recorded_settings(scene).at("waves.coast"), true);
 }
 
 TEST(Record, SaysOfACascadesChoppinessWhatTheShotSays) {

@@ -99,7 +99,7 @@ std::uint32_t add_deep_pixel(std::span<const DeepSight> sights, const std::funct
     float farthest_m = 0.0f;
     for (const DeepSight& sight : sights) farthest_m = std::max(farthest_m, sight.z_m);
     for (std::size_t i = 0; i < kVeilCuts && has_veil; ++i)
-        if (const float cut_m = std::ldexp(kFirstCut_m, static_cast<int>(i)); cut_m < farthest_m)
+        if (const float cut_m = std::ldexp(kFirstCut_m, 2 * static_cast<int>(i)); cut_m < farthest_m)
             cuts_m.push_back(cut_m);
     std::sort(cuts_m.begin(), cuts_m.end());
     cuts_m.erase(std::unique(cuts_m.begin(), cuts_m.end()), cuts_m.end());
@@ -133,9 +133,8 @@ std::uint32_t add_deep_pixel(std::span<const DeepSight> sights, const std::funct
     const std::size_t before = to.size();
     double left = 1.0;
     Part carried;
-    const auto put = [&](const Part& part, float z_m, float z_back_m, float id) {
-        carried.add(part.alpha, part.light);
-        if (!(carried.alpha > kLeastAlpha)) return;
+    const auto put = [&](double least, float z_m, float z_back_m, float id) {
+        if (!(carried.alpha > least)) return;
         const double rest = std::max(left, kLeastAlpha);
         double alpha = std::min(carried.alpha / rest, 1.0);
         if (alpha > 1.0 - kLeastAlpha) alpha = 1.0;
@@ -144,16 +143,21 @@ std::uint32_t add_deep_pixel(std::span<const DeepSight> sights, const std::funct
         carried = {};
     };
     std::size_t next = 0;
+    float veil_from_m = 0.0f;
     for (std::size_t part = 0; part < veil.size(); ++part) {
         const bool is_last = part == cuts_m.size();
         const float begin_m = part > 0  ? cuts_m[part - 1]
                               : is_last ? kVeilBegins_m
                                         : std::min(kVeilBegins_m, 0.5f * cuts_m[part]);
         const float end_m = is_last ? 2.0f * std::max(begin_m, 1.0f) : cuts_m[part];
-        if (veil[part].alpha > 0.0) put(veil[part], begin_m, end_m, 0.0f);
+        if (carried.alpha <= kLeastAlpha) veil_from_m = begin_m;
+        carried.add(veil[part].alpha, veil[part].light);
+        // Behind the last part nothing comes that it could join.
+        put(is_last ? kLeastAlpha : static_cast<double>(kLeastVeil), veil_from_m, end_m, 0.0f);
         if (!is_last && next < surfaces.size() && surfaces[next].first_m == cuts_m[part]) {
             const Surfaces& one = surfaces[next++];
-            put(one, one.first_m, one.first_m, one.id);
+            carried.add(one.alpha, one.light);
+            put(kLeastAlpha, one.first_m, one.first_m, one.id);
         }
     }
     return static_cast<std::uint32_t>(to.size() - before);

@@ -41,8 +41,9 @@ struct DeepSight {
 // or as many as it has kinds.
 inline constexpr float kDeepNear = 0.01f;
 inline constexpr std::size_t kMostDeepSurfaces = 8;
-// The veil is cut where surfaces are, and at each power of 2 from 2 m to 8192 m.
-inline constexpr std::size_t kVeilCuts = 13;
+// The veil is cut where surfaces are, and at 2 m, 8 m, 32 m … 8192 m. A part that hides less than this joins what comes next.
+inline constexpr std::size_t kVeilCuts = 7;
+inline constexpr float kLeastVeil = 5e-4f;
 
 // Adds a pixel's samples, in rising distance and none across another. hides: which part of what lies at a distance along the view's axis
 // the veil hides, at the pixel's middle: it says where the veils of all places are thick, not how much they hide.

@@ -213,7 +213,7 @@ const char* const kAlpha =
 const char* const kDeep =
     "NAME.deep.####.exr as well, for compositing in depth: of each pixel the sea, the objects and the spray\n"
     "by their distance, with identifiers as the layer cryptomatte has them. Needs --alpha; not with --shutter.\n"
-    "About half of the EXR's bytes, and hardly any time; of spray up to 6 times the bytes, and 2.5 times as long";
+    "About half of the EXR's bytes, and hardly any time; of spray up to 4 times the bytes, and twice as long";
 const char* const kLayers =
     "The layers of the EXR beside R, G, B, separated by commas; or all, or none. See below.\n"
     "Default: sun,sky,sea,foam,air,object,reflection";

@@ -196,7 +196,7 @@ TEST(Deep, LaidOverEachOtherIsThePicture) {
             double ranked = 0.0;
             for (std::size_t rank = 0; rank < kMatteRanks; ++rank)
                 if (ranks[2 * rank] == id) ranked += static_cast<double>(ranks[2 * rank + 1]);
-            ASSERT_LE(share, ranked + 1e-5);
+            ASSERT_LE(share, ranked + kLeastVeil);  // of a veil that is too thin to be told
             ASSERT_NE(id, matte_id("held out"));
         }
         mixed += flat.shares.contains(kSeaMatte) && flat.shares.size() > 2;
@@ -306,8 +306,9 @@ TEST(Deep, APixelHasNoMoreSamplesThanItMay) {
     const Flat flat = flattened(samples);
     EXPECT_NEAR(flat.alpha, 0.95, 1e-5);
     EXPECT_NEAR(flat.light.x, 256.0 * 255.0 / 2.0 + 256.0, 0.1);
-    EXPECT_NEAR(flat.shares.at(1.0f), 0.45, 1e-5);
-    EXPECT_NEAR(flat.shares.at(0.0f), 0.05, 1e-5);
+    // Surfaces take along what of the veil before them is too thin to be told.
+    EXPECT_NEAR(flat.shares.at(1.0f), 0.45, kLeastVeil);
+    EXPECT_NEAR(flat.shares.at(0.0f), 0.05, kLeastVeil);
     // By the profile some of the veil lies before 64 m, and more behind.
     double nearer = 0.0, left = 1.0;
     for (const DeepSample& sample : samples) {

@@ -58,6 +58,18 @@ vec3 along_sight(vec3 decay, vec3 further_down, vec3 own, WaterSight sight) {
     return sight.length_m * exp(-min(first, last)) * (1.0f - exp(-change)) / change;
 }
 
+// What a metre of water takes from the light of a shape in it: all but what is scattered nearly straight on.
+vec3 fog_of_water(vec3 absorption, vec3 scattering, vec3 own) {
+    return absorption + 2.0f * own + kScatteredAside * max(scattering - 2.0f * own, vec3(0.0f));
+}
+
+// The part of a shape's light that comes so far through the water.
+vec3 let_through_water(float distance_m, WaterLook look) {
+    vec3 shorter = exp(-distance_m * fog_of_water(look.absorption.shorter, look.scattering.shorter, kOwnShorter));
+    vec3 longer = exp(-distance_m * fog_of_water(look.absorption.longer, look.scattering.longer, kOwnLonger));
+    return clamp(colour_of(WaterBands(shorter, longer)), vec3(0.0f), vec3(1.0f));
+}
+
 // At three wavelengths. Straight down from just below the surface the eye sees what water_back() has of a column; out_of_deep() is a mean over
 // azimuths, at views of less than 17° down as if these were 17°. Between an eye and the surface, of which it sees the shape, light is lost
 // by scattering as well. Constants by a Monte Carlo of deep water below a level surface (tests/bench/README.md, the water): 10 … 30 % of the
@@ -67,7 +79,7 @@ WaterSeen seen_in_water(vec3 absorption, vec3 scattering, vec3 backscatter, vec3
     vec3 u = backscatter / both;
     vec3 part = min(own / backscatter, vec3(1.0f));
     vec3 aside = kScatteredAside * max(scattering - 2.0f * own, vec3(0.0f));
-    vec3 fog = absorption + 2.0f * own + aside;
+    vec3 fog = fog_of_water(absorption, scattering, own);
     vec3 spread = 0.954f * both;
     vec3 way = sight.to_surface ? fog : spread;
     float down = clamp(sight.down, 0.3f, 1.0f);

@@ -409,10 +409,8 @@ void shade_meniscus(const LightingChoice& choice, const Sky& sky, const WaterBod
 glm::vec3 water_lets_through(const WaterBody& water, float distance_m) {
     const SkyMap none;
     sea_shading::FromBelow shading(none);
-    return shading
-        .water_between(glm::vec3(0.0f), {1.0f, 0.0f, 0.0f}, 0.0f, std::max(distance_m, 0.0f), 0.0f,
-                       sea_shading::light_of<sea_shading::FromBelow>({}, water, {}))
-        .left;
+    return shading.let_through_water(std::max(distance_m, 0.0f),
+                                     sea_shading::light_of<sea_shading::FromBelow>({}, water, {}).water);
 }
 
 SeaAlbedo sea_albedo(const WaterBody& water) {

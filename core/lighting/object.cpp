@@ -93,6 +93,11 @@ glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3
     return shading::object_of_surroundings(cosine, glsl(look), irradiance, mirrored);
 }
 
+glm::vec3 object_in_water(const ObjectLook& look, glm::vec3 normal, glm::vec3 to_sun, glm::vec3 sun,
+                          glm::vec3 sky) {
+    return shading::object_in_water(normal, to_sun, sun, sky, glsl(look));
+}
+
 glm::vec3 mirrored_facet(glm::vec3 to_eye, float roughness, glm::vec2 disc) {
     const float alpha = shading::varnish_alpha(roughness);
     // Where facets are stretched to a hemisphere it is seen as a disc, half of which the horizon cuts.

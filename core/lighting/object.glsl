@@ -92,6 +92,14 @@ vec3 object_of_surroundings(float cosine, ObjectLook look, vec3 irradiance, vec3
     return look.colour * ((1.0f - reflected) / kPi) * irradiance + reflected * mirrored;
 }
 
+// In the water, where there is no varnish to see: radiance to any eye there. to_sun: as the water shows it. sun, sky: what enters of the sun's
+// irradiance on the level sea and what falls on it of the sky's, each times what water leaves of it down to there. Of the sky's 0.93 enters;
+// what comes of it from the side and from below is by eye.
+vec3 object_in_water(vec3 normal, vec3 to_sun, vec3 sun, vec3 sky, ObjectLook look) {
+    vec3 light = ((0.6f + 0.4f * normal.z) * 0.93f) * sky + (max(dot(normal, to_sun), 0.0f) / to_sun.z) * sun;
+    return look.colour * light / kPi + look.glow;
+}
+
 // The mean radiance in the lobe round a mirrored ray: `sky` where that, or its mirror image on the sea, meets the sky.
 vec3 object_mirrors(vec3 ray, float roughness, vec3 sky, ObjectSurroundings light) {
     vec3 sea = fresnel_exact(abs(ray.z), kWaterIndex) * sky + light.water;

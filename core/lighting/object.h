@@ -33,6 +33,11 @@ glm::vec3 object_of_sun(const ObjectLook& look, const Sky& sky, glm::vec3 to_eye
 glm::vec3 object_of_surroundings(const ObjectLook& look, float cosine, glm::vec3 irradiance,
                                  glm::vec3 mirrored);
 
+// Radiance of a place in the water to an eye there, by the direction (unit) to the sun as the water shows it, what enters of the sun's
+// irradiance on the level sea and what falls on it of the sky's, each times what water leaves of it down to there.
+glm::vec3 object_in_water(const ObjectLook& look, glm::vec3 normal, glm::vec3 to_sun, glm::vec3 sun,
+                          glm::vec3 sky);
+
 // A facet of rough varnish, by the distribution of those that an eye sees (Heitz 2018): unit, as to_eye in axes whose z is the normal.
 // disc: even in the unit disc.
 glm::vec3 mirrored_facet(glm::vec3 to_eye, float roughness, glm::vec2 disc);

@@ -518,22 +518,19 @@ glm::vec3 LitObjects::left_at_depth(float way_m) const {
 
 // The sun's ray is refracted by level water; the sky's light comes from a cone, the mean way through it is 1.17 of the depth (water.glsl).
 glm::vec3 LitObjects::radiance_in_water(const Ray& ray, const RayHit& hit) const {
-    constexpr float kSkySlant = 1.17f, kOfSky = 0.93f;  // the part of the sky's that enters
+    constexpr float kSkySlant = 1.17f;
     const Surface at = surface(ray, hit);
     const float depth_m = bodies_[at.body].water_m - at.place.z;
     const glm::vec3 to_sun = -refracted_by_water(-to_sun_, glm::vec3(0.0f, 0.0f, 1.0f));
-    const glm::vec3 above = choice_.sky ? sky_->sky_irradiance : glm::vec3(0.0f);
-    // What comes from the side and from below is by eye.
-    glm::vec3 light = (0.6f + 0.4f * at.normal.z) * kOfSky * above * left_at_depth(kSkySlant * depth_m);
-    const float facing = glm::dot(at.normal, to_sun);
-    if (facing > 0.0f && beam_ != glm::vec3(0.0f) && to_sun_.z > 0.0f) {
+    glm::vec3 sky(0.0f), sun(0.0f);
+    if (choice_.sky) sky = sky_->sky_irradiance * left_at_depth(kSkySlant * depth_m);
+    if (glm::dot(at.normal, to_sun) > 0.0f && beam_ != glm::vec3(0.0f) && to_sun_.z > 0.0f) {
         const bool is_dark =
             is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun});
         if (!is_dark)
-            light += (facing / to_sun.z * water_entering(*water_, to_sun_)) * sky_->sun_irradiance *
-                     left_at_depth(depth_m / to_sun.z);
+            sun = water_entering(*water_, to_sun_) * sky_->sun_irradiance * left_at_depth(depth_m / to_sun.z);
     }
-    return at.look.colour * light / kPi_f + at.look.glow;
+    return object_in_water(at.look, at.normal, to_sun, sun, sky);
 }
 
 bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,

@@ -51,6 +51,7 @@ void main() {
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
                         answer.slope_variance, foam, body, light, PlaceView(air_to_sun, air_by_place));
+    if (kWater) terms.sea = see_into_water(terms.sea, place, -pixel_ray(), answer.normal, 1.0 - foam.opacity, light.water);
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)
         path = air_path(-pixel_ray(), point_distance_m(),

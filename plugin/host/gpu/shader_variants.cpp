@@ -229,7 +229,9 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     {"core/lighting/place.glsl"},
                     sun_files(options.for_host ? options.has_shadow : has_objects, options.for_host),
                     hull_files(has_hulls, options.for_host),
-                    {"plugin/host/gpu/rays.glsl"},
+                    {has_objects ? "plugin/host/gpu/objects_in_water.glsl"
+                                 : "plugin/host/gpu/objects_in_water_none.glsl",
+                     "plugin/host/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/host/gpu/false_colour.glsl", points_file(options),
                      shape_file(options.is_shaped, kShapeOfFragment), "plugin/host/gpu/sea_fragment.glsl"}})};
@@ -261,18 +263,20 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
                     {"plugin/host/gpu/sky_fragment.glsl"}})};
 }
 
-ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_size, bool mirrored) {
+ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_size, ObjectPicture picture) {
     LightingChoice lighting = options.lighting;
     lighting.sky = lighting.sky && sky_map_size > 0;
     DrawOptions drawn = options;
-    drawn.layers = drawn.layers && !mirrored;
+    drawn.layers = drawn.layers && picture == ObjectPicture::Seen;
     return {lighting_constants(lighting, sky_map_size) + picture_constants(drawn) + object_constants(true) +
-                constant("kMirrored", mirrored),
+                constant("kMirrored", picture == ObjectPicture::Mirrored) +
+                constant("kInWater", picture == ObjectPicture::InWater),
             {"plugin/host/gpu/object_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl", sky_alone_file(false)},
                     lighting_files(),
-                    {"core/lighting/object.glsl", "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    {"plugin/host/gpu/sea_light.glsl", "core/lighting/object.glsl",
+                     "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
                     spray_files(lighting),
                     sun_files(true),
                     output_files(options),

@@ -19,14 +19,16 @@ bool is_lit_afterwards(const DrawOptions& options);
 inline constexpr int kObjectBoxes = 16;
 inline constexpr float kIsObject = -1.0f;
 
+// Of an object: for the eye, for its mirror image, and what of it the eye sees in the water.
+enum class ObjectPicture { Seen, Mirrored, InWater };
+
 class ShaderVariant {
   public:
     static ShaderVariant of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size);
     // The first of two passes.
     static ShaderVariant of_points(const SeaLayout& layout, bool is_shaped, bool has_objects);
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
-    // An object for the eye, or for its mirror image.
-    static ShaderVariant of_object(const DrawOptions& options, int sky_map_size, bool mirrored);
+    static ShaderVariant of_object(const DrawOptions& options, int sky_map_size, ObjectPicture picture);
     static ShaderVariant of_object_shadow();
     static ShaderVariant of_drops(bool layers);
     static ShaderVariant of_screen(bool layers, bool plain);

@@ -23,17 +23,27 @@
 namespace pelagic {
 namespace {
 
-enum Unit : int { kMaterials, kShadow, kBlockers, kMirrored, kHullMaps, kHullPlaces };
+enum Unit : int {
+    kMaterials,
+    kShadow,
+    kBlockers,
+    kMirrored,
+    kHullMaps,
+    kHullPlaces,
+    kInWater,
+    kInWaterDepth
+};
 
 struct Vertex {
     glm::vec3 place_m, normal;
     float material;
 };
 
-constexpr int kShadowSide = 2048, kMirroredSide = 1024;  // texels, at most
+constexpr int kShadowSide = 2048, kSeenSide = 1024;  // texels, at most
 // The mirrored picture's pixels are twice as wide as the picture's: waves blur what they show.
-constexpr double kMirroredPixels = 0.5;
-constexpr double kWidest = 4.0;  // tangents of what the mirrored eye sees to either side
+constexpr double kMirroredPixels = 2.0;
+constexpr double kWaterIndex = 1.34;  // as in core/lighting/special.glsl
+constexpr double kWidest = 4.0;       // tangents of what such an eye sees to either side
 
 void set_matrix(const ShaderProgram& program, const char* name, const glm::dmat4& value) {
     const glm::mat4 rounded(value);
@@ -197,6 +207,7 @@ void DrawnObjects::place(const Eye& eye) {
     place_hulls();
     fit_shadow();
     fit_mirror();
+    fit_water();
 }
 
 // The sun's rays, parallel, round all objects.
@@ -227,28 +238,77 @@ void DrawnObjects::fit_shadow() {
     shadow_from_grid_ = size * translation(-least) * turn;
 }
 
-// From the eye's mirror image: an upright picture of all objects, as far as they are above the water.
-void DrawnObjects::fit_mirror() {
+double DrawnObjects::mean_water_m() const {
     double water_m = 0.0;
     for (const Placed& placed : placed_) water_m += placed.water_m / static_cast<double>(placed_.size());
-    mirrored_eye_m_ = {eye_.view.position_m.x - eye_.origin_m.x, eye_.view.position_m.y - eye_.origin_m.y,
-                       2.0 * water_m - eye_.view.position_m.z};
-    std::vector<glm::dvec3> seen;  // from there
-    glm::dvec3 middle(0.0);
+    return water_m;
+}
+
+// From the eye's mirror image, as far as they are above the water.
+void DrawnObjects::fit_mirror() {
+    std::vector<glm::dvec3> places;
     for (std::size_t i = 0; i < objects_.size(); ++i)
         for (glm::dvec3 corner : corners(i)) {
             corner.z = std::max(corner.z, placed_[i].water_m);
-            seen.push_back(corner - mirrored_eye_m_);
-            const double away = glm::length(seen.back());
-            if (away > 0.0) middle += seen.back() / away;
+            places.push_back(corner);
         }
+    const glm::dvec2 eye_m = glm::dvec2(eye_.view.position_m) - eye_.origin_m;
+    fit(mirrored_, glm::dvec3(eye_m, 2.0 * mean_water_m() - eye_.view.position_m.z), places, true);
+}
+
+// As far as they are in the water, from where their middle there sees the eye through a level surface: n times as far behind it, where
+// rays aside meet.
+void DrawnObjects::fit_water() {
+    in_water_.size = {};
+    constexpr double kLeast_m = 1e-3;
+    const double water_m = mean_water_m(), high_m = eye_.view.position_m.z - water_m;
+    std::vector<glm::dvec3> places;
+    glm::dvec3 middle(0.0);
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+        const std::array<glm::dvec3, 8> all = corners(i);
+        if (std::ranges::none_of(all,
+                                 [&](const glm::dvec3& at) { return at.z < placed_[i].water_m - kLeast_m; }))
+            continue;
+        for (glm::dvec3 corner : all) {
+            corner.z = std::min(corner.z, placed_[i].water_m);
+            places.push_back(corner);
+            middle += corner;
+        }
+    }
+    if (places.empty() || !(high_m > kLeast_m)) return;
+    middle /= static_cast<double>(places.size());
+    const glm::dvec3 above(glm::dvec2(eye_.view.position_m) - eye_.origin_m, eye_.view.position_m.z);
+    const double deep_m = std::max(water_m - middle.z, kLeast_m);
+    const glm::dvec2 level(glm::dvec2(middle) - glm::dvec2(above));
+    const double far_m = glm::length(level);
+    // Where the ray between them crosses the surface: Snell's law, by halves.
+    double near = 0.0, far = far_m;
+    for (int i = 0; i < 60; ++i) {
+        const double at = 0.5 * (near + far);
+        (at / std::hypot(at, high_m) < kWaterIndex * (far_m - at) / std::hypot(far_m - at, deep_m) ? near
+                                                                                                   : far) =
+            at;
+    }
+    const glm::dvec3 crossing(glm::dvec2(above) + (far_m > 0.0 ? level * (near / far_m) : glm::dvec2(0.0)),
+                              water_m);
+    const glm::dvec3 down = glm::normalize(glm::dvec3(glm::dvec2(middle), water_m - deep_m) - crossing);
+    fit(in_water_, crossing - kWaterIndex * glm::distance(above, crossing) * down, places, false);
+}
+
+void DrawnObjects::fit(Seen& seen, glm::dvec3 eye_m, std::span<const glm::dvec3> places,
+                       bool is_blurred) const {
+    seen.eye_m = eye_m;
+    glm::dvec3 middle(0.0);
+    for (const glm::dvec3& place : places)
+        if (const double away = glm::distance(place, eye_m); away > 0.0) middle += (place - eye_m) / away;
     if (!(glm::length(middle) > 1e-9)) middle = glm::dvec3(0.0, 0.0, 1.0);
     const glm::dvec3 ahead = glm::normalize(middle);
     const glm::dvec3 side = glm::normalize(
         glm::cross(ahead, std::abs(ahead.z) < 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0)));
     const glm::dvec3 up = glm::cross(side, ahead);
     glm::dvec2 least(kWidest), most(-kWidest);
-    for (const glm::dvec3& at : seen) {
+    for (const glm::dvec3& place : places) {
+        const glm::dvec3 at = place - eye_m;
         const double along = glm::dot(ahead, at);
         glm::dvec2 tangents(glm::dot(side, at), glm::dot(up, at));
         if (along * kWidest > std::max(std::abs(tangents.x), std::abs(tangents.y)))
@@ -260,8 +320,8 @@ void DrawnObjects::fit_mirror() {
     }
     least = glm::max(least, glm::dvec2(-kWidest));
     most = glm::min(most, glm::dvec2(kWidest));
-    const double pixel = eye_.view.pixel_tangent() / kMirroredPixels;
-    const int largest = std::min(kMirroredSide, eye_.largest_texture);
+    const double pixel = eye_.view.pixel_tangent() * (is_blurred ? kMirroredPixels : 1.0);
+    const int largest = std::min(kSeenSide, eye_.largest_texture);
     const glm::dvec2 span = glm::max(most - least, glm::dvec2(1e-4));
     glm::ivec2 size;
     for (int axis = 0; axis < 2;
@@ -273,31 +333,33 @@ void DrawnObjects::fit_mirror() {
     const glm::dvec2 rim = span * 2.0 / glm::dvec2(size);
     least -= rim;
     most += rim;
-    mirrored_texels_ = std::min(size.x / (most.x - least.x), size.y / (most.y - least.y));
-    // x and y of the clip coordinates, and the distance ahead as w.
+    seen.texels = std::min(size.x / (most.x - least.x), size.y / (most.y - least.y));
     glm::dmat4 clip(0.0);
     for (int axis = 0; axis < 3; ++axis) {
         clip[axis][0] = (2.0 * side[axis] - (most.x + least.x) * ahead[axis]) / (most.x - least.x);
         clip[axis][1] = (2.0 * up[axis] - (most.y + least.y) * ahead[axis]) / (most.y - least.y);
         clip[axis][3] = ahead[axis];
     }
-    mirrored_from_grid_ = clip * translation(-mirrored_eye_m_);
-    mirrored_from_grid_[3][2] = 0.0;
-    if (mirrored_size_ == size) return;
-    mirrored_size_ = size;
-    edit_texture(mirrored_);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    seen.from_grid = clip * translation(-eye_m);
+    seen.from_grid[3][2] = 0.0;
+    seen.size = size;
+    glm::ivec2 there(0);
+    edit_texture(seen.light);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &there.x);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &there.y);
+    if (there == size) return;
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, is_blurred ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, nullptr);
-    edit_texture(mirrored_depth_);
+    edit_texture(seen.depth);
     texels_as_they_are();
     glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size.x, size.y, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
                  nullptr);
-    glBindFramebuffer(GL_FRAMEBUFFER, mirrored_framebuffer_.name());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, mirrored_.name(), 0);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, mirrored_depth_.name(), 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, seen.framebuffer.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, seen.light.name(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, seen.depth.name(), 0);
 }
 
 void DrawnObjects::draw_shadow(const ShaderProgram& program) {
@@ -396,14 +458,22 @@ void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip
     }
 }
 
-void DrawnObjects::draw_mirrored(const ShaderProgram& program, int first_unit) {
-    glBindFramebuffer(GL_FRAMEBUFFER, mirrored_framebuffer_.name());
-    glViewport(0, 0, mirrored_size_.x, mirrored_size_.y);
+void DrawnObjects::draw_into(const Seen& seen, const ShaderProgram& program, int first_unit) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, seen.framebuffer.name());
+    glViewport(0, 0, seen.size.x, seen.size.y);
     glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    draw_all(program, mirrored_from_grid_, mirrored_eye_m_, first_unit);
-    edit_texture(mirrored_);
+    draw_all(program, seen.from_grid, seen.eye_m, first_unit);
+}
+
+void DrawnObjects::draw_mirrored(const ShaderProgram& program, int first_unit) {
+    draw_into(mirrored_, program, first_unit);
+    edit_texture(mirrored_.light);
     glGenerateMipmap(GL_TEXTURE_2D);
+}
+
+void DrawnObjects::draw_in_water(const ShaderProgram& program, int first_unit) {
+    draw_into(in_water_, program, first_unit);
 }
 
 void DrawnObjects::draw(const ShaderProgram& program, int first_unit) {
@@ -415,14 +485,21 @@ void DrawnObjects::bind(const ShaderProgram& program, int first_unit) const {
     bind_shadow(program, first_unit);
     bind_hulls(program, first_unit);
     glUniform1i(program.uniform("mirrored_objects"), first_unit + kMirrored);
-    bind_texture(first_unit + kMirrored, mirrored_);
-    set_matrix(program, "mirrored_from_grid", mirrored_from_grid_);
-    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirrored_texels_));
+    bind_texture(first_unit + kMirrored, mirrored_.light);
+    set_matrix(program, "mirrored_from_grid", mirrored_.from_grid);
+    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirrored_.texels));
+    glUniform1i(program.uniform("objects_in_water"), first_unit + kInWater);
+    glUniform1i(program.uniform("objects_in_water_depth"), first_unit + kInWaterDepth);
+    bind_texture(first_unit + kInWater, in_water_.light);
+    bind_texture(first_unit + kInWaterDepth, in_water_.depth);
+    set_matrix(program, "in_water_from_grid", in_water_.from_grid);
+    glUniform3f(program.uniform("in_water_ahead"), eye_.reversed_depth ? 0.0f : 1.0f,
+                eye_.reversed_depth ? 1.0f : -1.0f, any_in_water() ? static_cast<float>(eye_.near_m) : 0.0f);
     // The nearest ones, where there are more.
     std::vector<std::size_t> order(objects_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto away = [&](std::size_t i) {
-        return glm::distance(glm::dvec3(placed_[i].grid_from[3]), mirrored_eye_m_);
+        return glm::distance(glm::dvec3(placed_[i].grid_from[3]), mirrored_.eye_m);
     };
     if (order.size() > kObjectBoxes) std::ranges::sort(order, {}, away);
     order.resize(std::min<std::size_t>(order.size(), kObjectBoxes));
@@ -444,7 +521,7 @@ std::size_t DrawnObjects::bytes(const Scene& scene) {
     std::set<const ObjectMesh*> meshes;
     for (const SceneObject& object : scene.objects) meshes.insert(object.mesh.get());
     std::size_t all = std::size_t{kShadowSide} * kShadowSide * sizeof(float) +
-                      std::size_t{kMirroredSide} * kMirroredSide * (2 * sizeof(glm::vec4));
+                      std::size_t{kSeenSide} * kSeenSide * 2 * (2 * sizeof(glm::vec4));
     all += 2 * hulls_bytes(scene);  // with the texture
     for (const ObjectMesh* mesh : meshes) all += 2 * mesh->data().triangles.size() * sizeof(Vertex);
     return all;

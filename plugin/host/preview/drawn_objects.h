@@ -1,4 +1,5 @@
-// The objects of a picture on the GPU: their meshes, a map of their depth towards the sun, and a picture of them as the sea mirrors them.
+// The objects of a picture on the GPU: their meshes, a map of their depth towards the sun, and pictures of them as the sea mirrors them and as one
+// sees them in it.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,9 +64,11 @@ class DrawnObjects {
     void draw_shadow(const ShaderProgram& program);
     // The program must be in use, with all that isn't of objects set.
     void draw_mirrored(const ShaderProgram& program, int first_unit);
+    bool any_in_water() const { return in_water_.size.x > 0; }
+    void draw_in_water(const ShaderProgram& program, int first_unit);
     void draw(const ShaderProgram& program, int first_unit);
     // For the sea's program, which is in use.
-    static constexpr int kUnits = 6;  // from first_unit on
+    static constexpr int kUnits = 8;  // from first_unit on
     void bind(const ShaderProgram& program, int first_unit) const;
     // For the program of its points alone.
     void bind_hulls(const ShaderProgram& program, int first_unit) const;
@@ -84,12 +88,25 @@ class DrawnObjects {
         glm::dmat4 grid_from{1.0};
         double water_m = 0.0;  // in the grid
     };
+    // Of all objects from a place of the grid, upright.
+    struct Seen {
+        GlTexture light, depth;
+        GlFramebuffer framebuffer;
+        glm::ivec2 size{0};         // 0: there is none
+        glm::dmat4 from_grid{1.0};  // x and y of the clip coordinates, and the distance ahead as w
+        glm::dvec3 eye_m{0.0};
+        double texels = 1.0;  // a tangent of 1
+    };
     const Mesh& mesh_of(const DrawnObject& object) const;
     std::array<glm::dvec3, 8> corners(std::size_t object) const;
     void set_hulls();
     void place_hulls();
     void fit_shadow();
     void fit_mirror();
+    void fit_water();
+    void fit(Seen& seen, glm::dvec3 eye_m, std::span<const glm::dvec3> places, bool is_blurred) const;
+    double mean_water_m() const;
+    void draw_into(const Seen& seen, const ShaderProgram& program, int first_unit) const;
     void draw_all(const ShaderProgram& program, const glm::dmat4& clip_from_grid, glm::dvec3 eye_m,
                   int first_unit) const;
     void bind_shadow(const ShaderProgram& program, int first_unit) const;
@@ -102,17 +119,14 @@ class DrawnObjects {
     Eye eye_;
     std::vector<Placed> placed_;
 
-    GlTexture shadow_, mirrored_, mirrored_depth_;
-    GlFramebuffer shadow_framebuffer_, mirrored_framebuffer_;
+    GlTexture shadow_;
+    GlFramebuffer shadow_framebuffer_;
+    Seen mirrored_, in_water_;
     GlSampler compares_;
     bool has_shadow_ = false;
     int shadow_side_ = 0;
-    glm::ivec2 mirrored_size_{0};
     glm::dmat4 shadow_from_grid_{1.0};
     glm::dvec3 shadow_reach_m_{1.0};
-    glm::dmat4 mirrored_from_grid_{1.0};
-    glm::dvec3 mirrored_eye_m_{0.0};
-    double mirrored_texels_ = 1.0;
 };
 
 }  // namespace pelagic

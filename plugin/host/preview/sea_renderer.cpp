@@ -97,7 +97,8 @@ struct SeaRenderer::Implementation {
     void draw_sky(const View& view, const DrawOptions& options);
     void draw_drops(const View& view, const DrawOptions& options);
     void draw_object_maps(const View& view, const SeaMesh& mesh, const DrawOptions& options);
-    const ShaderProgram& use_object_program(const View& view, const DrawOptions& options, bool mirrored);
+    const ShaderProgram& use_object_program(const View& view, const DrawOptions& options,
+                                            ObjectPicture picture);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
     GLint largest_texture = 0;
@@ -440,8 +441,8 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const SeaMesh& mesh
 
 const ShaderProgram& SeaRenderer::Implementation::use_object_program(const View& view,
                                                                      const DrawOptions& options,
-                                                                     bool mirrored) {
-    const ShaderProgram& program = program_of(ShaderVariant::of_object(options, sky_map_size, mirrored));
+                                                                     ObjectPicture picture) {
+    const ShaderProgram& program = program_of(ShaderVariant::of_object(options, sky_map_size, picture));
     program.use();
     set_common(program, view);
     set_uniforms(program, air);
@@ -463,7 +464,9 @@ void SeaRenderer::Implementation::draw_object_maps(const View& view, const SeaMe
                                                    const DrawOptions& options) {
     place_objects(view, mesh, options.lighting.sun);
     objects->draw_shadow(program_of(ShaderVariant::of_object_shadow()));
-    objects->draw_mirrored(use_object_program(view, options, true), kObjectUnits);
+    objects->draw_mirrored(use_object_program(view, options, ObjectPicture::Mirrored), kObjectUnits);
+    if (objects->any_in_water() && options.lighting.water)
+        objects->draw_in_water(use_object_program(view, options, ObjectPicture::InWater), kObjectUnits);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glViewport(0, 0, picture_size.x, picture_size.y);
 }
@@ -702,7 +705,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
         if (!of.sea.empty()) of.draw_sea(view, mesh, drawn);
         if (drawn.has_objects) {
             glDepthFunc(of.reversed_depth ? GL_GREATER : GL_LESS);
-            of.objects->draw(of.use_object_program(view, drawn, false), kObjectUnits);
+            of.objects->draw(of.use_object_program(view, drawn, ObjectPicture::Seen), kObjectUnits);
         }
     }
     {

@@ -23,7 +23,19 @@ constexpr std::uint32_t kSunRays = 16, kSkyRays = 32, kLeastSunRays = 2, kLeastS
 constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
 constexpr float kBlur = 0.15f;  // [rad] of the sky, by eye: some of what 32 rays of a hemisphere are apart
 constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
-enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces, kOfGlossBounces, kOtherHalf };
+constexpr std::uint32_t kLampPlaces = 32, kLeastLampPlaces = 4, kLitPlaces = 16, kLeastLitPlaces = 2;
+constexpr float kFaintLamp = 1e-3f, kFaintMirrored = 1e-4f;  // beside what else there is
+enum Use : std::uint32_t {
+    kOfSun,
+    kOfSky,
+    kOfGloss,
+    kOfFacets,
+    kOfBounces,
+    kOfGlossBounces,
+    kOtherHalf,
+    kOfLamps = 20,
+    kOfMirroredLamps
+};
 
 // A coordinate system round a unit direction (Duff et al. 2017).
 glm::mat3 axes_round(const glm::vec3& z) {
@@ -78,6 +90,11 @@ struct TwoHalves {
     glm::vec2 of(std::uint32_t k, std::uint32_t rays) const { return half[k % 2].of(k / 2, rays / 2); }
 };
 
+// Of rays by the cosine [1/sr].
+float facing_density(const glm::vec3& normal, const glm::vec3& direction) {
+    return std::max(glm::dot(normal, direction), 0.0f) / kPi_f;
+}
+
 // Off a surface, by what single precision knows of the place.
 float off_surface_m(const glm::vec3& place) {
     return 5e-4f + 4e-6f * glm::length(place);
@@ -99,7 +116,7 @@ glm::vec2 SampleNumbers::Places::of(std::uint32_t n, std::uint32_t rays) const {
     return {unit(shift_x + at * 3242174889u), unit(shift_y + at * 2447445413u)};
 }
 
-LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
+LitObjects::LitObjects(const Scene& scene) : scene_(scene), lamps_(scene) {
     std::vector<const ObjectMesh*> meshes;
     for (const SceneObject& object : scene.objects) {
         meshes.push_back(object.mesh.get());
@@ -116,7 +133,7 @@ LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
 std::size_t LitObjects::bytes(const Scene& scene) {
     std::vector<const ObjectMesh*> meshes;
     for (const SceneObject& object : scene.objects) meshes.push_back(object.mesh.get());
-    return meshes.empty() ? 0 : ray_scene_bytes(meshes);
+    return meshes.empty() ? 0 : ray_scene_bytes(meshes) + Lamps::bytes(scene);
 }
 
 template <class T>
@@ -156,6 +173,7 @@ void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
         transforms.push_back({body.axes[0], body.axes[1], body.axes[2], body.place});
     }
     rays_->place(transforms);
+    lamps_.place(transforms);
 }
 template void LitObjects::place(const Frame<float>&, double, const Sea&);
 template void LitObjects::place(const Frame<double>&, double, const Sea&);
@@ -417,11 +435,19 @@ Ray LitObjects::ray_from(const Surface& at, const glm::vec3& towards) const {
 
 // What comes from a direction, and what would without any body.
 LitObjects::Incoming LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad,
-                                          glm::vec2 number) const {
+                                          glm::vec2 number, const LampsOver* lamps) const {
     const Ray ray = ray_from(at, from);
     const glm::vec3 open = from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad);
-    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m)
-        return {.open = open, .light = estimate(ray, hit, number), .is_open = false};
+    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m) {
+        glm::vec3 light = estimate(ray, hit, number);
+        if (const Lamps::Met met = lamps ? lamps_.met(ray, hit) : Lamps::Met{}; met.lamp >= 0) {
+            const float by_places = static_cast<float>(lamps->count) *
+                                    lamps->choice.chance(static_cast<std::size_t>(met.lamp)) * met.density,
+                        by_rays = static_cast<float>(lamps->rays) * facing_density(at.normal, from);
+            light -= by_places / std::max(by_places + by_rays, 1e-30f) * met.radiance;
+        }
+        return {.open = open, .light = light, .is_open = false};
+    }
     if (from.z < 0.0f && beam_ != glm::vec3(0.0f)) {
         const glm::vec3 there = ray.from + ray.farthest_m * from;
         if (is_blocked({.from = there + glm::vec3(0.0f, 0.0f, off_surface_m(there)), .towards = to_sun_}))
@@ -445,7 +471,63 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     if (is_sunny(at) &&
         !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
         light += glm::dot(at.normal, to_sun_) * beam_;
+    if (has_lamps()) {
+        const glm::vec3 from = at.place + off_surface_m(at.place) * at.geometric;
+        light += irradiance_of({lamps_over(from, at.normal), 1, 0}, from, at.normal,
+                               [&](std::uint32_t) { return number; });
+    }
     return at.look.colour * light / kPi_f + at.look.glow;
+}
+
+LampChoice LitObjects::lamps_over(const glm::vec3& place, const glm::vec3& normal) const {
+    LampChoice choice;
+    for (const Lamps::Lamp& lamp : lamps_.all()) {
+        const glm::vec3 way = lamp.centre - place;
+        const float away2 = glm::dot(way, way), away = std::sqrt(away2),
+                    round = lamp.radius / std::max(away, 1e-6f);
+        const float facing = std::clamp(glm::dot(way, normal) / std::max(away, 1e-6f) + round, 0.0f, 1.0f);
+        // A convex body shows a quarter of its surface (Cauchy).
+        choice.add(0.25f * lamp.power * facing / (away2 + lamp.radius * lamp.radius + 1e-12f));
+    }
+    glm::vec3 daylight(0.0f);
+    if (choice_.sky) daylight += sky_->sky_irradiance;
+    if (choice_.sun) daylight += sky_->sun_irradiance;
+    return choice.all() < kFaintLamp * mean_of(daylight) ? LampChoice{} : choice;
+}
+
+bool LitObjects::shows(const glm::vec3& place, const Lamps::Light& light) const {
+    const float short_of_m =
+        off_surface_m(place + light.distance_m * light.towards) + 1e-5f * light.distance_m;
+    return !is_blocked(
+        {.from = place, .towards = light.towards, .farthest_m = light.distance_m - short_of_m});
+}
+
+// number: of the k-th place, in the unit square.
+glm::vec3 LitObjects::irradiance_of(const LampsOver& lamps, const glm::vec3& place, const glm::vec3& normal,
+                                    const auto& number) const {
+    glm::vec3 sum(0.0f);
+    if (lamps.choice.empty()) return sum;
+    for (std::uint32_t k = 0; k < lamps.count; ++k) {
+        glm::vec2 at = number(k);
+        const std::size_t lamp = lamps.choice.pick(at.x);
+        const Lamps::Light light = lamps_.light(lamp, place, at);
+        const float facing = glm::dot(light.towards, normal);
+        if (!(light.density > 0.0f) || !(facing > 0.0f) || !shows(place, light)) continue;
+        const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density;
+        const float rays = static_cast<float>(lamps.rays) * facing_density(normal, light.towards);
+        float part = facing / (density + rays);
+        // Nearer than a lamp is large its places alone may say any much; nothing is brighter than all round.
+        if (lamps.rays == 0) part = std::min(part, kPi_f / static_cast<float>(lamps.count));
+        sum += part * light.radiance;
+    }
+    return sum;
+}
+
+glm::vec3 LitObjects::lamplight(const glm::vec3& place, const glm::vec3& normal,
+                                const SampleNumbers& numbers) const {
+    const LampsOver lamps{lamps_over(place, normal), numbers.rays(kLitPlaces, kLeastLitPlaces), 0};
+    const SampleNumbers::Places places = numbers.places(kOfLamps);
+    return irradiance_of(lamps, place, normal, [&](std::uint32_t k) { return places.of(k, lamps.count); });
 }
 
 glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers) const {
@@ -453,15 +535,26 @@ glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers
     const std::uint32_t count = 2 * ((numbers.rays(kSkyRays, kLeastSkyRays) + 1) / 2);
     const TwoHalves places(numbers, kOfSky);
     const SampleNumbers::Places bounces = numbers.places(kOfBounces);
+    LampsOver lamps;
+    glm::vec3 of_lamps(0.0f);
+    if (has_lamps()) {
+        const glm::vec3 from = at.place + off_surface_m(at.place) * at.geometric;
+        lamps.choice = lamps_over(from, at.normal);
+        lamps.count = lamps.choice.empty() ? 0 : numbers.rays(kLitPlaces, kLeastLitPlaces);
+        lamps.rays = count;
+        const SampleNumbers::Places on_lamps = numbers.places(kOfLamps);
+        of_lamps = irradiance_of(lamps, from, at.normal,
+                                 [&](std::uint32_t k) { return on_lamps.of(k, lamps.count); });
+    }
     MeanLight mean;
     for (std::uint32_t k = 0; k < count; ++k) {
         const glm::vec2 place = places.of(k, count);
         const Incoming from =
             incoming(at, outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x))), kBlur,
-                     bounces.of(k, count));
+                     bounces.of(k, count), lamps.count > 0 ? &lamps : nullptr);
         mean.add(from.open, from.light, from.is_open);
     }
-    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f);
+    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f) + of_lamps;
 }
 
 // The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
@@ -551,6 +644,50 @@ bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye
         const float size = 1.5f * body.radius / distance * (1.0f + glm::length(slope)) / half.z;
         return glm::length(slope - mean) <= farthest + size;
     });
+}
+
+LitObjects::LampsInSea LitObjects::lamps_in(const SeaFacets& facets, const glm::vec3& place,
+                                            std::uint32_t rays, const SampleNumbers& numbers) const {
+    LampsInSea lamps{.facets = facets, .place = place, .rays = rays};
+    for (const Lamps::Lamp& lamp : lamps_.all()) {
+        const glm::vec3 way = lamp.centre - place;
+        const float away = std::max({glm::length(way), lamp.radius, 1e-6f});
+        const float mirrored =
+            facets.from(way / std::max(glm::length(way), 1e-6f), 0.5f * lamp.radius / away).weight;
+        lamps.choice.add(0.25f * lamp.power / (away * away) * mirrored);
+    }
+    const float sky = choice_.sky ? mean_of(sky_->sky_irradiance) / kPi_f : 0.0f;
+    if (!lamps.choice.empty() && lamps.choice.all() >= kFaintMirrored * sky)
+        lamps.count = numbers.rays(kLampPlaces, kLeastLampPlaces);
+    return lamps;
+}
+
+glm::vec3 LitObjects::mirrored_places(const LampsInSea& lamps, const SampleNumbers& numbers) const {
+    const SampleNumbers::Places places = numbers.places(kOfMirroredLamps);
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t k = 0; k < lamps.count; ++k) {
+        glm::vec2 at = places.of(k, lamps.count);
+        const std::size_t lamp = lamps.choice.pick(at.x);
+        const Lamps::Light light = lamps_.light(lamp, lamps.place, at);
+        if (!(light.density > 0.0f)) continue;
+        const SeaFacets::Part part = lamps.facets->from(light.towards);
+        if (!(part.weight > 0.0f) || !shows(lamps.place, light)) continue;
+        const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density +
+                              static_cast<float>(lamps.rays) * part.density;
+        sum += part.weight / density * glm::max(light.radiance - sky(light.towards), glm::vec3(0.0f));
+    }
+    return sum;
+}
+
+LitObjects::LampMet LitObjects::lamp_met(const LampsInSea& lamps, const Ray& ray, const RayHit& hit) const {
+    const Lamps::Met met = lamps_.met(ray, hit);
+    if (met.lamp < 0) return {};
+    const float by_places = static_cast<float>(lamps.count) *
+                            lamps.choice.chance(static_cast<std::size_t>(met.lamp)) * met.density,
+                by_rays = static_cast<float>(lamps.rays) * lamps.facets->from(ray.towards).density;
+    LampMet found{.light = glm::max(met.radiance - sky(ray.towards), glm::vec3(0.0f))};
+    if (by_places > 0.0f) found.part = by_rays / (by_rays + by_places);
+    return found;
 }
 
 bool LitObjects::is_near(const glm::vec3& place, float distance_m) const {

@@ -49,6 +49,15 @@ Lamps::Lamps(const Scene& scene) : scene_(scene), lamp_of_(scene.objects.size())
     while (groups_.size() < kMostLamps && split_widest()) {
     }
     for (std::size_t g = 0; g < groups_.size(); ++g) {
+        // Round the lamp, so that even numbers are even over the sides that a place sees and those that it doesn't.
+        const auto side_of = [&](const Part& part) {
+            const auto [a, b, c] = corners_of(groups_[g].body, part.triangle);
+            const glm::vec3 normal = glm::cross(b - a, c - a);
+            return std::atan2(normal.y, normal.x);
+        };
+        std::stable_sort(parts_.begin() + static_cast<std::ptrdiff_t>(groups_[g].first),
+                         parts_.begin() + static_cast<std::ptrdiff_t>(groups_[g].last),
+                         [&](const Part& a, const Part& b) { return side_of(a) < side_of(b); });
         double sum = 0.0;
         for (std::size_t i = groups_[g].first; i < groups_[g].last; ++i) {
             Part& part = parts_[i];

@@ -24,6 +24,7 @@ constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
 constexpr float kBlur = 0.15f;  // [rad] of the sky, by eye: some of what 32 rays of a hemisphere are apart
 constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
 constexpr std::uint32_t kLampPlaces = 32, kLeastLampPlaces = 4, kLitPlaces = 16, kLeastLitPlaces = 2;
+constexpr float kMostOfPlace = 16.0f;
 constexpr float kFaintLamp = 1e-3f, kFaintMirrored = 1e-4f;  // beside what else there is
 enum Use : std::uint32_t {
     kOfSun,
@@ -516,8 +517,8 @@ glm::vec3 LitObjects::irradiance_of(const LampsOver& lamps, const glm::vec3& pla
         const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density;
         const float rays = static_cast<float>(lamps.rays) * facing_density(normal, light.towards);
         float part = facing / (density + rays);
-        // Nearer than a lamp is large its places alone may say any much; nothing is brighter than all round.
-        if (lamps.rays == 0) part = std::min(part, kPi_f / static_cast<float>(lamps.count));
+        // Much nearer than a lamp is large one of its places alone may say any much. All round there is no more than π.
+        if (lamps.rays == 0) part = std::min(part, kMostOfPlace * kPi_f / static_cast<float>(lamps.count));
         sum += part * light.radiance;
     }
     return sum;

@@ -35,6 +35,7 @@ enum Use : std::uint32_t {
     kOfGlossBounces,
     kOtherHalf,
     kOfLamps = 20,
+    kOfVarnishedLamps,
     kOfMirroredLamps
 };
 
@@ -91,9 +92,10 @@ struct TwoHalves {
     glm::vec2 of(std::uint32_t k, std::uint32_t rays) const { return half[k % 2].of(k / 2, rays / 2); }
 };
 
-// Of rays by the cosine [1/sr].
-float facing_density(const glm::vec3& normal, const glm::vec3& direction) {
-    return std::max(glm::dot(normal, direction), 0.0f) / kPi_f;
+// What light from a direction gives a diffuse surface, and rays by the cosine.
+VarnishPart facing(const glm::vec3& normal, const glm::vec3& direction) {
+    const float cosine = std::max(glm::dot(normal, direction), 0.0f);
+    return {cosine, cosine / kPi_f};
 }
 
 // Off a surface, by what single precision knows of the place.
@@ -436,17 +438,11 @@ Ray LitObjects::ray_from(const Surface& at, const glm::vec3& towards) const {
 
 // What comes from a direction, and what would without any body.
 LitObjects::Incoming LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad,
-                                          glm::vec2 number, const LampsOver* lamps) const {
+                                          glm::vec2 number, const LampsOver& lamps, float density) const {
     const Ray ray = ray_from(at, from);
     const glm::vec3 open = from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad);
     if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m) {
-        glm::vec3 light = estimate(ray, hit, number);
-        if (const Lamps::Met met = lamps ? lamps_.met(ray, hit) : Lamps::Met{}; met.lamp >= 0) {
-            const float by_places = static_cast<float>(lamps->count) *
-                                    lamps->choice.chance(static_cast<std::size_t>(met.lamp)) * met.density,
-                        by_rays = static_cast<float>(lamps->rays) * facing_density(at.normal, from);
-            light -= by_places / std::max(by_places + by_rays, 1e-30f) * met.radiance;
-        }
+        const glm::vec3 light = estimate(ray, hit, number) - light_of_places(lamps, ray, hit, density);
         return {.open = open, .light = light, .is_open = false};
     }
     if (from.z < 0.0f && beam_ != glm::vec3(0.0f)) {
@@ -472,28 +468,37 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     if (is_sunny(at) &&
         !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
         light += glm::dot(at.normal, to_sun_) * beam_;
-    if (has_lamps()) {
-        const glm::vec3 from = at.place + off_surface_m(at.place) * at.geometric;
-        light += irradiance_of({lamps_over(from, at.normal), 1, 0}, from, at.normal,
-                               [&](std::uint32_t) { return number; });
-    }
+    if (has_lamps())
+        light += light_of(
+            lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal, 1, 0),
+            [&](const glm::vec3& from) { return facing(at.normal, from); },
+            [&](std::uint32_t) { return number; });
     return at.look.colour * light / kPi_f + at.look.glow;
 }
 
-LampChoice LitObjects::lamps_over(const glm::vec3& place, const glm::vec3& normal) const {
-    LampChoice choice;
+LitObjects::LampsOver LitObjects::lamps_over(const glm::vec3& place, const glm::vec3& normal,
+                                             std::uint32_t count, std::uint32_t rays) const {
+    LampsOver lamps{.place = place, .normal = normal, .rays = rays};
     for (const Lamps::Lamp& lamp : lamps_.all()) {
         const glm::vec3 way = lamp.centre - place;
         const float away2 = glm::dot(way, way), away = std::sqrt(away2),
                     round = lamp.radius / std::max(away, 1e-6f);
-        const float facing = std::clamp(glm::dot(way, normal) / std::max(away, 1e-6f) + round, 0.0f, 1.0f);
+        const float part = std::clamp(glm::dot(way, normal) / std::max(away, 1e-6f) + round, 0.0f, 1.0f);
         // A convex body shows a quarter of its surface (Cauchy).
-        choice.add(0.25f * lamp.power * facing / (away2 + lamp.radius * lamp.radius + 1e-12f));
+        lamps.choice.add(0.25f * lamp.power * part / (away2 + lamp.radius * lamp.radius + 1e-12f));
     }
     glm::vec3 daylight(0.0f);
     if (choice_.sky) daylight += sky_->sky_irradiance;
     if (choice_.sun) daylight += sky_->sun_irradiance;
-    return choice.all() < kFaintLamp * mean_of(daylight) ? LampChoice{} : choice;
+    if (!lamps.choice.empty() && lamps.choice.all() >= kFaintLamp * mean_of(daylight)) lamps.count = count;
+    return lamps;
+}
+
+LitObjects::LampsOver LitObjects::lamps_over(const Surface& at, const SampleNumbers& numbers,
+                                             std::uint32_t rays) const {
+    if (!has_lamps()) return {};
+    return lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal,
+                      numbers.rays(kLitPlaces, kLeastLitPlaces), rays);
 }
 
 bool LitObjects::shows(const glm::vec3& place, const Lamps::Light& light) const {
@@ -503,32 +508,43 @@ bool LitObjects::shows(const glm::vec3& place, const Lamps::Light& light) const 
         {.from = place, .towards = light.towards, .farthest_m = light.distance_m - short_of_m});
 }
 
-// number: of the k-th place, in the unit square.
-glm::vec3 LitObjects::irradiance_of(const LampsOver& lamps, const glm::vec3& place, const glm::vec3& normal,
-                                    const auto& number) const {
+glm::vec3 LitObjects::light_of(const LampsOver& lamps, const auto& part, const auto& number) const {
     glm::vec3 sum(0.0f);
-    if (lamps.choice.empty()) return sum;
     for (std::uint32_t k = 0; k < lamps.count; ++k) {
         glm::vec2 at = number(k);
         const std::size_t lamp = lamps.choice.pick(at.x);
-        const Lamps::Light light = lamps_.light(lamp, place, at);
-        const float facing = glm::dot(light.towards, normal);
-        if (!(light.density > 0.0f) || !(facing > 0.0f) || !shows(place, light)) continue;
-        const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density;
-        const float rays = static_cast<float>(lamps.rays) * facing_density(normal, light.towards);
-        float part = facing / (density + rays);
+        const Lamps::Light light = lamps_.light(lamp, lamps.place, at);
+        if (!(light.density > 0.0f)) continue;
+        const VarnishPart of = part(light.towards);
+        if (!(of.weight > 0.0f) || !shows(lamps.place, light)) continue;
+        const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density +
+                              static_cast<float>(lamps.rays) * of.density;
+        float share = of.weight / density;
         // Much nearer than a lamp is large one of its places alone may say any much. All round there is no more than π.
-        if (lamps.rays == 0) part = std::min(part, kMostOfPlace * kPi_f / static_cast<float>(lamps.count));
-        sum += part * light.radiance;
+        if (lamps.rays == 0) share = std::min(share, kMostOfPlace * kPi_f / static_cast<float>(lamps.count));
+        sum += share * light.radiance;
     }
     return sum;
 }
 
+glm::vec3 LitObjects::light_of_places(const LampsOver& lamps, const Ray& ray, const RayHit& hit,
+                                      float density) const {
+    if (lamps.count == 0) return glm::vec3(0.0f);
+    const Lamps::Met met = lamps_.met(ray, hit);
+    if (met.lamp < 0) return glm::vec3(0.0f);
+    const float by_places = static_cast<float>(lamps.count) *
+                            lamps.choice.chance(static_cast<std::size_t>(met.lamp)) * met.density,
+                by_rays = static_cast<float>(lamps.rays) * density;
+    return by_places / std::max(by_places + by_rays, 1e-30f) * met.radiance;
+}
+
 glm::vec3 LitObjects::lamplight(const glm::vec3& place, const glm::vec3& normal,
                                 const SampleNumbers& numbers) const {
-    const LampsOver lamps{lamps_over(place, normal), numbers.rays(kLitPlaces, kLeastLitPlaces), 0};
+    const LampsOver lamps = lamps_over(place, normal, numbers.rays(kLitPlaces, kLeastLitPlaces), 0);
     const SampleNumbers::Places places = numbers.places(kOfLamps);
-    return irradiance_of(lamps, place, normal, [&](std::uint32_t k) { return places.of(k, lamps.count); });
+    return light_of(
+        lamps, [&](const glm::vec3& from) { return facing(normal, from); },
+        [&](std::uint32_t k) { return places.of(k, lamps.count); });
 }
 
 glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers) const {
@@ -536,26 +552,20 @@ glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers
     const std::uint32_t count = 2 * ((numbers.rays(kSkyRays, kLeastSkyRays) + 1) / 2);
     const TwoHalves places(numbers, kOfSky);
     const SampleNumbers::Places bounces = numbers.places(kOfBounces);
-    LampsOver lamps;
-    glm::vec3 of_lamps(0.0f);
-    if (has_lamps()) {
-        const glm::vec3 from = at.place + off_surface_m(at.place) * at.geometric;
-        lamps.choice = lamps_over(from, at.normal);
-        lamps.count = lamps.choice.empty() ? 0 : numbers.rays(kLitPlaces, kLeastLitPlaces);
-        lamps.rays = count;
-        const SampleNumbers::Places on_lamps = numbers.places(kOfLamps);
-        of_lamps = irradiance_of(lamps, from, at.normal,
-                                 [&](std::uint32_t k) { return on_lamps.of(k, lamps.count); });
-    }
+    const SampleNumbers::Places of_lamps = numbers.places(kOfLamps);
+    const LampsOver lamps = lamps_over(at, numbers, count);
     MeanLight mean;
     for (std::uint32_t k = 0; k < count; ++k) {
         const glm::vec2 place = places.of(k, count);
+        const glm::vec3 towards = outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x)));
         const Incoming from =
-            incoming(at, outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x))), kBlur,
-                     bounces.of(k, count), lamps.count > 0 ? &lamps : nullptr);
+            incoming(at, towards, kBlur, bounces.of(k, count), lamps, facing(at.normal, towards).density);
         mean.add(from.open, from.light, from.is_open);
     }
-    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f) + of_lamps;
+    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f) +
+           light_of(
+               lamps, [&](const glm::vec3& from) { return facing(at.normal, from); },
+               [&](std::uint32_t k) { return of_lamps.of(k, lamps.count); });
 }
 
 // The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
@@ -579,11 +589,17 @@ glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye,
     const TwoHalves of_rays(numbers, kOfGloss);
     const SampleNumbers::Places bounces = numbers.places(kOfGlossBounces),
                                 of_facets = numbers.places(kOfFacets);
+    const auto by_varnish = [&](const glm::vec3& from) {
+        return mirrored_by_varnish(eye, glm::transpose(axes) * from, roughness);
+    };
+    const SampleNumbers::Places of_lamps = numbers.places(kOfVarnishedLamps);
+    const LampsOver lamps = lamps_over(at, numbers, count);
     MeanLight mean;
     glm::vec3 seen(0.0f);
     for (std::uint32_t k = 0; k < count; ++k) {
         const auto [from, weight] = facet(of_rays.of(k, count));
-        const Incoming light = incoming(at, from, blur_rad, bounces.of(k, count));
+        const Incoming light = incoming(at, from, blur_rad, bounces.of(k, count), lamps,
+                                        lamps.count > 0 ? by_varnish(from).density : 0.0f);
         mean.add(weight * light.open, weight * light.light, light.is_open);
     }
     if (mean.is_any_open())
@@ -591,7 +607,8 @@ glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye,
             const auto [from, weight] = facet(of_facets.of(k, facets));
             seen += weight * (from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad));
         }
-    return mean.of(seen / static_cast<float>(facets)) /
+    return (mean.of(seen / static_cast<float>(facets)) +
+            light_of(lamps, by_varnish, [&](std::uint32_t k) { return of_lamps.of(k, lamps.count); })) /
            object_reflectance(std::max(glm::dot(at.normal, to_eye), 1e-3f), roughness);
 }
 

@@ -159,17 +159,22 @@ class LitObjects {
     bool is_blocked(const Ray& ray) const;
     bool is_sunny(const Surface& at) const;
     Ray ray_from(const Surface& at, const glm::vec3& towards) const;
-    // Lamps over a surface, of whose places `count` are looked at beside so many rays.
+    // Lamps over a surface, of whose places `count` are looked at beside so many rays; without count there are none.
     struct LampsOver {
+        glm::vec3 place{0.0f}, normal{0.0f, 0.0f, 1.0f};
         LampChoice choice{};
         std::uint32_t count = 0, rays = 0;
     };
-    Incoming incoming(const Surface& at, const glm::vec3& from, float blur_rad, glm::vec2 number,
-                      const LampsOver* lamps = nullptr) const;
-    LampChoice lamps_over(const glm::vec3& place, const glm::vec3& normal) const;
+    LampsOver lamps_over(const glm::vec3& place, const glm::vec3& normal, std::uint32_t count,
+                         std::uint32_t rays) const;
+    LampsOver lamps_over(const Surface& at, const SampleNumbers& numbers, std::uint32_t rays) const;
+    // part: of light from a direction, VarnishPart. number: of the k-th place, in the unit square.
+    glm::vec3 light_of(const LampsOver& lamps, const auto& part, const auto& number) const;
+    // Of the same where a ray has met something: the light that places have. density: of each ray [1/sr].
+    glm::vec3 light_of_places(const LampsOver& lamps, const Ray& ray, const RayHit& hit, float density) const;
     bool shows(const glm::vec3& place, const Lamps::Light& light) const;
-    glm::vec3 irradiance_of(const LampsOver& lamps, const glm::vec3& place, const glm::vec3& normal,
-                            const auto& number) const;
+    Incoming incoming(const Surface& at, const glm::vec3& from, float blur_rad, glm::vec2 number,
+                      const LampsOver& lamps, float density) const;
     static glm::vec3 outwards(const Surface& at, const glm::vec3& direction);
     void find_irradiance();
     glm::vec3 open_irradiance(const glm::vec3& normal) const;

@@ -171,7 +171,7 @@ Lamps::Light Lamps::light(std::size_t lamp, const glm::vec3& place, glm::vec2 nu
     const glm::vec3 on = (1.0f - root) * a + root * ((1.0f - number.y) * b + number.y * c);
     const glm::vec3 way = at * glm::vec4(on, 1.0f) - place;
     const float distance = std::max(glm::length(way), 1e-6f);
-    Light light{.towards = way / distance, .distance_m = distance};
+    Light light{.body = group.body, .towards = way / distance, .distance_m = distance};
     const glm::vec3 normal = glm::mat3(at) * glm::cross(b - a, c - a);
     const float facing = -glm::dot(light.towards, normal) / std::max(glm::length(normal), 1e-30f);
     if (!(facing > 1e-6f)) return light;

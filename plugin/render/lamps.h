@@ -57,6 +57,7 @@ class Lamps {
     // A place on a lamp, by its power, as a light at another place. Triangles shine to the side from which they are
     // counter-clockwise.
     struct Light {
+        std::size_t body = 0;
         glm::vec3 towards{0.0f, 0.0f, 1.0f};  // unit
         float distance_m = 0.0f;
         glm::vec3 radiance{0.0f};  // 0: its back

@@ -502,8 +502,9 @@ LitObjects::LampsOver LitObjects::lamps_over(const Surface& at, const SampleNumb
 }
 
 bool LitObjects::shows(const glm::vec3& place, const Lamps::Light& light) const {
-    const float short_of_m =
-        off_surface_m(place + light.distance_m * light.towards) + 1e-5f * light.distance_m;
+    const glm::vec3 there = place + light.distance_m * light.towards;
+    if (there.z < bodies_[light.body].water_m) return false;  // for rays, too, the water ends the air
+    const float short_of_m = off_surface_m(there) + 1e-5f * light.distance_m;
     return !is_blocked(
         {.from = place, .towards = light.towards, .farthest_m = light.distance_m - short_of_m});
 }

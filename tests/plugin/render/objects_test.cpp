@@ -1058,13 +1058,15 @@ TEST(Lamps, GlitterWithoutBiasAndWithoutSparks) {
     }
 }
 
-// A ball of light: E = π L (r/d)² cos θ, however near. Behind a wall it is dark.
+// A ball of light: E = π L (r/d)² cos θ, however near. Behind a wall it is dark, and what is in the water lights nothing above it.
 TEST(Lamps, LightWhatIsBelowThemByTheirDistance) {
     Scene scene = calm_scene();
     constexpr float kRadius = 0.5f, kHeight = 4.0f, kLight = 1000.0f;
     scene.objects = {object(coarse_sphere(kRadius, {0, 0, kHeight}, 48, kGlows)),
                      object(box({-20, 30, -1}, {20, 31, 40}), "wall")};
-    scene.objects[0].glow_cd_m2 = 1000.0 * static_cast<double>(kLight);
+    scene.objects.push_back(object(coarse_sphere(kRadius, {0, 0, -3}, 6, kGlows), "in the water"));
+    for (const std::size_t lamp : {0u, 2u})
+        scene.objects[lamp].glow_cd_m2 = 1000.0 * static_cast<double>(kLight);
     const LitScene lit(scene, dark_sky());
     const auto irradiance = [&](const glm::vec3& place, const glm::vec3& normal) {
         glm::dvec3 sum(0.0);
@@ -1083,6 +1085,7 @@ TEST(Lamps, LightWhatIsBelowThemByTheirDistance) {
         }
     EXPECT_EQ(irradiance({0, 40, 0}, {0, 0, 1}), 0.0);
     EXPECT_EQ(irradiance({0, 0, 9}, {0, 0, 1}), 0.0);
+    EXPECT_EQ(irradiance({0, 0, 2}, {0, 0, -1}), 0.0);
 }
 
 // The same in pictures: a diffuse floor under its varnish, and the water, which sends back of a lamp what it does of the sky.

@@ -258,40 +258,7 @@ float normal_below(float share) {
     return share < 0.5f ? -y : y;
 }
 
-// Eq. 20 as sky_integral() has it, by chance: x along the line of sight from the steepest visible facet, evenly; y across it by its own
-// distribution. That visible slopes have a density with the integral 1 (Eq. 11) makes the weights.
-void mirror(const LightingChoice& choice, const Sky& sky, const SeaPoint& p,
-            std::span<const glm::vec2> places, std::span<MirroredLight> mirrored, const FoamPattern& foam) {
-    using Variant = Shading<FresnelFit::Exact, SkyQuality::Nine>;
-    constexpr float kFarthest = 4.0f;  // deviations
-    Variant shading(sky.map, nullptr, choice, foam.picture);
-    const vec3 to_eye = shading.levelled(p.to_eye, p.up);
-    const vec3 normal = shading.facing_normal(
-        shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance), to_eye);
-    const typename Variant::SlopeFrame frame = shading.slope_frame(normal, p.slope_variance);
-    const vec3 v = shading.into_frame(frame, to_eye);
-    const typename Variant::VisibleSlopes seen = shading.visible_slopes(v, frame.variance);
-    const typename Variant::MaskedView view = shading.masked_view(v, frame.variance);
-    const float clear = 1.0f - foam_at(shading, choice, pattern_of<Variant>(foam), p, sky).opacity;
-    const float first = std::max(-seen.tilt, -kFarthest), all = kFarthest - first;
-    const float each = clear * all / (std::sqrt(2.0f * shading.kPi) * static_cast<float>(places.size()));
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const float x = first + all * places[i].x;
-        const float facing = std::max(view.height + std::sqrt(view.along) * x, 0.0f);
-        const vec2 slope = seen.across * normal_below(places[i].y) - seen.along * x;
-        const vec3 f = normalize(vec3(-slope.x, -slope.y, 1.0f));
-        const float cosine = std::max(dot(v, f), 0.0f);
-        const vec3 r = 2.0f * cosine * f - v;
-        const float nested = shading.nested_part(view, facing);
-        const float lit = std::min(shading.lit_of(view, nested, facing, r, frame.variance),
-                                   shading.visible_of(view, nested));
-        const vec3 level = shading.out_of_frame(frame, r);
-        // levelled()'s inverse.
-        const vec3 both = p.up + vec3(0.0f, 0.0f, 1.0f);
-        mirrored[i].from = level - both * (dot(both, level) / (1.0f + p.up.z)) + 2.0f * level.z * p.up;
-        mirrored[i].weight = each * facing * std::exp(-0.5f * x * x) * shading.facet_fresnel(cosine) * lit;
-    }
-}
+using OfFacets = Shading<FresnelFit::Exact, SkyQuality::Nine>;
 
 // Below there is one variant.
 using FromBelow = Shading<FresnelFit::Exact, SkyQuality::Nine>;
@@ -442,12 +409,81 @@ void water_albedo(const Sky& sky, const WaterBody& water, std::span<const SeaPoi
     sea_shading::albedo_batch(sky, water, points, albedo);
 }
 
-void mirrored_light(const LightingChoice& choice, const Sky& sky, const SeaPoint& point,
-                    std::span<const glm::vec2> places, std::span<MirroredLight> mirrored,
-                    const FoamPattern& foam) {
-    if (places.size() != mirrored.size())
-        throw std::invalid_argument("mirrored_light: give one MirroredLight for each place");
-    sea_shading::mirror(choice, sky, point, places, mirrored, foam);
+SeaFacets::SeaFacets(const LightingChoice& choice, const Sky& sky, const SeaPoint& p, const FoamPattern& foam)
+    : up_(p.up) {
+    using Variant = sea_shading::OfFacets;
+    Variant shading(sky.map, nullptr, choice, foam.picture);
+    const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
+    const glm::vec3 normal = shading.facing_normal(
+        shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance), to_eye);
+    const Variant::SlopeFrame frame = shading.slope_frame(normal, p.slope_variance);
+    x_ = frame.x;
+    y_ = frame.y;
+    normal_ = frame.normal;
+    variance_ = frame.variance;
+    to_eye_ = shading.into_frame(frame, to_eye);
+    const Variant::VisibleSlopes seen = shading.visible_slopes(to_eye_, variance_);
+    along_ = seen.along;
+    across_ = seen.across;
+    const Variant::MaskedView view = shading.masked_view(to_eye_, variance_);
+    height_ = view.height;
+    along2_ = view.along;
+    area_ = view.area;
+    clear_ =
+        1.0f - sea_shading::foam_at(shading, choice, sea_shading::pattern_of<Variant>(foam), p, sky).opacity;
+    first_ = std::max(-seen.tilt, -kFarthest);
+    all_ = kFarthest - first_;
+}
+
+// Eq. 20 as sky_integral() has it, by chance: x along the line of sight from the steepest visible facet, evenly; y across it by its own
+// distribution. That visible slopes have a density with the integral 1 (Eq. 11) makes the weights.
+MirroredLight SeaFacets::mirrored(glm::vec2 place, std::size_t count) const {
+    static const SkyMap none;
+    sea_shading::OfFacets shading(none);
+    const sea_shading::OfFacets::MaskedView view{height_, along2_, area_};
+    const float each = clear_ * all_ / (std::sqrt(2.0f * shading.kPi) * static_cast<float>(count));
+    const float x = first_ + all_ * place.x;
+    const float facing = std::max(view.height + std::sqrt(view.along) * x, 0.0f);
+    const glm::vec2 slope = across_ * sea_shading::normal_below(place.y) - along_ * x;
+    const glm::vec3 f = glm::normalize(glm::vec3(-slope.x, -slope.y, 1.0f));
+    const float cosine = std::max(glm::dot(to_eye_, f), 0.0f);
+    const glm::vec3 r = 2.0f * cosine * f - to_eye_;
+    const float nested = shading.nested_part(view, facing);
+    const float lit =
+        std::min(shading.lit_of(view, nested, facing, r, variance_), shading.visible_of(view, nested));
+    const glm::vec3 level = shading.out_of_frame({x_, y_, normal_, variance_}, r);
+    // levelled()'s inverse.
+    const glm::vec3 both = up_ + glm::vec3(0.0f, 0.0f, 1.0f);
+    return {.from = level - both * (glm::dot(both, level) / (1.0f + up_.z)) + 2.0f * level.z * up_,
+            .weight = each * facing * std::exp(-0.5f * x * x) * shading.facet_fresnel(cosine) * lit};
+}
+
+// The half vector's slope ζ has dζ = dω/(4 cosθ f_z³), as a facet's solid angle is f_z³ dζ and its mirror image's 4 cosθ times that
+// (Walter et al. 2007, Eq. 14).
+SeaFacets::Part SeaFacets::from(const glm::vec3& direction, float spread) const {
+    static const SkyMap none;
+    sea_shading::OfFacets shading(none);
+    const sea_shading::OfFacets::MaskedView view{height_, along2_, area_};
+    const glm::vec3 l = shading.into_frame({x_, y_, normal_, variance_}, shading.levelled(direction, up_));
+    const glm::vec3 half = to_eye_ + l;
+    if (!(l.z > 0.0f) || !(half.z > 1e-4f)) return {};
+    const float cosine = 0.5f * glm::length(half), upright = 0.5f * half.z / cosine;
+    const glm::vec2 slope = -glm::vec2(half) / half.z;
+    const float facing = cosine / upright;
+    const float nested = shading.nested_part(view, facing);
+    const float lit =
+        std::min(shading.lit_of(view, nested, facing, l, variance_), shading.visible_of(view, nested));
+    const float by_slope = 0.25f / (cosine * upright * upright * upright);
+    const float wider = spread * spread;
+    Part part;
+    part.weight = clear_ * facing * shading.slope_density(slope, variance_ + glm::vec3(wider, wider, 0.0f)) *
+                  shading.facet_fresnel(cosine) * lit * by_slope;
+    // Of y's distribution by the slope, which is both's over x's.
+    const float x = (facing - height_) / std::sqrt(along2_);
+    if (x >= first_ && x <= kFarthest)
+        part.density = shading.slope_density(slope, variance_) * std::sqrt(2.0f * shading.kPi) *
+                       std::exp(0.5f * x * x) / all_ * by_slope;
+    return part;
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,

@@ -3,6 +3,7 @@
 // the same text to OpenGL. This header is the batch interface for C++.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -120,12 +121,32 @@ struct MirroredLight {
     glm::vec3 from{0.0f, 0.0f, 1.0f};
     float weight = 0.0f;
 };
-// Some of the facets that shade_sea() integrates the sky over (the integral of SkyQuality::Integral), for light that no map of the sky has:
-// the sum of weight times radiance is an estimate of what the eye sees of it, without bias where places[i] are spread over the unit square
-// evenly, each in its own part of x: 1/N as wide. Foam hides its share. Throws as shade_sea() for spans of different lengths.
-void mirrored_light(const LightingChoice& choice, const Sky& sky, const SeaPoint& point,
-                    std::span<const glm::vec2> places, std::span<MirroredLight> mirrored,
-                    const FoamPattern& foam = {});
+// The facets that shade_sea() integrates the sky over at a point (the integral of SkyQuality::Integral), for light that no map of the sky
+// has. Foam hides its share.
+class SeaFacets {
+  public:
+    SeaFacets(const LightingChoice& choice, const Sky& sky, const SeaPoint& point,
+              const FoamPattern& foam = {});
+
+    // One of `count` facets: the sum of weight times radiance is an estimate of what the eye sees of it, without bias where their places are
+    // spread over the unit square evenly, each in its own part of x: 1/count as wide.
+    MirroredLight mirrored(glm::vec2 place, std::size_t count) const;
+
+    // The same by where light comes from, for lights so small that few facets find them.
+    struct Part {
+        float weight = 0.0f;   // times radiance and solid angle it is what the eye sees [1/sr]
+        float density = 0.0f;  // of mirrored()'s directions, for each facet [1/sr]
+    };
+    // direction: unit, in the axes of to_eye. spread: standard deviation of slopes that is added for the weight, as of a light so wide.
+    Part from(const glm::vec3& direction, float spread = 0.0f) const;
+
+  private:
+    static constexpr float kFarthest = 4.0f;             // deviations
+    glm::vec3 up_, x_, y_, normal_, variance_, to_eye_;  // the facets' frame, and the eye in it
+    glm::vec2 along_, across_;
+    float height_, along2_, area_;  // MaskedView's
+    float clear_, first_, all_;
+};
 
 // As shade_sea() for an eye in a body of water, at this height above the sea at rest [m], that sees the points from below at these distances
 // [m] through the water. `sea` has what the water between scatters.

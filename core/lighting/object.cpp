@@ -117,6 +117,20 @@ float mirrored_by_facet(float facing_facet, float leaving, float roughness) {
            shading::varnish_visible(std::max(leaving, 1e-3f), shading::varnish_alpha(roughness));
 }
 
+// The distribution of facets that an eye sees, over the solid angle of what they mirror (Heitz 2018, Eq. 17).
+VarnishPart mirrored_by_varnish(glm::vec3 to_eye, glm::vec3 to_light, float roughness) {
+    const glm::vec3 both = to_eye + to_light;
+    if (!(to_light.z > 0.0f) || !(to_eye.z > 0.0f) || !(both.z > 0.0f)) return {};
+    const float alpha2 = shading::square(shading::varnish_alpha(roughness));
+    const glm::vec3 facet = glm::normalize(both);
+    // α² − 1 times a square near 1 loses all that narrow lobes have: sin² is small there.
+    const float spread = alpha2 * facet.z * facet.z + facet.x * facet.x + facet.y * facet.y;
+    const float seen = shading::varnish_visible(to_eye.z, shading::varnish_alpha(roughness));
+    VarnishPart part{.density = alpha2 / (shading::kPi * spread * spread) * seen / (4.0f * to_eye.z)};
+    part.weight = part.density * mirrored_by_facet(glm::dot(to_eye, facet), to_light.z, roughness);
+    return part;
+}
+
 float object_reflectance(float cosine, float roughness) {
     return shading::varnish_reflectance(cosine, roughness);
 }

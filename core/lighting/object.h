@@ -44,6 +44,12 @@ glm::vec3 mirrored_facet(glm::vec3 to_eye, float roughness, glm::vec2 disc);
 // Which part of the light that it mirrors comes to the eye, by the cosines of the eye to the facet and of the light to the normal. Its
 // mean over such facets is object_reflectance().
 float mirrored_by_facet(float facing_facet, float leaving, float roughness);
+// The same by where light comes from (unit, in those axes): what of its radiance and solid angle comes to the eye, and how densely facets by
+// an even disc mirror there [1/sr].
+struct VarnishPart {
+    float weight = 0.0f, density = 0.0f;
+};
+VarnishPart mirrored_by_varnish(glm::vec3 to_eye, glm::vec3 to_light, float roughness);
 // What the varnish reflects of uniform light. cosine: of the view to the normal.
 float object_reflectance(float cosine, float roughness);
 // What level water mirrors, and where it refracts a ray that falls on it (unit) from the side of the normal.

@@ -33,11 +33,12 @@ inline int rows_of_batch(int sample_width, int samples) {
 }
 
 // What the sea of a sample shows of bodies. By the facets that were looked at: the light that those mirror which mirror a body, the sky's
-// that they would mirror without it, and the sky's of all of them. And what it shows through its surface more than without bodies.
+// that they would mirror without it, and the sky's of all of them. And what it shows more than that: of lamps, and through its surface more
+// than without bodies.
 struct BodiesInSea {
-    glm::vec3 mirrored{0.0f}, hidden{0.0f}, sky{0.0f}, through{0.0f};
+    glm::vec3 mirrored{0.0f}, hidden{0.0f}, sky{0.0f}, more{0.0f};
     BodiesInSea& operator*=(float share) {
-        for (glm::vec3* of : {&mirrored, &hidden, &sky, &through}) *of *= share;
+        for (glm::vec3* of : {&mirrored, &hidden, &sky, &more}) *of *= share;
         return *this;
     }
 };
@@ -69,6 +70,7 @@ struct Batch {
     std::vector<std::size_t> sea;  // which samples show the sea, rising
     SeenSea<T> seen;               // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;
+    std::vector<glm::vec3> lamplight;     // where something glows; likewise
     std::vector<SeaRadiance> unlit;       // without the sun, where bodies hide it; likewise
     std::vector<std::uint8_t> in_shadow;  // whether they do
     std::vector<float> sun_share;         // how much of it they leave

@@ -237,11 +237,12 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     if (has_objects) {
         const auto rows = static_cast<std::size_t>(std::min(
             rows_of_batch(sampled.camera.resolution.x, options.samples), sampled.camera.resolution.y));
-        constexpr std::size_t kSample = sizeof(RayHit) + sizeof(glm::vec3) + sizeof(BodiesInSea) +
-                                        sizeof(SeaRadiance) + sizeof(std::uint8_t) + sizeof(float);
+        const std::size_t a_sample = sizeof(RayHit) + sizeof(glm::vec3) + sizeof(BodiesInSea) +
+                                     sizeof(SeaRadiance) + sizeof(std::uint8_t) + sizeof(float) +
+                                     (Lamps::bytes(scene) > 0 ? sizeof(glm::vec3) : 0);
         need.add("the objects",
                  LitObjects::bytes(scene) + hulls_bytes(scene) +
-                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * kSample,
+                     rows * static_cast<std::size_t>(sampled.camera.resolution.x) * a_sample,
                  "give meshes of fewer triangles");
     }
     if (options.lighting.spray) {

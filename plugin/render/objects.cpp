@@ -23,7 +23,21 @@ constexpr std::uint32_t kSunRays = 16, kSkyRays = 32, kLeastSunRays = 2, kLeastS
 constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
 constexpr float kBlur = 0.15f;  // [rad] of the sky, by eye: some of what 32 rays of a hemisphere are apart
 constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
-enum Use : std::uint32_t { kOfSun, kOfSky, kOfGloss, kOfFacets, kOfBounces, kOfGlossBounces, kOtherHalf };
+constexpr std::uint32_t kLampPlaces = 32, kLeastLampPlaces = 4, kLitPlaces = 16, kLeastLitPlaces = 2;
+constexpr float kMostOfPlace = 16.0f;
+constexpr float kFaintLamp = 1e-3f, kFaintMirrored = 1e-4f;  // beside what else there is
+enum Use : std::uint32_t {
+    kOfSun,
+    kOfSky,
+    kOfGloss,
+    kOfFacets,
+    kOfBounces,
+    kOfGlossBounces,
+    kOtherHalf,
+    kOfLamps = 20,
+    kOfVarnishedLamps,
+    kOfMirroredLamps
+};
 
 // A coordinate system round a unit direction (Duff et al. 2017).
 glm::mat3 axes_round(const glm::vec3& z) {
@@ -78,6 +92,12 @@ struct TwoHalves {
     glm::vec2 of(std::uint32_t k, std::uint32_t rays) const { return half[k % 2].of(k / 2, rays / 2); }
 };
 
+// What light from a direction gives a diffuse surface, and rays by the cosine.
+VarnishPart facing(const glm::vec3& normal, const glm::vec3& direction) {
+    const float cosine = std::max(glm::dot(normal, direction), 0.0f);
+    return {cosine, cosine / kPi_f};
+}
+
 // Off a surface, by what single precision knows of the place.
 float off_surface_m(const glm::vec3& place) {
     return 5e-4f + 4e-6f * glm::length(place);
@@ -99,7 +119,7 @@ glm::vec2 SampleNumbers::Places::of(std::uint32_t n, std::uint32_t rays) const {
     return {unit(shift_x + at * 3242174889u), unit(shift_y + at * 2447445413u)};
 }
 
-LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
+LitObjects::LitObjects(const Scene& scene) : scene_(scene), lamps_(scene) {
     std::vector<const ObjectMesh*> meshes;
     for (const SceneObject& object : scene.objects) {
         meshes.push_back(object.mesh.get());
@@ -116,7 +136,7 @@ LitObjects::LitObjects(const Scene& scene) : scene_(scene) {
 std::size_t LitObjects::bytes(const Scene& scene) {
     std::vector<const ObjectMesh*> meshes;
     for (const SceneObject& object : scene.objects) meshes.push_back(object.mesh.get());
-    return meshes.empty() ? 0 : ray_scene_bytes(meshes);
+    return meshes.empty() ? 0 : ray_scene_bytes(meshes) + Lamps::bytes(scene);
 }
 
 template <class T>
@@ -156,6 +176,7 @@ void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
         transforms.push_back({body.axes[0], body.axes[1], body.axes[2], body.place});
     }
     rays_->place(transforms);
+    lamps_.place(transforms);
 }
 template void LitObjects::place(const Frame<float>&, double, const Sea&);
 template void LitObjects::place(const Frame<double>&, double, const Sea&);
@@ -417,11 +438,13 @@ Ray LitObjects::ray_from(const Surface& at, const glm::vec3& towards) const {
 
 // What comes from a direction, and what would without any body.
 LitObjects::Incoming LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad,
-                                          glm::vec2 number) const {
+                                          glm::vec2 number, const LampsOver& lamps, float density) const {
     const Ray ray = ray_from(at, from);
     const glm::vec3 open = from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad);
-    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m)
-        return {.open = open, .light = estimate(ray, hit, number), .is_open = false};
+    if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m) {
+        const glm::vec3 light = estimate(ray, hit, number) - light_of_places(lamps, ray, hit, density);
+        return {.open = open, .light = light, .is_open = false};
+    }
     if (from.z < 0.0f && beam_ != glm::vec3(0.0f)) {
         const glm::vec3 there = ray.from + ray.farthest_m * from;
         if (is_blocked({.from = there + glm::vec3(0.0f, 0.0f, off_surface_m(there)), .towards = to_sun_}))
@@ -445,7 +468,84 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     if (is_sunny(at) &&
         !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
         light += glm::dot(at.normal, to_sun_) * beam_;
+    if (has_lamps())
+        light += light_of(
+            lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal, 1, 0),
+            [&](const glm::vec3& from) { return facing(at.normal, from); },
+            [&](std::uint32_t) { return number; });
     return at.look.colour * light / kPi_f + at.look.glow;
+}
+
+LitObjects::LampsOver LitObjects::lamps_over(const glm::vec3& place, const glm::vec3& normal,
+                                             std::uint32_t count, std::uint32_t rays) const {
+    LampsOver lamps{.place = place, .normal = normal, .rays = rays};
+    for (const Lamps::Lamp& lamp : lamps_.all()) {
+        const glm::vec3 way = lamp.centre - place;
+        const float away2 = glm::dot(way, way), away = std::sqrt(away2),
+                    round = lamp.radius / std::max(away, 1e-6f);
+        const float part = std::clamp(glm::dot(way, normal) / std::max(away, 1e-6f) + round, 0.0f, 1.0f);
+        // A convex body shows a quarter of its surface (Cauchy).
+        lamps.choice.add(0.25f * lamp.power * part / (away2 + lamp.radius * lamp.radius + 1e-12f));
+    }
+    glm::vec3 daylight(0.0f);
+    if (choice_.sky) daylight += sky_->sky_irradiance;
+    if (choice_.sun) daylight += sky_->sun_irradiance;
+    if (!lamps.choice.empty() && lamps.choice.all() >= kFaintLamp * mean_of(daylight)) lamps.count = count;
+    return lamps;
+}
+
+LitObjects::LampsOver LitObjects::lamps_over(const Surface& at, const SampleNumbers& numbers,
+                                             std::uint32_t rays) const {
+    if (!has_lamps()) return {};
+    return lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal,
+                      numbers.rays(kLitPlaces, kLeastLitPlaces), rays);
+}
+
+bool LitObjects::shows(const glm::vec3& place, const Lamps::Light& light) const {
+    const glm::vec3 there = place + light.distance_m * light.towards;
+    if (there.z < bodies_[light.body].water_m) return false;  // for rays, too, the water ends the air
+    const float short_of_m = off_surface_m(there) + 1e-5f * light.distance_m;
+    return !is_blocked(
+        {.from = place, .towards = light.towards, .farthest_m = light.distance_m - short_of_m});
+}
+
+glm::vec3 LitObjects::light_of(const LampsOver& lamps, const auto& part, const auto& number) const {
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t k = 0; k < lamps.count; ++k) {
+        glm::vec2 at = number(k);
+        const std::size_t lamp = lamps.choice.pick(at.x);
+        const Lamps::Light light = lamps_.light(lamp, lamps.place, at);
+        if (!(light.density > 0.0f)) continue;
+        const VarnishPart of = part(light.towards);
+        if (!(of.weight > 0.0f) || !shows(lamps.place, light)) continue;
+        const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density +
+                              static_cast<float>(lamps.rays) * of.density;
+        float share = of.weight / density;
+        // Much nearer than a lamp is large one of its places alone may say any much. All round there is no more than π.
+        if (lamps.rays == 0) share = std::min(share, kMostOfPlace * kPi_f / static_cast<float>(lamps.count));
+        sum += share * light.radiance;
+    }
+    return sum;
+}
+
+glm::vec3 LitObjects::light_of_places(const LampsOver& lamps, const Ray& ray, const RayHit& hit,
+                                      float density) const {
+    if (lamps.count == 0) return glm::vec3(0.0f);
+    const Lamps::Met met = lamps_.met(ray, hit);
+    if (met.lamp < 0) return glm::vec3(0.0f);
+    const float by_places = static_cast<float>(lamps.count) *
+                            lamps.choice.chance(static_cast<std::size_t>(met.lamp)) * met.density,
+                by_rays = static_cast<float>(lamps.rays) * density;
+    return by_places / std::max(by_places + by_rays, 1e-30f) * met.radiance;
+}
+
+glm::vec3 LitObjects::lamplight(const glm::vec3& place, const glm::vec3& normal,
+                                const SampleNumbers& numbers) const {
+    const LampsOver lamps = lamps_over(place, normal, numbers.rays(kLitPlaces, kLeastLitPlaces), 0);
+    const SampleNumbers::Places places = numbers.places(kOfLamps);
+    return light_of(
+        lamps, [&](const glm::vec3& from) { return facing(normal, from); },
+        [&](std::uint32_t k) { return places.of(k, lamps.count); });
 }
 
 glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers) const {
@@ -453,15 +553,20 @@ glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers
     const std::uint32_t count = 2 * ((numbers.rays(kSkyRays, kLeastSkyRays) + 1) / 2);
     const TwoHalves places(numbers, kOfSky);
     const SampleNumbers::Places bounces = numbers.places(kOfBounces);
+    const SampleNumbers::Places of_lamps = numbers.places(kOfLamps);
+    const LampsOver lamps = lamps_over(at, numbers, count);
     MeanLight mean;
     for (std::uint32_t k = 0; k < count; ++k) {
         const glm::vec2 place = places.of(k, count);
+        const glm::vec3 towards = outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x)));
         const Incoming from =
-            incoming(at, outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x))), kBlur,
-                     bounces.of(k, count));
+            incoming(at, towards, kBlur, bounces.of(k, count), lamps, facing(at.normal, towards).density);
         mean.add(from.open, from.light, from.is_open);
     }
-    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f);
+    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f) +
+           light_of(
+               lamps, [&](const glm::vec3& from) { return facing(at.normal, from); },
+               [&](std::uint32_t k) { return of_lamps.of(k, lamps.count); });
 }
 
 // The mean radiance in the varnish's lobe: many facets look at sky and sea, a few ask what is before them.
@@ -485,11 +590,17 @@ glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye,
     const TwoHalves of_rays(numbers, kOfGloss);
     const SampleNumbers::Places bounces = numbers.places(kOfGlossBounces),
                                 of_facets = numbers.places(kOfFacets);
+    const auto by_varnish = [&](const glm::vec3& from) {
+        return mirrored_by_varnish(eye, glm::transpose(axes) * from, roughness);
+    };
+    const SampleNumbers::Places of_lamps = numbers.places(kOfVarnishedLamps);
+    const LampsOver lamps = lamps_over(at, numbers, count);
     MeanLight mean;
     glm::vec3 seen(0.0f);
     for (std::uint32_t k = 0; k < count; ++k) {
         const auto [from, weight] = facet(of_rays.of(k, count));
-        const Incoming light = incoming(at, from, blur_rad, bounces.of(k, count));
+        const Incoming light = incoming(at, from, blur_rad, bounces.of(k, count), lamps,
+                                        lamps.count > 0 ? by_varnish(from).density : 0.0f);
         mean.add(weight * light.open, weight * light.light, light.is_open);
     }
     if (mean.is_any_open())
@@ -497,7 +608,8 @@ glm::vec3 LitObjects::mirrored(const Surface& at, const glm::vec3& to_eye,
             const auto [from, weight] = facet(of_facets.of(k, facets));
             seen += weight * (from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad));
         }
-    return mean.of(seen / static_cast<float>(facets)) /
+    return (mean.of(seen / static_cast<float>(facets)) +
+            light_of(lamps, by_varnish, [&](std::uint32_t k) { return of_lamps.of(k, lamps.count); })) /
            object_reflectance(std::max(glm::dot(at.normal, to_eye), 1e-3f), roughness);
 }
 
@@ -548,6 +660,50 @@ bool LitObjects::may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye
         const float size = 1.5f * body.radius / distance * (1.0f + glm::length(slope)) / half.z;
         return glm::length(slope - mean) <= farthest + size;
     });
+}
+
+LitObjects::LampsInSea LitObjects::lamps_in(const SeaFacets& facets, const glm::vec3& place,
+                                            std::uint32_t rays, const SampleNumbers& numbers) const {
+    LampsInSea lamps{.facets = facets, .place = place, .rays = rays};
+    for (const Lamps::Lamp& lamp : lamps_.all()) {
+        const glm::vec3 way = lamp.centre - place;
+        const float away = std::max({glm::length(way), lamp.radius, 1e-6f});
+        const float mirrored =
+            facets.from(way / std::max(glm::length(way), 1e-6f), 0.5f * lamp.radius / away).weight;
+        lamps.choice.add(0.25f * lamp.power / (away * away) * mirrored);
+    }
+    const float sky = choice_.sky ? mean_of(sky_->sky_irradiance) / kPi_f : 0.0f;
+    if (!lamps.choice.empty() && lamps.choice.all() >= kFaintMirrored * sky)
+        lamps.count = numbers.rays(kLampPlaces, kLeastLampPlaces);
+    return lamps;
+}
+
+glm::vec3 LitObjects::mirrored_places(const LampsInSea& lamps, const SampleNumbers& numbers) const {
+    const SampleNumbers::Places places = numbers.places(kOfMirroredLamps);
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t k = 0; k < lamps.count; ++k) {
+        glm::vec2 at = places.of(k, lamps.count);
+        const std::size_t lamp = lamps.choice.pick(at.x);
+        const Lamps::Light light = lamps_.light(lamp, lamps.place, at);
+        if (!(light.density > 0.0f)) continue;
+        const SeaFacets::Part part = lamps.facets->from(light.towards);
+        if (!(part.weight > 0.0f) || !shows(lamps.place, light)) continue;
+        const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density +
+                              static_cast<float>(lamps.rays) * part.density;
+        sum += part.weight / density * glm::max(light.radiance - sky(light.towards), glm::vec3(0.0f));
+    }
+    return sum;
+}
+
+LitObjects::LampMet LitObjects::lamp_met(const LampsInSea& lamps, const Ray& ray, const RayHit& hit) const {
+    const Lamps::Met met = lamps_.met(ray, hit);
+    if (met.lamp < 0) return {};
+    const float by_places = static_cast<float>(lamps.count) *
+                            lamps.choice.chance(static_cast<std::size_t>(met.lamp)) * met.density,
+                by_rays = static_cast<float>(lamps.rays) * lamps.facets->from(ray.towards).density;
+    LampMet found{.light = glm::max(met.radiance - sky(ray.towards), glm::vec3(0.0f))};
+    if (by_places > 0.0f) found.part = by_rays / (by_rays + by_places);
+    return found;
 }
 
 bool LitObjects::is_near(const glm::vec3& place, float distance_m) const {

@@ -15,6 +15,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@
 #include "core/lighting/water.h"
 #include "core/waves/frame.h"
 #include "pelagic/scene.h"
+#include "plugin/render/lamps.h"
 #include "plugin/render/ray_scene.h"
 #include "plugin/render/sea_light.h"
 
@@ -85,6 +87,28 @@ class LitObjects {
     // Whether facets of a sea with these hidden slopes (their variances' sum) mirror some body to the eye, 4 deviations far.
     bool may_be_mirrored(const glm::vec3& place, const glm::vec3& to_eye, const glm::vec3& normal,
                          float slope_variance) const;
+    // Whether something glows; only then what follows is asked for.
+    bool has_lamps() const { return !lamps_.all().empty(); }
+    // What facets of the sea at a place mirror of lamps, by places on these beside rays of the facets. Each counts by its part of how
+    // densely both look there (the balance heuristic, Veach and Guibas 1995): small lamps are found by their places, and mirrors of lamps by
+    // rays. Of a lamp counts what it is brighter than the sky behind it, the rest is for rays alone.
+    struct LampsInSea {
+        std::optional<SeaFacets> facets{};
+        glm::vec3 place{0.0f};              // where rays begin
+        LampChoice choice{};                // by how much the facets mirror
+        std::uint32_t count = 0, rays = 0;  // of places: 0 where that is next to nothing; of rays
+    };
+    LampsInSea lamps_in(const SeaFacets& facets, const glm::vec3& place, std::uint32_t rays,
+                        const SampleNumbers& numbers) const;
+    glm::vec3 mirrored_places(const LampsInSea& lamps, const SampleNumbers& numbers) const;
+    // A ray that has met a body: the light that is for both, which estimate() has whole, and how much of it counts.
+    struct LampMet {
+        glm::vec3 light{0.0f};
+        float part = 1.0f;
+    };
+    LampMet lamp_met(const LampsInSea& lamps, const Ray& ray, const RayHit& hit) const;
+    // The irradiance of lamps on a surface of the sea; 0 where it is next to nothing beside that of sky and sun.
+    glm::vec3 lamplight(const glm::vec3& place, const glm::vec3& normal, const SampleNumbers& numbers) const;
     // Whether a body may be nearer than this.
     bool is_near(const glm::vec3& place, float distance_m) const;
     // From how far a hundredth of a body's light comes through the water [m].
@@ -135,7 +159,22 @@ class LitObjects {
     bool is_blocked(const Ray& ray) const;
     bool is_sunny(const Surface& at) const;
     Ray ray_from(const Surface& at, const glm::vec3& towards) const;
-    Incoming incoming(const Surface& at, const glm::vec3& from, float blur_rad, glm::vec2 number) const;
+    // Lamps over a surface, of whose places `count` are looked at beside so many rays; without count there are none.
+    struct LampsOver {
+        glm::vec3 place{0.0f}, normal{0.0f, 0.0f, 1.0f};
+        LampChoice choice{};
+        std::uint32_t count = 0, rays = 0;
+    };
+    LampsOver lamps_over(const glm::vec3& place, const glm::vec3& normal, std::uint32_t count,
+                         std::uint32_t rays) const;
+    LampsOver lamps_over(const Surface& at, const SampleNumbers& numbers, std::uint32_t rays) const;
+    // part: of light from a direction, VarnishPart. number: of the k-th place, in the unit square.
+    glm::vec3 light_of(const LampsOver& lamps, const auto& part, const auto& number) const;
+    // Of the same where a ray has met something: the light that places have. density: of each ray [1/sr].
+    glm::vec3 light_of_places(const LampsOver& lamps, const Ray& ray, const RayHit& hit, float density) const;
+    bool shows(const glm::vec3& place, const Lamps::Light& light) const;
+    Incoming incoming(const Surface& at, const glm::vec3& from, float blur_rad, glm::vec2 number,
+                      const LampsOver& lamps, float density) const;
     static glm::vec3 outwards(const Surface& at, const glm::vec3& direction);
     void find_irradiance();
     glm::vec3 open_irradiance(const glm::vec3& normal) const;
@@ -149,6 +188,7 @@ class LitObjects {
     const Scene& scene_;
     std::vector<Body> bodies_;
     std::unique_ptr<RayScene> rays_;
+    Lamps lamps_;
 
     const Sky* sky_ = nullptr;
     const WaterBody* water_ = nullptr;

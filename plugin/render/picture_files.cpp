@@ -82,6 +82,14 @@ Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
     return {.sun = type(most + largest(limb * sky.sun_radiance)), .whole = type(most)};
 }
 
+std::string objects_text(const Scene& scene) {
+    if (scene.objects.empty()) return "";
+    const bool has_lamps = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                       [](const SceneObject& object) { return object.glow_cd_m2 > 0.0; });
+    return " objects " + std::to_string(kObjectsRevision) +
+           (has_lamps ? " lamps " + std::to_string(kLampsRevision) : "");
+}
+
 // What a picture depends on, besides the camera at its frame.
 KeyPartSet parts_beside_the_view(const RenderOptions& options) {
     KeyPartSet fed = key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Grid, KeyPart::Light, KeyPart::Water,
@@ -242,8 +250,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
              " layers " + layers_text(source.scene, options_.layers) + (lighting.spray ? " spray" : "") +
-             (source.scene.objects.empty() ? "" : " objects " + std::to_string(kObjectsRevision)) +
-             window_text(source.scene.camera.resolution, options_));
+             objects_text(source.scene) + window_text(source.scene.camera.resolution, options_));
     if (plan.from->weather) {
         hash.add(weather_plan_text(plan, true));
         weather_ = plan;

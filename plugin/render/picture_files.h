@@ -43,6 +43,8 @@ struct PictureContext {
 inline constexpr int kPictureRevision = 22;
 // The same for pictures of shots with objects alone.
 inline constexpr int kObjectsRevision = 2;
+// And where some of them glow.
+inline constexpr int kLampsRevision = 1;
 
 // What the two files of a frame are made of: the keys on which pictures depend, the camera's pose, the resolved plan,
 // the sky's picture, the samples, terms and lookups of the light, the shutter, alpha, the layers, and the exposure.

@@ -605,6 +605,7 @@ class RendererOf final : public Impl {
         sea_.light(batch_.seen, sea_.sky(), air_, spray_, batch_.lit);
         if (objects_) {
             shadow_sea(first_row);
+            if (objects_->has_lamps()) light_sea_by_lamps(first_row);
             mirror_objects(first_row);
             see_into_water(first_row);
         }
@@ -641,50 +642,100 @@ class RendererOf final : public Impl {
         });
     }
 
+    glm::vec3 upright(std::size_t i) const {
+        return glm::vec3(from_level(glm::dvec3(sea_.answers().vectors(Product::Normal)[i]),
+                                    glm::dvec3(batch_.seen.up[i])));
+    }
+    glm::vec3 above_sea(int first_row, std::size_t i) const {
+        return sea_place(first_row, batch_.sea[i]) + 1e-3f * batch_.seen.up[i];
+    }
+
+    // Foam and the water send back lamps' light as they do the sky's.
+    void light_sea_by_lamps(int first_row) {
+        const std::size_t count = batch_.sea.size();
+        std::vector<std::uint8_t>& is_lit = batch_.in_shadow;
+        batch_.lamplight.resize(count);
+        is_lit.assign(count, 0);
+        in_parallel(count, [&](std::size_t i) {
+            if (!batch_.seen.from_below.empty() && batch_.seen.from_below[i] != 0) return;
+            batch_.lamplight[i] = objects_->lamplight(above_sea(first_row, i), upright(i),
+                                                      numbers_of(first_row, batch_.sea[i]));
+            is_lit[i] = batch_.lamplight[i] != glm::vec3(0.0f);
+        });
+        if (std::find(is_lit.begin(), is_lit.end(), 1) == is_lit.end()) return;
+        Sky white = sea_.sky();
+        white.sun_radiance = white.sun_irradiance = glm::vec3(0.0f);
+        white.sky_irradiance = glm::vec3(1.0f);
+        Air air = air_;
+        air.by_place = 0.0f;
+        batch_.unlit.resize(count);
+        sea_.light(batch_.seen, white, air, spray_, batch_.unlit, is_lit);
+        in_parallel(count, [&](std::size_t i) {
+            if (!is_lit[i]) return;
+            batch_.lit[i].sea += batch_.lamplight[i] * batch_.unlit[i].sea;
+            batch_.lit[i].foam += batch_.lamplight[i] * batch_.unlit[i].foam;
+        });
+    }
+
     // What facets of the sea mirror of bodies, in place of the sky behind them.
     void mirror_objects(int first_row) {
-        const std::vector<glm::vec3>&normal = sea_.answers().vectors(Product::Normal),
-              &variance = sea_.answers().vectors(Product::SlopeVariance);
+        const std::vector<glm::vec3>& variance = sea_.answers().vectors(Product::SlopeVariance);
         in_parallel(batch_.sea.size(), [&](std::size_t i) {
             if (!batch_.seen.from_below.empty() && batch_.seen.from_below[i] != 0) return;
             const std::size_t sample = batch_.sea[i];
-            const glm::vec3 place = sea_place(first_row, sample);
-            const glm::vec3 upright(from_level(glm::dvec3(normal[i]), glm::dvec3(batch_.seen.up[i])));
-            if (!objects_->may_be_mirrored(place, batch_.seen.to_eye[i], upright,
-                                           variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]))
-                return;
-            constexpr std::uint32_t kFacets = 64, kLeast = 4, kUse = 100,  // of a pixel, of a sample
-                kBounce = 101;
+            const bool may_be_mirrored =
+                objects_->may_be_mirrored(sea_place(first_row, sample), batch_.seen.to_eye[i], upright(i),
+                                          variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]);
+            if (!may_be_mirrored && !objects_->has_lamps()) return;
             const SampleNumbers numbers = numbers_of(first_row, sample);
-            const std::uint32_t count = numbers.rays(kFacets, kLeast);
-            const SampleNumbers::Places of_facets = numbers.places(kUse), bounces = numbers.places(kBounce);
-            std::array<glm::vec2, kFacets> places;
-            std::array<MirroredLight, kFacets> mirrored;
-            // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell
-            // at even steps hardly depends on where they begin.
-            const auto n = static_cast<std::uint32_t>(options_.samples);
-            const auto drawn = philox({numbers.x, numbers.y, numbers.frame, kUse}, kUse);
-            const float begin = static_cast<float>(drawn[0] >> 8) * 0x1p-24f;
-            const std::uint32_t turn = (numbers.index * (n + 1) + drawn[1] % numbers.all) % numbers.all;
-            for (std::uint32_t k = 0; k < count; ++k) {
-                places[k] = of_facets.of(k, count);
-                places[k].x = (static_cast<float>(k * numbers.all + turn) + begin) /
-                              static_cast<float>(count * numbers.all);
-            }
-            sea_.mirror(batch_.seen, i, std::span(places).first(count), std::span(mirrored).first(count));
+            const SeaFacets facets = sea_.facets(batch_.seen, i);
+            const std::uint32_t rays = may_be_mirrored ? numbers.rays(kMirroringFacets, 4) : 0;
+            LitObjects::LampsInSea lamps;
+            if (objects_->has_lamps())
+                lamps = objects_->lamps_in(facets, above_sea(first_row, i), rays, numbers);
+            if (rays == 0 && lamps.count == 0) return;
             const glm::vec3 left = left_before(i);
-            BodiesInSea& shown = batch_.in_sea[sample];
-            for (std::uint32_t k = 0; k < count; ++k) {
-                if (!(mirrored[k].weight > 0.0f)) continue;
-                const Ray ray{.from = place + 1e-3f * batch_.seen.up[i], .towards = mirrored[k].from};
-                const glm::vec3 weight = mirrored[k].weight * left, sky = weight * objects_->sky(ray.towards);
-                shown.sky += sky;
-                const RayHit hit = objects_->nearest(ray);
-                if (!hit.is_hit()) continue;
-                shown.mirrored += weight * objects_->estimate(ray, hit, bounces.of(k, count));
-                shown.hidden += sky;
-            }
+            if (lamps.count > 0)
+                batch_.in_sea[sample].more += left * objects_->mirrored_places(lamps, numbers);
+            mirror_by_rays(facets, above_sea(first_row, i), left, numbers, lamps, batch_.in_sea[sample],
+                           rays);
         });
+    }
+
+    static constexpr std::uint32_t kMirroringFacets = 64;  // of a pixel
+
+    void mirror_by_rays(const SeaFacets& facets, const glm::vec3& from, const glm::vec3& left,
+                        const SampleNumbers& numbers, const LitObjects::LampsInSea& lamps, BodiesInSea& shown,
+                        std::uint32_t count) const {
+        if (count == 0) return;
+        constexpr std::uint32_t kUse = 100, kBounce = 101;
+        const SampleNumbers::Places of_facets = numbers.places(kUse), bounces = numbers.places(kBounce);
+        // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell
+        // at even steps hardly depends on where they begin.
+        const auto n = static_cast<std::uint32_t>(options_.samples);
+        const auto drawn = philox({numbers.x, numbers.y, numbers.frame, kUse}, kUse);
+        const float begin = static_cast<float>(drawn[0] >> 8) * 0x1p-24f;
+        const std::uint32_t turn = (numbers.index * (n + 1) + drawn[1] % numbers.all) % numbers.all;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            glm::vec2 place = of_facets.of(k, count);
+            place.x = (static_cast<float>(k * numbers.all + turn) + begin) /
+                      static_cast<float>(count * numbers.all);
+            const MirroredLight mirrored = facets.mirrored(place, count);
+            if (!(mirrored.weight > 0.0f)) continue;
+            const Ray ray{.from = from, .towards = mirrored.from};
+            const glm::vec3 weight = mirrored.weight * left, sky = weight * objects_->sky(ray.towards);
+            shown.sky += sky;
+            const RayHit hit = objects_->nearest(ray);
+            if (!hit.is_hit()) continue;
+            glm::vec3 light = objects_->estimate(ray, hit, bounces.of(k, count));
+            if (lamps.count > 0) {
+                const auto [of_lamp, part] = objects_->lamp_met(lamps, ray, hit);
+                light -= of_lamp;
+                shown.more += (part * weight) * of_lamp;
+            }
+            shown.mirrored += weight * light;
+            shown.hidden += sky;
+        }
     }
 
     // Bodies in the water, through its surface as one mean facet, and in front of what the water behind them sends.
@@ -709,7 +760,7 @@ class RendererOf final : public Impl {
             const glm::vec3 left = water_lets_through(sea_.water(), hit.distance_m);
             const glm::vec3 body = (clear * (1.0f - mirrored_by_level_water(cosine)) * kBehindGlass) * left *
                                    objects_->radiance_in_water(ray, hit);
-            batch_.in_sea[batch_.sea[i]].through = body * left_before(i) - left * batch_.lit[i].sea;
+            batch_.in_sea[batch_.sea[i]].more += body * left_before(i) - left * batch_.lit[i].sea;
         });
     }
 
@@ -778,7 +829,7 @@ class RendererOf final : public Impl {
     // What a pixel's samples of the sea show of bodies, more than without them, in all. Of the sky that they mirror, `sky`, bodies take the
     // share that they do among the facets: so no chance takes more than there is.
     static glm::vec3 shown_in_sea(const BodiesInSea& all, const glm::vec3& sky) {
-        glm::vec3 shown = all.through;
+        glm::vec3 shown = all.more;
         for (int c = 0; c < 3; ++c) {
             constexpr float kMost = 4.0f;  // facets tell more or less of a bright spot of the sky
             const float scale = all.sky[c] > 0.0f ? sky[c] / all.sky[c] : 1.0f;
@@ -1130,7 +1181,7 @@ class RendererOf final : public Impl {
                 shown.mirrored += in_sea.mirrored;
                 shown.hidden += in_sea.hidden;
                 shown.sky += in_sea.sky;
-                shown.through += in_sea.through;
+                shown.more += in_sea.more;
                 if (in_sea.sky != glm::vec3(0.0f)) sky += batch_.radiance[at].sky;
                 if (mattes.empty() || !(is_object(at) || is_sea(at))) continue;
                 const float id =

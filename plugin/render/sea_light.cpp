@@ -203,9 +203,8 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
 }
 
 template <class T>
-void SeaLight<T>::mirror(const SeenSea<T>& seen, std::size_t place, std::span<const glm::vec2> places,
-                         std::span<MirroredLight> mirrored) const {
-    mirrored_light(choice_, sky_, points_[place], places, mirrored, foam_pattern(foam_, seen.origin_m));
+SeaFacets SeaLight<T>::facets(const SeenSea<T>& seen, std::size_t place) const {
+    return {choice_, sky_, points_[place], foam_pattern(foam_, seen.origin_m)};
 }
 
 template <class T>

@@ -136,9 +136,8 @@ class SeaLight {
     // whether it is asked for; empty: all are.
     void light(const SeenSea<T>& seen, const Sky& sky, const Air& air, const Spray& spray,
                std::span<SeaRadiance> lit, std::span<const std::uint8_t> wanted = {});
-    // Facets of such a place that light() has lit (mirrored_light()); any thread.
-    void mirror(const SeenSea<T>& seen, std::size_t place, std::span<const glm::vec2> places,
-                std::span<MirroredLight> mirrored) const;
+    // Those of such a place that light() has lit; any thread.
+    SeaFacets facets(const SeenSea<T>& seen, std::size_t place) const;
     // What comes from the sea in directions to an eye (unit) over all its waves, hidden as they are from far away, without air; `lit`:
     // with the sun.
     void light_from_afar(std::span<const glm::vec3> to_eye, bool lit, std::span<SeaRadiance> light) const;

@@ -27,12 +27,14 @@
 
 #include "core/base/build_watch.h"
 #include "core/base/constants.h"
+#include "core/lighting/object.h"
 #include "core/surface/view.h"
 #include "pelagic/cage.h"
 #include "plugin/light/light.h"
 #include "plugin/render/cryptomatte.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/render/render.h"
+#include "plugin/render/sea_light.h"
 #include "tests/plugin/render/uniform_sky.h"
 
 namespace pelagic {
@@ -423,8 +425,10 @@ TEST(Objects, AddUpOnAnyNumberOfThreads) {
     ObjectMaterial varnish{.name = "varnish", .colour = glm::vec3(0.6f, 0.2f, 0.1f), .roughness = 0.1f};
     scene.objects = {object(box({-4, -2, -1}, {4, 2, 2}, varnish), "hull"),
                      object(box({2, -1, 1}, {3, 1, 6}), "mast"),
-                     object(box({-9, -1, -1}, {-6, 1, 2}), "raft")};
+                     object(box({-9, -1, -1}, {-6, 1, 2}), "raft"),
+                     object(box({2.3f, -0.2f, 6.0f}, {2.7f, 0.2f, 6.4f}, kGlows), "lamp")};
     scene.objects[0].floats = scene.objects[2].floats = true;
+    scene.objects[3].glow_cd_m2 = 1e6;
     const Sky sky = daylight_sky({.sun_elevation_deg = 3.0, .sun_azimuth_deg = 80.0}, 64);
     std::vector<Picture> pictures;
     for (const int threads : {1, 2}) {
@@ -677,24 +681,28 @@ TEST(Objects, HaveMattesInTheirFiles) {
     std::remove(path.c_str());
 }
 
-// A sphere of few triangles with the normals of a round one.
-std::shared_ptr<const ObjectMesh> coarse_sphere(float radius, const glm::vec3& middle) {
-    constexpr int kRound = 10, kHigh = 6;
+// A sphere of triangles with the normals of a round one: of few, unless told.
+std::shared_ptr<const ObjectMesh> coarse_sphere(float radius, const glm::vec3& middle, int high_steps = 6,
+                                                const ObjectMaterial& material = {.name = "white",
+                                                                                  .colour = glm::vec3(0.8f),
+                                                                                  .roughness = 1.0f}) {
+    const int round_steps = high_steps == 6 ? 10 : 2 * high_steps;
     ObjectMeshData mesh;
-    mesh.materials = {{.name = "white", .colour = glm::vec3(0.8f), .roughness = 1.0f}};
-    const auto at = [](int row, int column) {
-        const double high = kPi * row / kHigh, round = 2.0 * kPi * column / kRound;
+    mesh.materials = {material};
+    const auto at = [&](int row, int column) {
+        const double high = kPi * row / high_steps, round = 2.0 * kPi * column / round_steps;
         return glm::vec3(
             glm::dvec3(std::sin(high) * std::cos(round), std::sin(high) * std::sin(round), std::cos(high)));
     };
-    for (int row = 0; row < kHigh; ++row)
-        for (int column = 0; column < kRound; ++column)
+    for (int row = 0; row < high_steps; ++row)
+        for (int column = 0; column < round_steps; ++column)
             for (const auto& corners : {std::array{std::pair(row, column), std::pair(row + 1, column),
                                                    std::pair(row + 1, column + 1)},
                                         std::array{std::pair(row, column), std::pair(row + 1, column + 1),
                                                    std::pair(row, column + 1)}}) {
                 if (corners[0] == corners[1] || (row == 0 && corners[2].first == 0) ||
-                    (row == kHigh - 1 && corners[1].first == kHigh && corners[2].first == kHigh))
+                    (row == high_steps - 1 && corners[1].first == high_steps &&
+                     corners[2].first == high_steps))
                     continue;
                 for (const auto& [r, c] : corners) {
                     mesh.triangles.push_back(static_cast<std::uint32_t>(mesh.points_m.size()));
@@ -949,6 +957,194 @@ TEST(Objects, AreFiniteInAnyLightAndMotion) {
     EXPECT_THROW(renderer.render(10, stopped, {.cancel = &stop}), BuildCancelled);
     renderer.render(10, again);
     EXPECT_EQ(again.data[index(PictureLayer::Object)], whole.data[index(PictureLayer::Object)]);
+}
+
+// Without light of its own.
+Sky dark_sky() {
+    Sky sky = uniform_sky();
+    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(0.0f)));
+    sky.sky_irradiance = glm::vec3(0.0f);
+    return sky;
+}
+
+// Bodies on a calm sea, as pictures have them.
+struct LitScene {
+    explicit LitScene(const Scene& scene, const Sky& sky)
+        : plan(picture_plan(scene, std::array{1})),
+          sea(plan, render_options(scene).lighting, sky, {}),
+          objects(scene) {
+        sea.set(0.0);
+        objects.place(sea.frame(), 1.0, {.rest_m = [](glm::dvec2) { return 0.0; }});
+        objects.light(sea);
+    }
+    Plan plan;
+    SeaLight<float> sea;
+    LitObjects objects;
+};
+
+// What rough facets mirror of lamps, by places on these and few rays, is what very many rays find; the few alone scatter much more, and
+// show single bright pixels.
+TEST(Lamps, GlitterWithoutBiasAndWithoutSparks) {
+    Scene scene = calm_scene();
+    // A lantern, and a dimmer red light that stands apart on the same body.
+    auto mesh = boxes(
+        {{{-0.4f, 29.6f, 7.6f}, {0.4f, 30.4f, 8.4f}}, {{5.0f, 29.8f, 3.0f}, {5.4f, 30.2f, 3.4f}}}, kGlows);
+    ObjectMeshData data = mesh->data();
+    data.materials.push_back(
+        {.name = "red", .colour = glm::vec3(0.0f), .roughness = 1.0f, .glow = {0.5f, 0.02f, 0.01f}});
+    for (std::size_t i = data.material.size() / 2; i < data.material.size(); ++i) data.material[i] = 1;
+    scene.objects = {object(std::make_shared<const ObjectMesh>(std::move(data)))};
+    scene.objects[0].glow_cd_m2 = 1e6;
+    const LitScene lit(scene, uniform_sky());
+    const LitObjects& objects = lit.objects;
+    struct Case {
+        glm::vec3 place, eye;
+        float variance;
+    };
+    const LightingChoice choice{.whitecaps = false};
+    // Seen from near and far, ripples and waves; and a mirror, which rays show.
+    for (const auto& [place, eye, variance] :
+         {Case{{0, 10, 0}, {0, -30, 6}, 0.02f}, Case{{3, 0, 0}, {0, -30, 6}, 0.05f},
+          Case{{-3, -10, 0}, {0, -30, 6}, 0.06f}, Case{{1, 20, 0}, {0, -2000, 90}, 0.02f},
+          Case{{0.5f, 8.5f, 0}, {0, -6, 6}, 0.0005f}, Case{{0.1f, 7.2f, 0}, {0, -15, 7.8f}, 1e-6f}}) {
+        const SeaPoint point{.to_eye = glm::normalize(eye - place),
+                             .slope_variance = {variance, 0.7f * variance, 0.1f * variance},
+                             .slope_variance_at_rest = {variance, 0.7f * variance, 0.1f * variance}};
+        const SeaFacets facets(choice, lit.sea.sky(), point);
+        const auto by_rays = [&](const LitObjects::LampsInSea& lamps, std::uint32_t count,
+                                 const SampleNumbers& numbers, bool all) {
+            const SampleNumbers::Places places = numbers.places(77);
+            glm::dvec3 sum(0.0);
+            for (std::uint32_t k = 0; k < count; ++k) {
+                glm::vec2 at = places.of(k, count);
+                at.x = (static_cast<float>(k) + at.x) / static_cast<float>(count);
+                const MirroredLight mirrored = facets.mirrored(at, count);
+                if (!(mirrored.weight > 0.0f)) continue;
+                const Ray ray{.from = lamps.place, .towards = mirrored.from};
+                if (const RayHit hit = objects.nearest(ray); hit.is_hit()) {
+                    const auto [light, part] = objects.lamp_met(lamps, ray, hit);
+                    sum += glm::dvec3(mirrored.weight * (all ? 1.0f : part) * light);
+                }
+            }
+            return sum;
+        };
+        constexpr std::uint32_t kRays = 64, kMany = 1 << 20, kPixels = 1500;
+        const LitObjects::LampsInSea none = objects.lamps_in(facets, place, kRays, {});
+        const glm::dvec3 expected = by_rays(none, kMany, {}, true);
+        ASSERT_GT(expected.x, 0.0) << variance << ' ' << place.y;
+        glm::dvec3 mean(0.0);
+        double squares = 0.0, squares_of_rays = 0.0;
+        std::vector<double> values;
+        for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
+            const SampleNumbers numbers{.x = pixel};
+            const LitObjects::LampsInSea lamps = objects.lamps_in(facets, place, kRays, numbers);
+            ASSERT_GT(lamps.count, 0u);
+            const glm::dvec3 value =
+                glm::dvec3(objects.mirrored_places(lamps, numbers)) + by_rays(lamps, kRays, numbers, false);
+            mean += value / static_cast<double>(kPixels);
+            values.push_back(value.x);
+            squares += (value.x - expected.x) * (value.x - expected.x);
+            const double rays = by_rays(lamps, kRays, numbers, true).x;
+            squares_of_rays += (rays - expected.x) * (rays - expected.x);
+        }
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(mean[c], expected[c], 0.02 * expected[c]) << c << ' ' << variance;
+        // A mirror's rays have nearly none.
+        EXPECT_LT(squares, std::max(squares_of_rays, kPixels * 4e-4 * expected.x * expected.x)) << variance;
+        if (variance < 0.01f) continue;
+        EXPECT_LT(4.0 * squares, squares_of_rays) << variance;
+        std::sort(values.begin(), values.end());
+        EXPECT_LT(values.back(), 10.0 * values[kPixels / 2]) << variance;
+    }
+}
+
+// A ball of light: E = π L (r/d)² cos θ, however near. Behind a wall it is dark, and what is in the water lights nothing above it.
+TEST(Lamps, LightWhatIsBelowThemByTheirDistance) {
+    Scene scene = calm_scene();
+    constexpr float kRadius = 0.5f, kHeight = 4.0f, kLight = 1000.0f;
+    scene.objects = {object(coarse_sphere(kRadius, {0, 0, kHeight}, 48, kGlows)),
+                     object(box({-20, 30, -1}, {20, 31, 40}), "wall")};
+    scene.objects.push_back(object(coarse_sphere(kRadius, {0, 0, -3}, 6, kGlows), "in the water"));
+    for (const std::size_t lamp : {0u, 2u})
+        scene.objects[lamp].glow_cd_m2 = 1000.0 * static_cast<double>(kLight);
+    const LitScene lit(scene, dark_sky());
+    const auto irradiance = [&](const glm::vec3& place, const glm::vec3& normal) {
+        glm::dvec3 sum(0.0);
+        for (std::uint32_t pixel = 0; pixel < 500; ++pixel)
+            sum += glm::dvec3(lit.objects.lamplight(place, normal, {.x = pixel})) / 500.0;
+        return sum.y;
+    };
+    for (const glm::vec3& place : {glm::vec3(0, 0, 0), glm::vec3(3, 0, 0), glm::vec3(12, -9, 0),
+                                   glm::vec3(100, 0, 0), glm::vec3(0, 0.3f, 3)})
+        for (const glm::vec3& normal : {glm::vec3(0, 0, 1), glm::normalize(glm::vec3(-0.3f, 0.1f, 1))}) {
+            const glm::dvec3 way = glm::dvec3(0, 0, kHeight) - glm::dvec3(place);
+            const double d = glm::length(way);
+            const double expected =
+                kPi * kLight * kRadius * kRadius / (d * d) * glm::dot(way, glm::dvec3(normal)) / d;
+            EXPECT_NEAR(irradiance(place, normal), expected, 0.02 * expected) << place.x << ' ' << place.y;
+        }
+    EXPECT_EQ(irradiance({0, 40, 0}, {0, 0, 1}), 0.0);
+    EXPECT_EQ(irradiance({0, 0, 9}, {0, 0, 1}), 0.0);
+    EXPECT_EQ(irradiance({0, 0, 2}, {0, 0, -1}), 0.0);
+}
+
+// The same in pictures: a diffuse floor under its varnish, and the water, which sends back of a lamp what it does of the sky.
+TEST(Lamps, LightBodiesAndTheSea) {
+    Scene scene = calm_scene();
+    scene.water.body = true;
+    scene.camera.position_m = {0.0, -14.0, 9.0};
+    scene.camera.look_at_m = {0.0, 0.0, 0.0};
+    scene.camera.fov_deg = 35.0;
+    constexpr float kRadius = 0.4f, kLight = 1000.0f;
+    const glm::dvec3 centre(0.0, 1.0, 12.0);
+    scene.objects = {object(coarse_sphere(kRadius, glm::vec3(centre), 32, kGlows), "lamp")};
+    scene.objects[0].glow_cd_m2 = 1000.0 * static_cast<double>(kLight);
+    const auto beam = [&](const glm::dvec3& place) {
+        const double d = glm::length(centre - place);
+        return kPi * kLight * kRadius * kRadius / (d * d);
+    };
+    const RenderOptions options = options_of(scene);
+    const Picture by_lamp = picture_of(scene, options, dark_sky());
+    Scene without = scene;
+    without.objects.clear();
+    const Picture by_sky = picture_of(without, options_of(without), uniform_sky());
+    double shown = 0.0, expected = 0.0;
+    for (std::size_t i = 0; i < by_lamp.layers.size(); ++i) {
+        if (!by_lamp.sea[i]) continue;
+        const glm::dvec3 place(vector_of(by_lamp, PictureLayer::Position, i));
+        shown += static_cast<double>(by_lamp.layers[i].sea.y);
+        expected += static_cast<double>(by_sky.layers[i].sea.y) * beam(place) * (centre.z - place.z) /
+                    glm::length(centre - place) / (kPi * static_cast<double>(kSkyRadiance));
+    }
+    EXPECT_GT(expected, 1.0);
+    EXPECT_NEAR(shown, expected, 0.02 * expected);
+
+    const ObjectMaterial plaster{.name = "plaster", .colour = glm::vec3(0.6f), .roughness = 1.0f};
+    scene.objects.push_back(object(box({-20, -12, -1}, {20, 20, 0.5f}, plaster), "floor"));
+    const Picture on_floor = picture_of(scene, options_of(scene), dark_sky());
+    shown = expected = 0.0;
+    double brightest = 0.0;  // over what it should be
+    for (std::size_t i = 0; i < on_floor.layers.size(); ++i) {
+        const glm::dvec3 place(vector_of(on_floor, PictureLayer::Position, i));
+        if (!shows_object(on_floor, i) || std::abs(place.z - 0.5) > 1e-3) continue;
+        const glm::vec3 to_eye(glm::normalize(scene.camera.position_m - place)), normal(0.0f, 0.0f, 1.0f);
+        Sky lamp = dark_sky();
+        lamp.sun_direction = glm::vec3(glm::normalize(centre - place));
+        lamp.sun_angular_radius = 0.01f;
+        lamp.sun_radiance = glm::vec3(static_cast<float>(beam(place) / (kPi * 1e-4)));
+        const float varnish =
+                        object_of_sun({.colour = glm::vec3(0.0f), .roughness = 1.0f}, lamp, to_eye, normal).y,
+                    passed = 1.0f - object_reflectance(to_eye.z, 1.0f);
+        const double seen = static_cast<double>(vector_of(on_floor, PictureLayer::Object, i).y),
+                     said = static_cast<double>(varnish) +
+                            static_cast<double>(passed * 0.6f * lamp.sun_direction.z) * beam(place) / kPi;
+        shown += seen;
+        expected += said;
+        brightest = std::max(brightest, seen / said);
+    }
+    EXPECT_LT(brightest, 3.0);
+    EXPECT_GT(expected, 1.0);
+    EXPECT_NEAR(shown, expected, 0.02 * expected);
 }
 
 }  // namespace

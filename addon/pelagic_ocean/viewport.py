@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, gpu_hulls, gpu_shadow, handlers, keyed, light, ocean, play
+from . import compat, gpu_objects, handlers, keyed, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -35,7 +35,7 @@ class Preview:
     def __init__(self, obj):
         self.name = obj.name_full
         self._obj = obj
-        self.drawing = Drawing()
+        self.drawing, self.objects = Drawing(), gpu_objects.Objects()
         self.hidden_in = {}  # (names of scene and view layer): whether it was selected there
         self.problem = ""
         self.is_broken = False  # it can't draw; problem says why
@@ -127,8 +127,8 @@ class Preview:
                             gpu.state.viewport_get()[2:], obj.matrix_world)
             self.drawing.draw(context.region.as_pointer(), camera, scene, scene.shot.time_s(context.scene.frame_current_final),
                               self.drawing.light.exposure(scene, light.stops_by_hand(context.scene)),
-                              context.window_manager.pelagic_preview.show_sky, self.drawing.shadow.parts(context),
-                              obj.matrix_world.inverted_safe())
+                              context.window_manager.pelagic_preview.show_sky,
+                              self.objects.seen(context, obj.matrix_world.inverted_safe()))
         if self.is_building or not is_hidden or self.drawing.is_coarse() or self.drawing.awaits_foam:
             _tend_soon()
 
@@ -267,8 +267,7 @@ def _tend():
 @persistent
 def _see_changes(_bpy_scene, depsgraph):
     if _preview is not None:
-        gpu_shadow.changed(depsgraph)
-        gpu_hulls.changed(depsgraph)
+        gpu_objects.changed(depsgraph)
 
 
 @persistent

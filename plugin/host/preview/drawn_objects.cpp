@@ -30,10 +30,7 @@ struct Vertex {
     float material;
 };
 
-constexpr int kShadowSide = 2048, kMirroredSide = 1024;  // texels, at most
-// The mirrored picture's pixels are twice as wide as the picture's: waves blur what they show.
-constexpr double kMirroredPixels = 0.5;
-constexpr double kWidest = 4.0;  // tangents of what the mirrored eye sees to either side
+constexpr int kShadowSide = 2048;  // texels, at most
 
 void set_matrix(const ShaderProgram& program, const char* name, const glm::dmat4& value) {
     const glm::mat4 rounded(value);
@@ -147,7 +144,7 @@ void DrawnObjects::set_hulls() {
 void DrawnObjects::place_hulls() {
     std::vector<PlacedHull> hulls;
     for (std::size_t i = 0; i < objects_.size(); ++i)
-        hulls.push_back({objects_[i].hull.get(), placed_[i].grid_from, &objects_[i].beside});
+        hulls.push_back({objects_[i].hull.get(), grid_from_[i], &objects_[i].beside});
     const std::vector<glm::vec4> texels = hulls_.places(hulls);
     edit_texture(hull_places_);
     texels_as_they_are();
@@ -177,26 +174,30 @@ std::array<glm::dvec3, 8> DrawnObjects::corners(std::size_t object) const {
     for (int i = 0; i < 8; ++i) {
         const glm::dvec3 corner((i & 1) != 0 ? most.x : least.x, (i & 2) != 0 ? most.y : least.y,
                                 (i & 4) != 0 ? most.z : least.z);
-        made[i] = glm::dvec3(placed_[object].grid_from * glm::dvec4(corner, 1.0));
+        made[i] = glm::dvec3(grid_from_[object] * glm::dvec4(corner, 1.0));
     }
     return made;
 }
 
 void DrawnObjects::place(const Eye& eye) {
     eye_ = eye;
-    placed_.clear();
+    grid_from_.clear();
+    bodies_.clear();
     for (const DrawnObject& object : objects_) {
         const glm::dvec3 flat_m = object.place_m - glm::dvec3(eye.origin_m, 0.0);
         const glm::dvec3 vertical = earth_up(glm::dvec2(flat_m), eye.curvature_per_m);
-        Placed& placed = placed_.emplace_back();
+        glm::dmat4& grid_from = grid_from_.emplace_back();
         for (int axis = 0; axis < 3; ++axis)
-            placed.grid_from[axis] = glm::dvec4(from_level(object.axes[axis], vertical), 0.0);
-        placed.grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
-        placed.water_m = on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z;
+            grid_from[axis] = glm::dvec4(from_level(object.axes[axis], vertical), 0.0);
+        grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
+        bodies_.push_back({grid_from_box(grid_from, object.mesh->least_m(), object.mesh->most_m()),
+                           on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z});
     }
     place_hulls();
     fit_shadow();
-    fit_mirror();
+    mirror_ = mirror_view(bodies_, eye.view.position_m - glm::dvec3(eye.origin_m, 0.0),
+                          eye.view.pixel_tangent(), eye.largest_texture);
+    size_mirror();
 }
 
 // The sun's rays, parallel, round all objects.
@@ -227,62 +228,8 @@ void DrawnObjects::fit_shadow() {
     shadow_from_grid_ = size * translation(-least) * turn;
 }
 
-// From the eye's mirror image: an upright picture of all objects, as far as they are above the water.
-void DrawnObjects::fit_mirror() {
-    double water_m = 0.0;
-    for (const Placed& placed : placed_) water_m += placed.water_m / static_cast<double>(placed_.size());
-    mirrored_eye_m_ = {eye_.view.position_m.x - eye_.origin_m.x, eye_.view.position_m.y - eye_.origin_m.y,
-                       2.0 * water_m - eye_.view.position_m.z};
-    std::vector<glm::dvec3> seen;  // from there
-    glm::dvec3 middle(0.0);
-    for (std::size_t i = 0; i < objects_.size(); ++i)
-        for (glm::dvec3 corner : corners(i)) {
-            corner.z = std::max(corner.z, placed_[i].water_m);
-            seen.push_back(corner - mirrored_eye_m_);
-            const double away = glm::length(seen.back());
-            if (away > 0.0) middle += seen.back() / away;
-        }
-    if (!(glm::length(middle) > 1e-9)) middle = glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 ahead = glm::normalize(middle);
-    const glm::dvec3 side = glm::normalize(
-        glm::cross(ahead, std::abs(ahead.z) < 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0)));
-    const glm::dvec3 up = glm::cross(side, ahead);
-    glm::dvec2 least(kWidest), most(-kWidest);
-    for (const glm::dvec3& at : seen) {
-        const double along = glm::dot(ahead, at);
-        glm::dvec2 tangents(glm::dot(side, at), glm::dot(up, at));
-        if (along * kWidest > std::max(std::abs(tangents.x), std::abs(tangents.y)))
-            tangents /= along;
-        else  // beside the eye, or behind it
-            tangents *= 2.0 * kWidest / std::max(std::max(std::abs(tangents.x), std::abs(tangents.y)), 1e-9);
-        least = glm::min(least, tangents);
-        most = glm::max(most, tangents);
-    }
-    least = glm::max(least, glm::dvec2(-kWidest));
-    most = glm::min(most, glm::dvec2(kWidest));
-    const double pixel = eye_.view.pixel_tangent() / kMirroredPixels;
-    const int largest = std::min(kMirroredSide, eye_.largest_texture);
-    const glm::dvec2 span = glm::max(most - least, glm::dvec2(1e-4));
-    glm::ivec2 size;
-    for (int axis = 0; axis < 2;
-         ++axis) {  // sides of powers of two, so that a moving camera seldom needs others
-        size[axis] = 16;
-        while (size[axis] < largest && size[axis] * pixel < span[axis]) size[axis] *= 2;
-    }
-    // A rim of nothing.
-    const glm::dvec2 rim = span * 2.0 / glm::dvec2(size);
-    least -= rim;
-    most += rim;
-    mirrored_texels_ = std::min(size.x / (most.x - least.x), size.y / (most.y - least.y));
-    // x and y of the clip coordinates, and the distance ahead as w.
-    glm::dmat4 clip(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        clip[axis][0] = (2.0 * side[axis] - (most.x + least.x) * ahead[axis]) / (most.x - least.x);
-        clip[axis][1] = (2.0 * up[axis] - (most.y + least.y) * ahead[axis]) / (most.y - least.y);
-        clip[axis][3] = ahead[axis];
-    }
-    mirrored_from_grid_ = clip * translation(-mirrored_eye_m_);
-    mirrored_from_grid_[3][2] = 0.0;
+void DrawnObjects::size_mirror() {
+    const glm::ivec2 size = mirror_.size;
     if (mirrored_size_ == size) return;
     mirrored_size_ = size;
     edit_texture(mirrored_);
@@ -342,7 +289,7 @@ void DrawnObjects::draw_shadow(const ShaderProgram& program) {
         clip[3][axis] = -1.0;
     }
     for (std::size_t i = 0; i < objects_.size(); ++i) {
-        set_matrix(program, "clip_from_object", clip * shadow_from_grid_ * placed_[i].grid_from);
+        set_matrix(program, "clip_from_object", clip * shadow_from_grid_ * grid_from_[i]);
         const Mesh& mesh = mesh_of(objects_[i]);
         glBindVertexArray(mesh.array.name());
         glDrawArrays(GL_TRIANGLES, 0, mesh.count);
@@ -384,12 +331,12 @@ void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip
     for (std::size_t i = 0; i < objects_.size(); ++i) {
         const DrawnObject& object = objects_[i];
         const Mesh& mesh = mesh_of(object);
-        set_matrix(program, "clip_from_object", clip_from_grid * placed_[i].grid_from);
-        set_matrix(program, "grid_from_object", placed_[i].grid_from);
+        set_matrix(program, "clip_from_object", clip_from_grid * grid_from_[i]);
+        set_matrix(program, "grid_from_object", grid_from_[i]);
         glUniform3f(program.uniform("object_colour"), object.colour.x, object.colour.y, object.colour.z);
         glUniform1f(program.uniform("object_glow"), object.glow);
         glUniform1i(program.uniform("object_holdout"), object.holdout ? 1 : 0);
-        glUniform1f(program.uniform("object_water_m"), static_cast<float>(placed_[i].water_m));
+        glUniform1f(program.uniform("object_water_m"), static_cast<float>(bodies_[i].water_m));
         bind_texture(first_unit + kMaterials, mesh.materials);
         glBindVertexArray(mesh.array.name());
         glDrawArrays(GL_TRIANGLES, 0, mesh.count);
@@ -401,7 +348,7 @@ void DrawnObjects::draw_mirrored(const ShaderProgram& program, int first_unit) {
     glViewport(0, 0, mirrored_size_.x, mirrored_size_.y);
     glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    draw_all(program, mirrored_from_grid_, mirrored_eye_m_, first_unit);
+    draw_all(program, mirror_.clip_from_grid, mirror_.eye_m, first_unit);
     edit_texture(mirrored_);
     glGenerateMipmap(GL_TEXTURE_2D);
 }
@@ -416,24 +363,9 @@ void DrawnObjects::bind(const ShaderProgram& program, int first_unit) const {
     bind_hulls(program, first_unit);
     glUniform1i(program.uniform("mirrored_objects"), first_unit + kMirrored);
     bind_texture(first_unit + kMirrored, mirrored_);
-    set_matrix(program, "mirrored_from_grid", mirrored_from_grid_);
-    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirrored_texels_));
-    // The nearest ones, where there are more.
-    std::vector<std::size_t> order(objects_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto away = [&](std::size_t i) {
-        return glm::distance(glm::dvec3(placed_[i].grid_from[3]), mirrored_eye_m_);
-    };
-    if (order.size() > kObjectBoxes) std::ranges::sort(order, {}, away);
-    order.resize(std::min<std::size_t>(order.size(), kObjectBoxes));
-    std::vector<glm::mat4> boxes;
-    for (const std::size_t i : order) {
-        const glm::dvec3 least = objects_[i].mesh->least_m(), most = objects_[i].mesh->most_m();
-        glm::dmat4 box = translation(0.5 * (least + most));
-        for (int axis = 0; axis < 3; ++axis)
-            box[axis][axis] = std::max(0.5 * (most[axis] - least[axis]), 1e-3);
-        boxes.emplace_back(glm::inverse(placed_[i].grid_from * box));
-    }
+    set_matrix(program, "mirrored_from_grid", mirror_.clip_from_grid);
+    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirror_.texels));
+    const std::vector<glm::mat4> boxes = mirror_boxes(bodies_, mirror_.eye_m);
     glUniform1i(program.uniform("object_count"), static_cast<GLint>(boxes.size()));
     glUniformMatrix4fv(program.uniform("object_boxes"), static_cast<GLsizei>(boxes.size()), GL_FALSE,
                        glm::value_ptr(boxes.front()));

@@ -17,6 +17,7 @@
 #include "core/surface/view.h"
 #include "pelagic/object_mesh.h"
 #include "pelagic/scene.h"
+#include "plugin/host/gpu/mirror_view.h"
 #include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/uniforms.h"
 #include "plugin/host/preview/gl_objects.h"
@@ -80,16 +81,12 @@ class DrawnObjects {
         GlTexture materials;
         GLsizei count = 0;
     };
-    struct Placed {
-        glm::dmat4 grid_from{1.0};
-        double water_m = 0.0;  // in the grid
-    };
     const Mesh& mesh_of(const DrawnObject& object) const;
     std::array<glm::dvec3, 8> corners(std::size_t object) const;
     void set_hulls();
     void place_hulls();
     void fit_shadow();
-    void fit_mirror();
+    void size_mirror();
     void draw_all(const ShaderProgram& program, const glm::dmat4& clip_from_grid, glm::dvec3 eye_m,
                   int first_unit) const;
     void bind_shadow(const ShaderProgram& program, int first_unit) const;
@@ -100,7 +97,8 @@ class DrawnObjects {
     PackedHulls hulls_{{}};
     GlTexture hull_maps_, hull_places_;
     Eye eye_;
-    std::vector<Placed> placed_;
+    std::vector<glm::dmat4> grid_from_;  // of each object
+    std::vector<MirroredBody> bodies_;
 
     GlTexture shadow_, mirrored_, mirrored_depth_;
     GlFramebuffer shadow_framebuffer_, mirrored_framebuffer_;
@@ -110,9 +108,7 @@ class DrawnObjects {
     glm::ivec2 mirrored_size_{0};
     glm::dmat4 shadow_from_grid_{1.0};
     glm::dvec3 shadow_reach_m_{1.0};
-    glm::dmat4 mirrored_from_grid_{1.0};
-    glm::dvec3 mirrored_eye_m_{0.0};
-    double mirrored_texels_ = 1.0;
+    MirrorView mirror_;
 };
 
 }  // namespace pelagic

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/lighting/air.h"
+#include "core/lighting/object.h"
 #include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
@@ -27,7 +28,9 @@
 #include "core/scene/text.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/projected_grid.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/host/gpu/foam_worker.h"
+#include "plugin/host/gpu/mirror_view.h"
 #include "plugin/host/gpu/packed_frame.h"
 #include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/shader_variants.h"
@@ -97,12 +100,22 @@ struct GpuLight {
     Metered metered{};
 };
 
+using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+glm::dmat4 checked_matrix(const Matrix& from, const char* name) {
+    if (from.ndim() != 2 || from.shape(0) != 4 || from.shape(1) != 4)
+        throw py::value_error(std::string(name) + ": accepted: matrices (4, 4)");
+    glm::dmat4 made;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) made[column][row] = from.at(row, column);
+    return made;
+}
+
 // The hulls of a host's own objects.
 class GpuHulls {
   public:
     using Points = py::array_t<float, py::array::c_style | py::array::forcecast>;
     using Triangles = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
-    using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
     explicit GpuHulls(const std::vector<std::pair<Points, Triangles>>& meshes) {
         std::vector<ObjectMeshData> all;
@@ -140,14 +153,8 @@ class GpuHulls {
         if (grid_from.size() != hulls_.size())
             throw py::value_error("grid_from: accepted: a matrix for each mesh");
         std::vector<PlacedHull> placed;
-        for (std::size_t i = 0; i < hulls_.size(); ++i) {
-            if (grid_from[i].ndim() != 2 || grid_from[i].shape(0) != 4 || grid_from[i].shape(1) != 4)
-                throw py::value_error("grid_from: accepted: matrices (4, 4)");
-            PlacedHull& hull = placed.emplace_back(hulls_[i].get());
-            for (int row = 0; row < 4; ++row)
-                for (int column = 0; column < 4; ++column)
-                    hull.grid_from[column][row] = grid_from[i].at(row, column);
-        }
+        for (std::size_t i = 0; i < hulls_.size(); ++i)
+            placed.push_back({hulls_[i].get(), checked_matrix(grid_from[i], "grid_from")});
         std::vector<glm::vec4> texels = packed_.places(placed);
         const auto rows = static_cast<py::ssize_t>(texels.size() / kHullPlaceColumns);
         return array_of<float>(std::move(texels), {rows, kHullPlaceColumns});
@@ -240,6 +247,37 @@ py::array triangles_of(const GpuGrid& grid) {
     return array_of<std::uint32_t>(std::move(indices), {count, 3});
 }
 
+// The uniforms of the objects that the sea mirrors in a view.
+py::dict mirror_of(const GpuGrid& grid, const View& view, const std::vector<Matrix>& grid_from,
+                   const std::vector<std::array<std::array<double, 3>, 2>>& boxes_m,
+                   const std::vector<double>& water_m) {
+    if (grid_from.empty() || boxes_m.size() != grid_from.size() || water_m.size() != grid_from.size())
+        throw py::value_error("grid_from: accepted: a matrix, a box and a height of each body, one at least");
+    std::vector<MirroredBody> bodies;
+    for (std::size_t i = 0; i < grid_from.size(); ++i) {
+        const auto& [least, most] = boxes_m[i];
+        bodies.push_back({grid_from_box(checked_matrix(grid_from[i], "grid_from"),
+                                        {least[0], least[1], least[2]}, {most[0], most[1], most[2]}),
+                          water_m[i]});
+    }
+    const MirrorView made = mirror_view(bodies, view.position_m - glm::dvec3(grid.grid->origin_m, 0.0),
+                                        view.pixel_tangent(), kMirroredSide);
+    py::array_t<double> clip({4, 4});
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            clip.mutable_at(row, column) = made.clip_from_grid[column][row];
+    const std::vector<glm::mat4> boxes = mirror_boxes(bodies, made.eye_m);
+    std::vector<float> numbers(&boxes.front()[0].x, &boxes.front()[0].x + 16 * boxes.size());
+    const auto count = static_cast<py::ssize_t>(boxes.size());
+    py::dict told;
+    told["size"] = py::make_tuple(made.size.x, made.size.y);
+    told["eye_m"] = py::make_tuple(made.eye_m.x, made.eye_m.y, made.eye_m.z);
+    told["clip_from_grid"] = clip;
+    told["texels"] = made.texels;
+    told["boxes"] = array_of<float>(std::move(numbers), {count, 16});
+    return told;
+}
+
 // ---- Sea
 
 // GpuSea's thread. The program's end waits for it.
@@ -303,9 +341,12 @@ class GpuSea {
             [&] { return surface_above_camera(frame_, view, projected_grid_options(*prepared_)); });
     }
 
-    py::dict shaders(const GpuLight& light, bool shadows, bool hulls) const {
-        DrawOptions options{
-            .lighting = lighting_, .has_shadow = shadows, .has_hulls = hulls, .for_host = true};
+    py::dict shaders(const GpuLight& light, bool shadows, bool hulls, bool mirror) const {
+        DrawOptions options{.lighting = lighting_,
+                            .has_shadow = shadows,
+                            .has_hulls = hulls,
+                            .has_mirror = mirror,
+                            .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
         options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
@@ -315,6 +356,7 @@ class GpuSea {
         py::dict made;
         made["sea"] = pair(ShaderVariant::of_sea(now()->layout(), options, light.map_size));
         made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
+        if (mirror) made["object"] = pair(ShaderVariant::of_object(options, light.map_size, true));
         return made;
     }
 
@@ -413,6 +455,19 @@ class GpuSea {
             water_of_ = tables;
         }
         return dict_of(water_);
+    }
+
+    // The same holds of it.
+    py::dict surroundings(const Scene& scene, const std::shared_ptr<const GpuLight>& light) const {
+        std::string from = canonical(scene);
+        if (const auto tables = now(); light != surroundings_of_ || from != surroundings_from_) {
+            surroundings_ = surroundings_uniforms(object_surroundings(
+                lighting_, light->sky, make_water(scene, tables->layout().sea().plan().from->spectrum),
+                law_coverage(scene)));
+            surroundings_from_ = std::move(from);
+            surroundings_of_ = light;
+        }
+        return dict_of(surroundings_);
     }
 
     bool has_living_foam() const { return now()->layout().has_living_foam(); }
@@ -535,6 +590,9 @@ class GpuSea {
     mutable std::vector<Uniform> water_;
     mutable std::string water_from_;
     mutable std::shared_ptr<const Tables> water_of_;
+    mutable std::vector<Uniform> surroundings_;
+    mutable std::string surroundings_from_;
+    mutable std::shared_ptr<const GpuLight> surroundings_of_;
 };
 
 void add_gpu_light(py::module_& module) {
@@ -601,6 +659,13 @@ void add_gpu_grid(py::module_& module) {
         .def_readonly(
             "vertices", &GpuGrid::vertices,
             "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
+        .def(
+            "mirror", &mirror_of, py::arg("view"), py::arg("grid_from"), py::arg("boxes_m"),
+            py::arg("water_m"),
+            "How the objects are drawn that the sea mirrors in a view, one body at least. grid_from: matrices (4, 4) from a body's axes to the "
+            "grid's coordinates; boxes_m: ((x, y, z), (x, y, z)), its least and its most there; water_m: height of the water at it. Returns size "
+            "(width, height) of the picture in texels, eye_m, clip_from_grid float64 (4, 4) (of x, y and w; see depth_of_distance), and the sea's "
+            "uniforms: mirrored_from_grid is clip_from_grid, mirrored_texels is texels, and boxes, float32 (object_count, 16), object_boxes, column by column.")
         .def_property_readonly("triangles", &triangles_of,
                                "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
 }
@@ -643,7 +708,7 @@ void add_viewport(py::module_& module) {
             "in the air, the only one that can be drawn.")
         .def(
             "shaders", &GpuSea::shaders, py::arg("light"), py::arg("shadows") = false,
-            py::arg("hulls") = false,
+            py::arg("hulls") = false, py::arg("mirror") = false,
             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
             "Equal for seas with as many cascades and footprints.\n\n"
             "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
@@ -657,7 +722,14 @@ void add_viewport(py::module_& module) {
             "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth), vec4 "
             "shadow_reach (its width, height and depth [m], the tangent of the sun's radius), shadow_off (of depth), and view_height_m as "
             "eye_height_m.\n\n"
-            "hulls: with the textures of GpuHulls, no sea is drawn in them.")
+            "hulls: with the textures of GpuHulls, no sea is drawn in them.\n\n"
+            "mirror: the sea mirrors the host's own objects. It draws them by the shader \"object\" as GpuGrid.mirror() says, linear light and "
+            "coverage, into a texture mirrored_objects of twice that width: there level 0 begins at (0, 0), and level k, each texel the mean of "
+            "four, at (width, 0) and its own size more. That shader's attributes are place_in and normal_in (three each, the object's own) and "
+            "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0. Its uniforms besides "
+            "GpuLight's, surroundings() and those of shadows: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
+            "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), bool object_holdout, object_water_m (height of the water), "
+            "shadow_texel_m (how far off its own surface a place asks for its shadow).")
         .def_property_readonly(
             "uniforms", &GpuSea::uniforms,
             "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "
@@ -675,6 +747,9 @@ void add_viewport(py::module_& module) {
             "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"), py::arg("light"),
             "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea and this GpuLight serve has it, "
             "for a grid's origin [m].")
+        .def(
+            "surroundings", &GpuSea::surroundings, py::arg("scene"), py::arg("light"),
+            "Uniforms of the shader \"object\" by name: the light of sky and sea round bodies, of a scene that this sea and this GpuLight serve.")
         .def("water", &GpuSea::water, py::arg("scene"),
              "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")
         .def_property_readonly(

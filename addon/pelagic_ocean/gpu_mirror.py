@@ -79,8 +79,8 @@ class Mirror:
             return
         self._size = size
         self.texture = gpu.types.GPUTexture((2 * size[0], size[1]), format="RGBA32F")
-        depth = gpu.types.GPUTexture((2 * size[0], size[1]), format="DEPTH_COMPONENT32F")
-        self._framebuffer = gpu.types.GPUFrameBuffer(depth_slot=depth, color_slots=[self.texture])
+        self._depth = gpu.types.GPUTexture((2 * size[0], size[1]), format="DEPTH_COMPONENT32F")  # a framebuffer doesn't keep it
+        self._framebuffer = gpu.types.GPUFrameBuffer(depth_slot=self._depth, color_slots=[self.texture])
         self._levels = gpu.types.GPUFrameBuffer(color_slots=[self.texture])
         # A picture can't be read where it is drawn into: each level is made in another, and taken over.
         self._half = gpu.types.GPUTexture((size[0] // 2, size[1] // 2), format="RGBA32F")

@@ -49,8 +49,8 @@ class Shadow:
         if self._shader is None:
             self._shader = compat.plain_shader(VERTEX, FRAGMENT)
             self._map = gpu.types.GPUTexture((SIDE, SIDE), format="R32F")
-            depth = gpu.types.GPUTexture((SIDE, SIDE), format="DEPTH_COMPONENT32F")
-            self._framebuffer = gpu.types.GPUFrameBuffer(depth_slot=depth, color_slots=[self._map])
+            self._depth = gpu.types.GPUTexture((SIDE, SIDE), format="DEPTH_COMPONENT32F")  # a framebuffer doesn't keep it
+            self._framebuffer = gpu.types.GPUFrameBuffer(depth_slot=self._depth, color_slots=[self._map])
         to_clip = np.diag((2.0, 2.0, 2.0, 1.0))
         to_clip[:3, 3] = -1.0
         with drawing(self._framebuffer, (0, 0, SIDE, SIDE), True):

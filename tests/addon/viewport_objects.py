@@ -73,7 +73,7 @@ def steps():
 
     with checking("the sea mirrors it as in the program's preview, calm and rough"):
         with in_view():
-            bpy.ops.mesh.primitive_cube_add(size=CUBE_M, location=(0.0, 0.0, 0.5 * CUBE_M), rotation=(0.0, 0.0, 0.3))
+            bpy.ops.mesh.primitive_cube_add(size=CUBE_M, location=(0.0, 0.0, 0.4 * CUBE_M), rotation=(0.0, 0.0, 0.3))
             block = bpy.context.object
         block.scale.x = 2.0
         block.data.materials.append(painted("red", (0.8, 0.1, 0.05)))
@@ -94,7 +94,7 @@ def steps():
                 assert in_light.put(bpy.context, obj, here, FOLDER / "bodies") == []
             theirs_mirrored = programs_picture(here)
             # Nearer than the block, where the shadow isn't.
-            below = place_of((0.0, -0.6 * CUBE_M, 0.0))[0] - 4
+            below = place_of((0.0, -0.8 * CUBE_M, 0.0))[0] - 2
             mine, program = ((a[:below] - b[:below]) for a, b in ((mirrored, plain), (theirs_mirrored, theirs)))
             seen = np.abs(program).max(2) > 0.03
             off = np.abs(mine - program).max(2)[seen] / np.abs(program).max(2)[seen]

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 
 import gpu
 import numpy as np
+from mathutils import Euler, Matrix, Quaternion, Vector
 
-from . import bodies, floating, in_light
+from . import bodies, compat, floating, in_light
 
 _dirty = set()  # names of objects whose shape has changed since it was read
 
@@ -87,7 +88,9 @@ class Part:
 class Body:
     matrix: np.ndarray  # from the body's own axes to the sea's coordinates (4, 4)
     water_m: float  # height of the water at it, in the sea's coordinates
+    floats: bool
     holdout: bool
+    per_s: np.ndarray  # how the matrix changes in a second of the sea, but for the waves (4, 4)
     parts: list = field(default_factory=list)
 
     def in_body(self, part):
@@ -110,8 +113,8 @@ class Objects:
     def __init__(self):
         self._shapes = {}  # name of a part → Shape; None of what has no faces
 
-    def seen(self, context, sea_from_world):
-        """The Body of each of the scene's bodies that the view shows something of."""
+    def seen(self, context, sea_from_world, frame_s):
+        """The Body of each of the scene's bodies that the view shows something of. frame_s: seconds of the sea a frame."""
         for name in _dirty:
             self._shapes.pop(name, None)
         _dirty.clear()
@@ -121,7 +124,9 @@ class Objects:
         depsgraph, found = context.evaluated_depsgraph_get(), []
         for obj in chosen:
             matrix = np.array(sea_from_world @ obj.evaluated_get(depsgraph).matrix_world, float)
-            body = Body(matrix, _water_m(matrix, np.array(sea_from_world @ floating.calm_matrix(obj, depsgraph), float)), obj.is_holdout)
+            calm = np.array(sea_from_world @ floating.calm_matrix(obj, depsgraph), float)
+            change = np.array(sea_from_world @ _change(obj, context.scene.frame_current_final) @ sea_from_world.inverted_safe(), float)
+            body = Body(matrix, _water_m(matrix, calm), floating.is_afloat(obj), obj.is_holdout, change @ matrix / frame_s if frame_s else np.zeros((4, 4)))
             for part in bodies.members(obj, in_light.is_body):
                 if part.type not in bodies.SHAPES or not part.visible_get():
                     continue
@@ -141,3 +146,37 @@ class Objects:
 def _water_m(matrix, calm):
     """What the water's movement makes of the calm sea's place under a body."""
     return float((matrix @ np.linalg.pinv(calm) @ (*calm[:2, 3], 0.0, 1.0))[2])
+
+
+def _change(obj, frame):
+    """How an object's matrix in calm water changes a frame, times its inverse, by the keyframes of its own and of what it is parented to: what
+    constraints and drivers do at another frame isn't known while a view is drawn."""
+    chain = [obj]
+    while chain[-1].parent is not None and chain[-1].parent_type == "OBJECT":
+        chain.append(chain[-1].parent)
+    if not any(compat.curves(each) for each in chain):
+        return Matrix.Diagonal((0.0,) * 4)
+    before, behind = (_keyed(chain, frame + beside) for beside in (-0.25, 0.25))
+    return 2.0 * (behind @ before.inverted_safe() - Matrix())
+
+
+def _keyed(chain, frame):
+    """The matrix of the first of a chain of parents."""
+    made = Matrix()
+    for obj in chain:
+        curves = {(curve.data_path, curve.array_index): curve for curve in compat.curves(obj)}
+
+        def at(name):
+            return [curves[name, i].evaluate(frame) if (name, i) in curves else value for i, value in enumerate(getattr(obj, name))]
+
+        if obj.rotation_mode == "QUATERNION":
+            turn = Quaternion(at("rotation_quaternion"))
+        elif obj.rotation_mode == "AXIS_ANGLE":
+            angle, *axis = at("rotation_axis_angle")
+            turn = Quaternion(axis, angle)
+        else:
+            turn = Euler(at("rotation_euler"), obj.rotation_mode)
+        made = Matrix.LocRotScale(Vector(at("location")), turn, Vector(at("scale"))) @ made
+        if obj is not chain[-1]:
+            made = obj.matrix_parent_inverse @ made
+    return made

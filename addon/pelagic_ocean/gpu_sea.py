@@ -156,6 +156,11 @@ class Drawing:
         """How fine a sea the views would use that were drawn lately [m]; None before the first."""
         return min((self.sea.finest_for(grid.key[0]) for grid in self._grids.values()), default=None)
 
+    def knows_hulls(self):
+        """Whether the sea was built for what the hulls want to know of it that were drawn last, and for nothing else if there are none."""
+        wanted, known = self.hulls.footprints_m, self.sea.hull_footprints_m
+        return set(wanted) <= set(known) and bool(wanted) == bool(known)
+
     def is_coarse(self):
         """Whether a view's last picture was of its coarse grid."""
         return any(grid.key[1] != self._cell_px for grid in self._grids.values())
@@ -173,6 +178,8 @@ class Drawing:
         if (has_shadow, bool(bodies)) != (self._has_shadow, self._has_bodies):
             self._has_shadow, self._has_bodies = has_shadow, bool(bodies)
             self._shaders.clear()
+        if not bodies:
+            self.hulls.footprints_m = []
         self._prepare(time_s)
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
         if self.is_under_water:
@@ -248,7 +255,7 @@ class Drawing:
             light = {**light, **self.shadow.uniforms}
             drawn["sun_blockers"] = self.shadow.texture
         if bodies:
-            self.hulls.draw(bodies, grid.origin_m, _texture)
+            self.hulls.draw(bodies, grid.origin_m, self.sea, _texture)
             self.mirror.draw(bodies, grid.grid, grid.key[0], self._shaders["object"], _put,
                              {**light, **self.sea.surroundings(scene, self.light)}, {"sky_map": self._textures["sky_map"], **drawn})
             light = {**light, **self.mirror.uniforms, "view_height_m": light["eye_height_m"]}

@@ -84,12 +84,13 @@ class Preview:
             finest_m = FINEST_M if sea is None else drawing.finest_m() or sea.finest_m
             finest_m = min(max(finest_m, FINEST_M), COARSEST_M)
             # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
-            keeps_sea = sea is not None and sea.serves(of_shot) and sea.finest_m <= finest_m <= 4 * sea.finest_m
+            keeps_sea = sea is not None and sea.serves(of_shot) and sea.finest_m <= finest_m <= 4 * sea.finest_m and drawing.knows_hulls()
             keeps_light = lit is not None and lit.serves(scene)
             if keeps_sea and keeps_light:
                 self.problem = ""
             else:
-                self._job = _job(self._settings, scene, of_shot, sea if keeps_sea else None, lit if keeps_light else None, finest_m)
+                self._job = _job(self._settings, scene, of_shot, sea if keeps_sea else None, lit if keeps_light else None, finest_m,
+                                 drawing.hulls.footprints_m)
         return sea is not None
 
     def poll(self):
@@ -128,7 +129,9 @@ class Preview:
             self.drawing.draw(context.region.as_pointer(), camera, scene, scene.shot.time_s(context.scene.frame_current_final),
                               self.drawing.light.exposure(scene, light.stops_by_hand(context.scene)),
                               context.window_manager.pelagic_preview.show_sky,
-                              self.objects.seen(context, obj.matrix_world.inverted_safe()))
+                              self.objects.seen(context, obj.matrix_world.inverted_safe(), scene.shot.time_s(2.0) - scene.shot.time_s(1.0)))
+            if not self.drawing.knows_hulls():
+                self.build(scene)
         if self.is_building or not is_hidden or self.drawing.is_coarse() or self.drawing.awaits_foam:
             _tend_soon()
 
@@ -166,10 +169,10 @@ class Preview:
                    for key, layer in _layers())
 
 
-def _job(key, scene, of_shot, sea, lit, finest_m):
-    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, the sea with its keys, those that aren't there."""
+def _job(key, scene, of_shot, sea, lit, finest_m, footprints_m):
+    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, the sea with its keys and what hulls want to know, those that aren't there."""
     def begin():
-        makers = [] if sea else [lambda: pelagic.GpuSea.begin(of_shot, finest_m)]
+        makers = [] if sea else [lambda: pelagic.GpuSea.begin(of_shot, finest_m, footprints_m)]
         makers += [] if lit else [lambda: pelagic.GpuLight.begin(scene)]
         return [make() for make in makers]
 

@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import in_light, light, ocean, viewport
+from pelagic_ocean import compat, in_light, light, ocean, viewport
 from pelagic_ocean.module import pelagic
 from views import *  # noqa: F403
 
@@ -127,6 +127,49 @@ def steps():
         tub.location.x += 200.0
         bpy.context.view_layer.update()
         assert (change_of(picture(), full)[inside] < 2 / 255).all(), "it goes along"
+
+    with checking("foam lies along a hull under way, where the program's preview has it, and nowhere else"):
+        bpy.context.scene.frame_start, bpy.context.scene.frame_end = 0, 48
+        for frame, east_m in ((0, -4.0), (48, 4.0)):
+            tub.location.x = east_m
+            tub.keyframe_insert("location", frame=frame)
+        for curve in compat.curves(tub):
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+        bpy.context.scene.frame_set(24)
+        drawing = viewport._preview.drawing
+        tub.pelagic_in_light.enabled = False
+        settle()
+        tub.pelagic_in_light.enabled = True
+        drawing.knows_hulls = lambda: True  # a sea that wasn't built for hulls will do
+        without = picture()
+        assert not drawing.sea.hull_footprints_m
+        del drawing.knows_hulls
+        foamy = picture()
+        assert not viewport._preview.problem, viewport._preview.problem
+        assert len(drawing.sea.hull_footprints_m) == 1, drawing.sea.hull_footprints_m
+        here = seen_from_here(obj)
+        with in_view():
+            assert in_light.put(bpy.context, obj, here, FOLDER / "bodies") == []
+        theirs = programs_picture(here, 24)
+        here.objects[0].foam = 0.0
+        mine, program = (np.abs(a - b).max(2) for a, b in ((foamy, without), (theirs, programs_picture(here, 24))))
+        both = mine[program > 0.02], program[program > 0.02]
+        off = np.abs(both[0] - both[1]) / both[1]
+        print(f"    {len(off)} pixels, by {both[1].mean():.3f}, at most {both[1].max():.3f}; off by a median of {np.median(off):.3f}; in all {both[0].sum() / both[1].sum():.3f} "
+              f"of the program's; elsewhere {mine[program == 0.0].max():.3f}")
+        if "PELAGIC_PICTURES" in os.environ:
+            for name, pixels in (("foam", foamy), ("no-foam", without), ("program-foam", theirs)):
+                keep(Path(os.environ["PELAGIC_PICTURES"]) / f"{name}.png", pixels)
+        assert len(off) > 50 and both[1].max() > 0.1 and np.median(off) < 0.15
+        assert mine[program == 0.0].max() < 0.02
+
+    with checking("a scene without objects has a sea and shaders without all that"):
+        tub.pelagic_in_light.enabled = False
+        picture()
+        assert not drawing.sea.hull_footprints_m and "object" not in drawing._shaders
+        assert not any("hull_maps" in text or "mirrored_objects" in text or "sun_blockers" in text
+                       for text in drawing.sea.shaders(drawing.light)["sea"])
 
 
 in_window(steps)

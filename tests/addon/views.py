@@ -111,11 +111,11 @@ def seen_from_here(obj):
     return scene
 
 
-def programs_picture(scene):
+def programs_picture(scene, frame=1):
     """What `pelagic preview` draws of it."""
     shot, file = FOLDER / "same.toml", FOLDER / "same.png"
     scene.save(shot)
-    subprocess.run([os.environ["PELAGIC_PROGRAM"], "preview", str(shot), "--offscreen", str(file), "--frame", "1"], check=True)
+    subprocess.run([os.environ["PELAGIC_PROGRAM"], "preview", str(shot), "--offscreen", str(file), "--frame", str(frame)], check=True)
     return pixels_of(file)
 
 

@@ -34,18 +34,23 @@ def members(obj, is_another):
 
 
 def triangles_of(evaluated):
-    """(points, triangles) of an evaluated object in its own coordinates, float32 (n, 3) and int32 (m, 3); None of what has no faces."""
+    """(points, corners, normals, slot) of an evaluated object in its own coordinates: float32 (n, 3), int32 (t, 3) into them, the corners' normals
+    float32 (t, 3, 3), and which of its material slots each triangle has, int32 (t,); None of what has no faces."""
     mesh = evaluated.to_mesh()
     try:
         if mesh is None or not mesh.polygons:
             return None
         mesh.calc_loop_triangles()
-        points, corners = np.empty((len(mesh.vertices), 3), np.float32), np.empty((len(mesh.loop_triangles), 3), np.int32)
+        points, loops = np.empty((len(mesh.vertices), 3), np.float32), np.empty((len(mesh.loop_triangles), 3), np.int32)
         mesh.vertices.foreach_get("co", points.ravel())
-        mesh.loop_triangles.foreach_get("vertices", corners.ravel())
+        mesh.loop_triangles.foreach_get("loops", loops.ravel())
+        slot, vertices = np.empty(len(loops), np.int32), np.empty(len(mesh.loops), np.int32)
+        mesh.loop_triangles.foreach_get("material_index", slot)
+        mesh.loops.foreach_get("vertex_index", vertices)
+        normals = compat.corner_normals(mesh)[loops]
     finally:
         evaluated.to_mesh_clear()
-    return points, corners
+    return points, vertices[loops], normals, np.clip(slot, 0, max(len(evaluated.material_slots) - 1, 0))
 
 
 def shape_of(parts, depsgraph, into):
@@ -71,22 +76,11 @@ def shape_of(parts, depsgraph, into):
 
 def _arrays(evaluated, matrix, materials, remarks):
     """(points, corners, normals, material) of an evaluated object; None where it has no faces."""
-    mesh = evaluated.to_mesh()
-    try:
-        if mesh is None or not mesh.polygons:
-            return None
-        mesh.calc_loop_triangles()
-        points, loops = np.empty((len(mesh.vertices), 3), np.float32), np.empty((len(mesh.loop_triangles), 3), np.int32)
-        mesh.vertices.foreach_get("co", points.ravel())
-        mesh.loop_triangles.foreach_get("loops", loops.ravel())
-        slot, vertices = np.empty(len(loops), np.int32), np.empty(len(mesh.loops), np.int32)
-        mesh.loop_triangles.foreach_get("material_index", slot)
-        mesh.loops.foreach_get("vertex_index", vertices)
-        normals = compat.corner_normals(mesh)[loops]
-        slots = [each.material for each in evaluated.material_slots] or [None]
-        index = [materials.setdefault(_material(each, remarks), len(materials)) for each in slots]
-    finally:
-        evaluated.to_mesh_clear()
+    read = triangles_of(evaluated)
+    if read is None:
+        return None
+    points, corners, normals, slot = read
+    index = [materials.setdefault(material_of(each, remarks), len(materials)) for each in [each.material for each in evaluated.material_slots] or [None]]
     linear = np.array(matrix, float)[:3, :3]
     points = points @ linear.T + np.array(matrix, float)[:3, 3]
     size = np.linalg.det(linear)
@@ -95,10 +89,9 @@ def _arrays(evaluated, matrix, materials, remarks):
     normals = normals @ np.linalg.inv(linear)
     lengths = np.linalg.norm(normals, axis=2, keepdims=True)
     normals = normals / np.where(lengths > 0.0, lengths, 1.0)
-    corners = vertices[loops]
     if size < 0.0:  # mirrored
         corners, normals = corners[:, ::-1], normals[:, ::-1]
-    return points, corners, normals, np.array(index)[np.clip(slot, 0, len(index) - 1)]
+    return points, corners, normals, np.array(index)[slot]
 
 
 # ---- Materials
@@ -118,7 +111,7 @@ def _input(node, *names):
     return next((node.inputs[name] for name in names if name in node.inputs), None)
 
 
-def _material(material, remarks):
+def material_of(material, remarks):
     """(name, colour, roughness, light in kcd/m²); remarks: what is left out → names of materials."""
     if material is None:
         return GREY

@@ -10,6 +10,8 @@ from mathutils import Matrix, Vector
 
 from . import compat
 from .gpu_hulls import Hulls
+from .gpu_mirror import Mirror
+from .gpu_objects import full_triangle
 from .gpu_shadow import Shadow
 from .module import pelagic
 
@@ -98,6 +100,11 @@ def _bind(shader, textures):
             pass
 
 
+def _put(shader, uniforms, textures):
+    _set(shader, uniforms)
+    _bind(shader, textures)
+
+
 class Grid:
     """A region's projected grid on the GPU."""
 
@@ -128,8 +135,8 @@ class Drawing:
         self._time_s = None
         self._air, self._air_height_m = {}, ()
         self._sky_batch = None
-        self.shadow, self.hulls = Shadow(), Hulls()
-        self._has_shadow = self._has_hulls = False
+        self.shadow, self.hulls, self.mirror = Shadow(), Hulls(), Mirror()
+        self._has_shadow = self._has_bodies = False
         self._foam_asked = None  # for what, and whether it hasn't come yet
         self.awaits_foam = False
         self.is_under_water = False  # the view that was drawn last, which then stayed empty
@@ -149,6 +156,11 @@ class Drawing:
         """How fine a sea the views would use that were drawn lately [m]; None before the first."""
         return min((self.sea.finest_for(grid.key[0]) for grid in self._grids.values()), default=None)
 
+    def knows_hulls(self):
+        """Whether the sea was built for what the hulls want to know of it that were drawn last, and for nothing else if there are none."""
+        wanted, known = self.hulls.footprints_m, self.sea.hull_footprints_m
+        return set(wanted) <= set(known) and bool(wanted) == bool(known)
+
     def is_coarse(self):
         """Whether a view's last picture was of its coarse grid."""
         return any(grid.key[1] != self._cell_px for grid in self._grids.values())
@@ -157,15 +169,17 @@ class Drawing:
         """Whether foam has come that no picture shows yet."""
         return self.awaits_foam and not self.sea.is_foam_busy
 
-    def draw(self, region, camera, scene, time_s, exposure, with_sky, throw=(), sea_from_world=None):
+    def draw(self, region, camera, scene, time_s, exposure, with_sky, bodies=()):
         """The sea at a time [s] into the bound framebuffer, where it is nearer than what is there; the sky where nothing
-        is. region: what tells views apart. scene: one that sea and light serve; cells are larger while the view moves. throw: Shadow.parts()."""
+        is. region: what tells views apart. scene: one that sea and light serve; cells are larger while the view moves. bodies: Objects.seen()."""
         cell_px = scene.surface.cell_px
         self._cell_px = cell_px
-        has_shadow = bool(throw) and self.light.uniforms["sun_direction"][2] > 0.0
-        if (has_shadow, bool(throw)) != (self._has_shadow, self._has_hulls):
-            self._has_shadow, self._has_hulls = has_shadow, bool(throw)
+        has_shadow = bool(bodies) and self.light.uniforms["sun_direction"][2] > 0.0
+        if (has_shadow, bool(bodies)) != (self._has_shadow, self._has_bodies):
+            self._has_shadow, self._has_bodies = has_shadow, bool(bodies)
             self._shaders.clear()
+        if not bodies:
+            self.hulls.footprints_m = []
         self._prepare(time_s)
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
         if self.is_under_water:
@@ -178,7 +192,7 @@ class Drawing:
         gpu.state.depth_mask_set(True)
         try:
             gpu.state.depth_test_set("LESS")
-            self._draw_sea(region, camera, scene, light, throw, sea_from_world)
+            self._draw_sea(region, camera, scene, light, bodies)
             if with_sky:
                 gpu.state.depth_test_set("LESS_EQUAL")
                 self._draw_sky(light)
@@ -189,7 +203,7 @@ class Drawing:
 
     def _prepare(self, time_s):
         if not self._shaders:
-            for name, text in self.sea.shaders(self.light, self._has_shadow, self._has_hulls).items():
+            for name, text in self.sea.shaders(self.light, self._has_shadow, self._has_bodies, self._has_bodies).items():
                 if text not in self._compiled:
                     self._compiled[text] = compat.shader(*text)
                 self._shaders[name] = self._compiled[text]
@@ -233,15 +247,19 @@ class Drawing:
             self._textures[name] = _texture(pixels)
         self.awaits_foam = self.awaits_foam and not is_done
 
-    def _draw_sea(self, region, camera, scene, light, throw, sea_from_world):
+    def _draw_sea(self, region, camera, scene, light, bodies):
         shader = self._shaders["sea"]
-        grid = self._grid(region, camera)
+        grid, drawn = self._grid(region, camera), {}
         if self._has_shadow:
-            self.shadow.draw(throw, sea_from_world, grid.origin_m, light["sun_direction"], light["sun_angular_radius"])
-            light = {**light, **self.shadow.uniforms, "view_height_m": light["eye_height_m"]}
-        if self._has_hulls:
-            self.hulls.draw(throw, sea_from_world, grid.origin_m, _texture)
-            light = {**light, "view_height_m": light["eye_height_m"]}
+            self.shadow.draw(bodies, grid.origin_m, light["sun_direction"], light["sun_angular_radius"])
+            light = {**light, **self.shadow.uniforms}
+            drawn["sun_blockers"] = self.shadow.texture
+        if bodies:
+            self.hulls.draw(bodies, grid.origin_m, self.sea, _texture)
+            self.mirror.draw(bodies, grid.grid, grid.key[0], self._shaders["object"], _put,
+                             {**light, **self.sea.surroundings(scene, self.light)}, {"sky_map": self._textures["sky_map"], **drawn})
+            light = {**light, **self.mirror.uniforms, "view_height_m": light["eye_height_m"]}
+            drawn |= {"hull_maps": self.hulls.map, "hull_places": self.hulls.places, "mirrored_objects": self.mirror.texture}
         if self.sea.has_living_foam:
             self._follow_foam()
         tables, cycles = self.sea.at_origin(grid.origin_m)
@@ -251,26 +269,20 @@ class Drawing:
         _set(shader, {**self.sea.uniforms, **light, **self.sea.water(scene),
                       **self.sea.foam(scene, grid.origin_m, self.light), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
                       "curvature_per_m": grid.curvature_per_m})
-        textures = dict(self._textures)
+        if bodies:
+            self.mirror.put_boxes(shader)
+        textures = {**self._textures, **drawn}
         if self.sea.has_living_foam:
             textures["foam_levels"] = _texture(self.sea.foam_levels(grid.origin_m))
         if cycles is not None:
             textures["train_cycles"] = _texture(cycles)
-        if self._has_shadow:
-            textures["sun_blockers"] = self.shadow.texture
-        if self._has_hulls:
-            textures["hull_maps"], textures["hull_places"] = self.hulls.map, self.hulls.places
         _bind(shader, textures)
         grid.batch.draw(shader)
 
     def _draw_sky(self, light):
         shader = self._shaders["sky"]
         if self._sky_batch is None:
-            form = gpu.types.GPUVertFormat()
-            form.attr_add(id="unused", comp_type="F32", len=1, fetch_mode="FLOAT")
-            vertices = gpu.types.GPUVertBuf(format=form, len=3)
-            vertices.attr_fill(id="unused", data=np.zeros(3, np.float32))
-            self._sky_batch = gpu.types.GPUBatch(type="TRIS", buf=vertices)
+            self._sky_batch = full_triangle()
         shader.bind()
         _set(shader, {**light, "farthest": 1.0})
         _bind(shader, {name: self._textures[name] for name in ("sky_map", "air_table")})

@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, gpu_hulls, gpu_shadow, handlers, keyed, light, ocean, play
+from . import compat, gpu_objects, handlers, keyed, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -35,7 +35,7 @@ class Preview:
     def __init__(self, obj):
         self.name = obj.name_full
         self._obj = obj
-        self.drawing = Drawing()
+        self.drawing, self.objects = Drawing(), gpu_objects.Objects()
         self.hidden_in = {}  # (names of scene and view layer): whether it was selected there
         self.problem = ""
         self.is_broken = False  # it can't draw; problem says why
@@ -84,12 +84,13 @@ class Preview:
             finest_m = FINEST_M if sea is None else drawing.finest_m() or sea.finest_m
             finest_m = min(max(finest_m, FINEST_M), COARSEST_M)
             # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
-            keeps_sea = sea is not None and sea.serves(of_shot) and sea.finest_m <= finest_m <= 4 * sea.finest_m
+            keeps_sea = sea is not None and sea.serves(of_shot) and sea.finest_m <= finest_m <= 4 * sea.finest_m and drawing.knows_hulls()
             keeps_light = lit is not None and lit.serves(scene)
             if keeps_sea and keeps_light:
                 self.problem = ""
             else:
-                self._job = _job(self._settings, scene, of_shot, sea if keeps_sea else None, lit if keeps_light else None, finest_m)
+                self._job = _job(self._settings, scene, of_shot, sea if keeps_sea else None, lit if keeps_light else None, finest_m,
+                                 drawing.hulls.footprints_m)
         return sea is not None
 
     def poll(self):
@@ -127,8 +128,10 @@ class Preview:
                             gpu.state.viewport_get()[2:], obj.matrix_world)
             self.drawing.draw(context.region.as_pointer(), camera, scene, scene.shot.time_s(context.scene.frame_current_final),
                               self.drawing.light.exposure(scene, light.stops_by_hand(context.scene)),
-                              context.window_manager.pelagic_preview.show_sky, self.drawing.shadow.parts(context),
-                              obj.matrix_world.inverted_safe())
+                              context.window_manager.pelagic_preview.show_sky,
+                              self.objects.seen(context, obj.matrix_world.inverted_safe(), scene.shot.time_s(2.0) - scene.shot.time_s(1.0)))
+            if not self.drawing.knows_hulls():
+                self.build(scene)
         if self.is_building or not is_hidden or self.drawing.is_coarse() or self.drawing.awaits_foam:
             _tend_soon()
 
@@ -166,10 +169,10 @@ class Preview:
                    for key, layer in _layers())
 
 
-def _job(key, scene, of_shot, sea, lit, finest_m):
-    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, the sea with its keys, those that aren't there."""
+def _job(key, scene, of_shot, sea, lit, finest_m, footprints_m):
+    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, the sea with its keys and what hulls want to know, those that aren't there."""
     def begin():
-        makers = [] if sea else [lambda: pelagic.GpuSea.begin(of_shot, finest_m)]
+        makers = [] if sea else [lambda: pelagic.GpuSea.begin(of_shot, finest_m, footprints_m)]
         makers += [] if lit else [lambda: pelagic.GpuLight.begin(scene)]
         return [make() for make in makers]
 
@@ -267,8 +270,7 @@ def _tend():
 @persistent
 def _see_changes(_bpy_scene, depsgraph):
     if _preview is not None:
-        gpu_shadow.changed(depsgraph)
-        gpu_hulls.changed(depsgraph)
+        gpu_objects.changed(depsgraph)
 
 
 @persistent

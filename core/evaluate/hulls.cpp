@@ -25,9 +25,12 @@ constexpr double kMostFoam = 0.9;  // by eye, as Hulls::kFull_mps
 Hulls::Hulls(const Scene& scene) : scene_(scene) {
     for (const std::size_t i : hulls_of(scene)) {
         const SceneObject& object = scene.objects[i];
-        Placed hull{.object = i, .hull = hull_of(*object.mesh), .scale = object.scale, .foam = object.foam};
+        Placed& hull = hulls_.emplace_back();
+        hull.object = i;
+        hull.hull = hull_of(*object.mesh);
+        hull.scale = object.scale;
+        hull.foam = object.foam;
         hull.foam_m = contact_foam_m(object, *hull.hull);
-        hulls_.push_back(std::move(hull));
     }
 }
 
@@ -47,7 +50,6 @@ void Hulls::place(const Frame<T>& state, std::optional<int> query, double frame,
             return std::pair(pose.scale * pose.turn, pose.place_m);
         };
         std::tie(placed.axes, placed.place_m) = at(0.0);
-        placed.into = glm::inverse(placed.axes);
         placed.axes_per_s = glm::dmat3(0.0);
         placed.place_mps = glm::dvec3(0.0);
         if (placed.foam > 0.0 && step_s > 0.0) {
@@ -58,14 +60,28 @@ void Hulls::place(const Frame<T>& state, std::optional<int> query, double frame,
             placed.axes_per_s = (axes_behind - axes_before) * per_s;
             placed.place_mps = (behind - before) * per_s;
         }
-        const glm::dvec3 least = object.mesh->least_m(), most = object.mesh->most_m();
-        const glm::dvec3 beside(placed.hull->margin_m(), placed.hull->margin_m(), 0.0);
-        placed.centre_m = placed.place_m + placed.axes * (0.5 * (least + most));
-        placed.radius_m = placed.scale * glm::length(0.5 * (most - least) + beside);
+        bound(placed);
     }
 }
 template void Hulls::place(const Frame<float>&, std::optional<int>, double, RestHeight);
 template void Hulls::place(const Frame<double>&, std::optional<int>, double, RestHeight);
+
+void Hulls::place(std::span<const Moved> bodies) {
+    rest_m_ = {};
+    for (Placed& placed : hulls_) {
+        static_cast<Moved&>(placed) = bodies[placed.object];
+        bound(placed);
+    }
+}
+
+void Hulls::bound(Placed& placed) const {
+    const ObjectMesh& mesh = *scene_.objects[placed.object].mesh;
+    const glm::dvec3 least = mesh.least_m(), most = mesh.most_m();
+    const glm::dvec3 beside(placed.hull->margin_m(), placed.hull->margin_m(), 0.0);
+    placed.into = glm::inverse(placed.axes);
+    placed.centre_m = placed.place_m + placed.axes * (0.5 * (least + most));
+    placed.radius_m = placed.scale * glm::length(0.5 * (most - least) + beside);
+}
 
 double Hulls::Placed::distance(const glm::dvec3& place) const {
     return is_near(place, 0.0) ? scale * hull->distance_m(local(place)) : kFar;

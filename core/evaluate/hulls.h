@@ -30,6 +30,14 @@ class Hulls {
     template <class T>
     void place(const Frame<T>& state, std::optional<int> query, double frame, RestHeight rest_m = {});
 
+    // A body whose way somebody else knows: where its axes and its origin are, and how these change each second of the sea.
+    struct Moved {
+        glm::dmat3 axes{1.0}, axes_per_s{0.0};  // turn times the object's scale
+        glm::dvec3 place_m{0.0}, place_mps{0.0};
+    };
+    // The same of such bodies, one for each of the scene's objects, over a sea that rests level.
+    void place(std::span<const Moved> bodies);
+
     // Along the hull's decks from its outline at the place's height, the nearest one's [m]; negative: dry. Infinite where none is near. Where a hull
     // leans by an angle it is the level one's over its cosine at most, a tenth more at the 24° to which what floats is kept.
     double distance_m(const glm::dvec3& place_m) const;
@@ -73,13 +81,10 @@ class Hulls {
     static constexpr double kFull_mps = 1.5;  // v₀
 
   private:
-    struct Placed {
+    struct Placed : Moved {
         std::size_t object = 0;
         std::shared_ptr<const Hull> hull;
-        glm::dmat3 axes{1.0}, into{1.0};  // turn times scale, and its inverse
-        glm::dvec3 place_m{0.0};
-        glm::dmat3 axes_per_s{0.0};  // how these change
-        glm::dvec3 place_mps{0.0};
+        glm::dmat3 into{1.0};  // of the axes
         glm::dvec3 centre_m{0.0};
         double scale = 1.0, radius_m = 0.0;  // round the box and the margin
         double foam = 0.0, foam_m = 0.0;
@@ -94,6 +99,9 @@ class Hulls {
         double foam_at(const glm::dvec3& place, double distance_m, const glm::dvec3& water_mps,
                        double cell_m) const;
     };
+
+    // What follows from where a hull is.
+    void bound(Placed& placed) const;
 
     const Scene& scene_;
     std::vector<Placed> hulls_;

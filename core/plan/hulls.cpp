@@ -1,7 +1,6 @@
 #include "core/plan/hulls.h"
 
 #include <algorithm>
-#include <set>
 
 #include "core/plan/plan.h"
 #include "core/scene/hull.h"
@@ -26,17 +25,17 @@ void add_floating_levels(const SceneObject& object, std::set<double>& levels_m) 
     levels_m.insert({below_m, 2.0 * below_m});
 }
 
-std::optional<Query> query_of(const std::set<double>& levels_m) {
-    if (levels_m.empty()) return std::nullopt;
+}  // namespace
+
+std::optional<Query> hulls_query(const std::set<double>& footprints_m) {
+    if (footprints_m.empty()) return std::nullopt;
     Query query;
     query.name = kHullsQuery;
     query.products = products(Product::Position, Product::Velocity);
-    query.cell_m = query.pixel_m = {levels_m.begin(), levels_m.end()};
+    query.cell_m = query.pixel_m = {footprints_m.begin(), footprints_m.end()};
     query.is_view = true;  // which wave trains there are is for others to say
     return query;
 }
-
-}  // namespace
 
 std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
     std::set<double> levels_m;
@@ -45,7 +44,7 @@ std::optional<Query> hulls_query(const Scene& scene, bool has_places) {
         if (!has_places) levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
         add_floating_levels(object, levels_m);
     }
-    return query_of(levels_m);
+    return hulls_query(levels_m);
 }
 
 std::optional<Query> hulls_query_of_picture(const Scene& scene) {
@@ -54,7 +53,7 @@ std::optional<Query> hulls_query_of_picture(const Scene& scene) {
         if (const SceneObject& object = scene.objects[i]; object.foam > 0.0)
             levels_m.insert(contact_level_m(contact_foam_m(object, *hull_of(*object.mesh))));
     for (const SceneObject& object : scene.objects) add_floating_levels(object, levels_m);
-    return query_of(levels_m);
+    return hulls_query(levels_m);
 }
 
 std::optional<int> hulls_query(const Plan& plan) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 
 #include "core/plan/outputs.h"
@@ -17,6 +18,8 @@ struct Plan;
 std::optional<Query> hulls_query(const Scene& scene, bool has_places);
 // Of pictures: where hulls have foam, and of all that floats, so that it is where it is whatever else a picture shows.
 std::optional<Query> hulls_query_of_picture(const Scene& scene);
+// Of these footprints [m]; none without any.
+std::optional<Query> hulls_query(const std::set<double>& footprints_m);
 // Its number in a plan that has it.
 std::optional<int> hulls_query(const Plan& plan);
 // Whether the plan's scene has hulls, and a frame of the plan knows where all of them are.

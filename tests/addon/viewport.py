@@ -2,137 +2,20 @@
 back whatever happens. Needs a display (xvfb-run will do) and PELAGIC_PROGRAM, the program's path."""
 
 import math
-import os
-import subprocess
 import sys
-import tempfile
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 from bpy_extras.object_utils import world_to_camera_view
 from harness import *  # noqa: F403
-from mathutils import Euler, Vector
+from mathutils import Vector
 
 package = enable()
-from pelagic_ocean import compat, in_light, ocean, viewport
+from pelagic_ocean import compat, ocean, viewport
 from pelagic_ocean.module import pelagic
+from views import *  # noqa: F403
 
-FOLDER = Path(tempfile.mkdtemp())
 CUBE_M = 6.0
-
-
-# ---- The window
-
-
-def view3d():
-    window = bpy.context.window_manager.windows[0]
-    areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
-    return window, max(areas, key=lambda area: area.width)
-
-
-def in_view():
-    window, area = view3d()
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    return bpy.context.temp_override(window=window, screen=window.screen, area=area, region=region)
-
-
-def redraw():
-    with in_view():
-        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
-
-
-def state(preview):
-    """What a picture is made of."""
-    drawing = preview.drawing
-    return drawing.sea, drawing.light, list(preview.hidden_in), drawing.awaits_foam, drawing.is_coarse(), preview.is_building
-
-
-def settle():
-    """Until the preview has nothing left to do; its timers don't run while a script does. In software a picture takes
-    seconds: there is no more than is needed."""
-    for _ in range(20):
-        preview = viewport._preview
-        before = preview and state(preview)
-        redraw()
-        if preview is None or viewport._preview is not preview:
-            return
-        if preview._job is not None:
-            preview._job.finish()
-        while preview.drawing.awaits_foam and preview.drawing.sea.is_foam_busy:
-            time.sleep(0.01)
-        viewport._tend()
-        if state(preview) == before and not any(before[-3:]):
-            return
-    raise AssertionError("the preview doesn't come to rest")
-
-
-def pixels_of(file):
-    """float32 (height, width, 3), rows from the bottom, display values."""
-    image = bpy.data.images.load(str(file))
-    width, height = image.size
-    numbers = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(numbers)
-    channels = image.channels
-    bpy.data.images.remove(image)
-    return numbers.reshape(height, width, channels)[:, :, :3]
-
-
-def picture():
-    settle()
-    redraw()
-    window, area = view3d()
-    with in_view():
-        region = bpy.context.region
-        x, y, width, height = region.x, region.y, region.width, region.height
-    return window_pixels(window)[y:y + height, x:x + width]
-
-
-def look(pitch_deg, height_m, distance_m=60.0):
-    """From the south, along y."""
-    _, area = view3d()
-    region_3d = area.spaces.active.region_3d
-    region_3d.view_perspective = "PERSP"
-    rotation = Euler((np.radians(90 + pitch_deg), 0, 0)).to_quaternion()
-    region_3d.view_rotation = rotation
-    region_3d.view_distance = 1.0
-    region_3d.view_location = Vector((0, -distance_m, height_m)) - rotation @ Vector((0, 0, 1))
-    region_3d.update()
-
-
-def place_of(point):
-    """Row and column of a world point in the picture."""
-    with in_view():
-        region, region_3d = bpy.context.region, bpy.context.region_data
-        clip = region_3d.perspective_matrix @ Vector((*point, 1))
-        return (int((clip.y / clip.w * 0.5 + 0.5) * region.height), int((clip.x / clip.w * 0.5 + 0.5) * region.width))
-
-
-def seen_from_here(obj):
-    """The ocean's scene with the view as its camera."""
-    with in_view():
-        region, region_3d = bpy.context.region, bpy.context.region_data
-        pose, projection = region_3d.view_matrix.inverted(), region_3d.window_matrix.copy()
-        size = region.width, region.height
-    scene = ocean.scene_of(obj, bpy.context.scene)
-    scene.camera.position_m = tuple(pose.translation)
-    scene.camera.look_at_m = tuple(pose.translation - 100 * pose.col[2].to_3d())
-    scene.camera.fov_deg = float(np.degrees(2 * np.arctan(1 / projection[0][0])))
-    scene.camera.resolution = size
-    return scene
-
-
-def programs_picture(scene):
-    """What `pelagic preview` draws of it."""
-    shot, file = FOLDER / "same.toml", FOLDER / "same.png"
-    scene.save(shot)
-    subprocess.run([os.environ["PELAGIC_PROGRAM"], "preview", str(shot), "--offscreen", str(file), "--frame", "1"], check=True)
-    return pixels_of(file)
-
-
-def change_of(a, b):
-    """Per pixel, 0 … 1."""
-    return np.abs(a - b).max(axis=2)
 
 
 # ---- The test
@@ -391,64 +274,8 @@ def steps():
         settle()
         assert not viewport.is_on() and not viewport._problem, viewport._problem
 
-    fresh_file()  # one view, and nothing in it
+    fresh_file()
     yield lambda: True
-    with checking("an object in the sea's light throws its shadow, where the program's preview has it"):
-        bpy.context.scene.frame_start = bpy.context.scene.frame_end = 1
-        with in_view():
-            bpy.ops.screen.screen_full_area(use_hide_panels=True)
-        with in_view():
-            obj = add_ocean(quality__level="draft", sea__wind_speed_mps=3.0, light__sun_elevation_deg=25.0, light__sun_azimuth_deg=180.0, water__type="turbid")
-            bpy.ops.mesh.primitive_cube_add(size=CUBE_M, location=(-4.0, 0.0, 0.5 * CUBE_M))
-            block = bpy.context.object
-        _, area = view3d()
-        area.spaces.active.show_gizmo = area.spaces.active.overlay.show_overlays = False
-        bpy.context.window_manager.pelagic_preview.show_sky = True
-        look(-14.0, 14.0, 34.0)
-        viewport.turn_on(obj)
-        plain = picture()
-        block.pelagic_in_light.enabled = True
-        with_shadow, here = picture(), seen_from_here(obj)
-        assert not viewport._preview.problem, viewport._preview.problem
-        theirs = programs_picture(here)
-        with in_view():
-            assert in_light.put(bpy.context, obj, here, FOLDER / "bodies") == []
-        theirs_with = programs_picture(here)
-        # To the right of the block, where no mirror image of it is.
-        row, column = place_of((0.0, 0.0, 0.0))
-        part = np.s_[row - 12:row + 12, column:]
-        mine, program = (a[part].mean(2) / b[part].mean(2) < 0.97 for a, b in ((with_shadow, plain), (theirs_with, theirs)))
-        print(f"    {mine.sum()} pixels here, {program.sum()} by the program, {(mine & program).sum()} in both")
-        assert mine.sum() > 30 and (mine & program).sum() > 0.7 * (mine | program).sum()
-        assert (change_of(with_shadow, plain)[:, :column // 2] < 2 / 255).all()
-        block.location.x += 200.0
-        bpy.context.view_layer.update()
-        assert (change_of(picture(), plain)[part] < 2 / 255).all(), "it goes along"
-        bpy.data.objects.remove(block)
-        with checking("no sea is drawn in a hull, wherever it goes"):
-            tub = bpy.data.meshes.new("tub")
-            corners = [(x, y, z) for z in (-2.0, 1.0) for y in (-4.0, 4.0) for x in (-6.0, 6.0)]
-            tub.from_pydata(corners, [], [(0, 1, 3, 2), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)])
-            tub = bpy.data.objects.new("tub", tub)
-            bpy.context.scene.collection.objects.link(tub)
-            look(-24.0, 16.0, 34.0)
-            full = picture()
-            tub.pelagic_in_light.enabled = True
-            dry = picture()
-            assert not viewport._preview.problem, viewport._preview.problem
-            row, column = place_of((0.0, 0.0, 0.0))
-            inside = np.s_[row - 3:row + 3, column - 4:column + 4]
-            was, now = full[inside].mean((0, 1)), dry[inside].mean((0, 1))
-            print(f"    in the hull {np.round(was, 3)} before, {np.round(now, 3)} now")
-            assert was[1] > was[0] + 0.03, "there was no sea in it"
-            assert abs(now[1] - now[0]) < 0.02, "its bottom is grey"
-            tub.location.x += 200.0
-            bpy.context.view_layer.update()
-            assert (change_of(picture(), full)[inside] < 2 / 255).all(), "it goes along"
-        viewport.turn_off()
-        for each in (tub, obj):
-            bpy.data.objects.remove(each)
-
     with checking("the add-on goes while it is on"):
         with in_view():
             obj = add_ocean(quality__level="draft")

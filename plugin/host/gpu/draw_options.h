@@ -24,6 +24,7 @@ struct DrawOptions {
     bool has_objects = false;   // they throw shadows on the sea, and it mirrors them
     bool has_shadow = false;    // for a host: its own objects throw shadows on the sea
     bool has_hulls = false;     // for a host: its own objects keep water out; objects here always may
+    bool has_mirror = false;    // for a host: the sea mirrors its own objects
     bool wireframe = false;     // the grid's edges on black
     // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
     // faster.

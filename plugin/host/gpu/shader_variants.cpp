@@ -52,8 +52,10 @@ const char* shape_file(bool is_shaped, const char* shaped) {
 constexpr const char *kShapeOfVertex = "plugin/host/gpu/shape_vertex.glsl",
                      *kShapeOfFragment = "plugin/host/gpu/shape_fragment.glsl";
 constexpr const char* kCrests = "plugin/host/gpu/crests.glsl";
-const char* sky_alone_file(bool has_objects) {
-    return has_objects ? "plugin/host/gpu/sky_with_objects.glsl" : "plugin/host/gpu/sky_alone.glsl";
+std::vector<std::string_view> mirror_files(bool has_mirror, bool for_host = false) {
+    if (!has_mirror) return {"plugin/host/gpu/sky_alone.glsl"};
+    return {for_host ? "plugin/host/gpu/mirror_atlas.glsl" : "plugin/host/gpu/mirror_texture.glsl",
+            "plugin/host/gpu/sky_with_objects.glsl"};
 }
 std::vector<std::string_view> sun_files(bool has_shadow, bool for_host = false) {
     if (!has_shadow) return {"plugin/host/gpu/sun_alone.glsl"};
@@ -210,9 +212,10 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool lives = coverage && layout.has_living_foam();
     const bool has_objects = options.has_objects && !options.for_host && !options.from_below;
     const bool has_hulls = options.for_host ? options.has_hulls : has_objects;
+    const bool has_mirror = options.for_host ? options.has_mirror : has_objects;
     return {query_constants(layout, coverage, options.is_shaped) +
                 lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
-                object_constants(has_objects) + hull_constants(has_hulls) + constant_of_shadow(options) +
+                object_constants(has_mirror) + hull_constants(has_hulls) + constant_of_shadow(options) +
                 (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
@@ -220,8 +223,8 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                           {shape_file(options.is_shaped, kShapeOfVertex), kCrests, vertex_file(options)}}),
             joined({query_files(),
                     {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
-                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl",
-                     sky_alone_file(has_objects)},
+                    {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
+                    mirror_files(has_mirror, options.for_host),
                     lighting_files(),
                     {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
                      "core/lighting/air.glsl"},
@@ -253,7 +256,8 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
     return {lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options),
             {"plugin/host/gpu/full_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
-                     "core/lighting/sky_map.glsl", sky_alone_file(false)},
+                     "core/lighting/sky_map.glsl"},
+                    mirror_files(false),
                     lighting_files(),
                     {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
                      "core/lighting/air.glsl"},
@@ -268,18 +272,21 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
     lighting.sky = lighting.sky && sky_map_size > 0;
     DrawOptions drawn = options;
     drawn.layers = drawn.layers && picture == ObjectPicture::Seen;
+    drawn.for_host = false;  // its light, not its colours
+    lighting.spray = lighting.spray && !options.for_host;
     return {lighting_constants(lighting, sky_map_size) + picture_constants(drawn) + object_constants(true) +
                 constant("kMirrored", picture == ObjectPicture::Mirrored) +
                 constant("kInWater", picture == ObjectPicture::InWater),
             {"plugin/host/gpu/object_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
-                     "core/lighting/sky_map.glsl", sky_alone_file(false)},
+                     "core/lighting/sky_map.glsl"},
+                    mirror_files(false),
                     lighting_files(),
                     {"plugin/host/gpu/sea_light.glsl", "core/lighting/object.glsl",
                      "plugin/host/gpu/air_table.glsl", "core/lighting/air.glsl"},
                     spray_files(lighting),
-                    sun_files(true),
-                    output_files(options),
+                    sun_files(true, options.for_host),
+                    output_files(drawn),
                     {"plugin/host/gpu/object_fragment.glsl"}})};
 }
 

@@ -1,7 +1,6 @@
 // What facets of the sea mirror, for core/lighting/sky.glsl: the sky, and the objects before it, from a picture of them as the eye's
 // mirror image sees them. Of a facet that leans the ray leaves the plane that such a picture is of: so it is followed as far as it goes
-// to an object's box, and the picture shows what lies there.
-uniform sampler2D mirrored_objects;  // radiance times coverage, and coverage; with levels
+// to an object's box, and the picture shows what lies there. mirror_texture.glsl has the picture.
 uniform mat4 mirrored_from_grid;
 uniform float mirrored_texels;       // a tangent of 1
 uniform int object_count;
@@ -49,6 +48,6 @@ vec3 sky_lookup(vec2 u, float level) {
     // sky_level()'s inverse: the deviation of what the level stands for, as an angle.
     float spread = level > 0.0 ? exp2(level) * (kSkyMapReach / kSkyMapSize) * (1.0 + towards.z) : 0.0;
     float blur = spread * way * mirrored_texels / at.w;
-    vec4 seen = textureLod(mirrored_objects, 0.5 * at.xy / at.w + 0.5, log2(max(2.0 * blur, 1.0)));
+    vec4 seen = mirrored_seen(0.5 * at.xy / at.w + 0.5, log2(max(2.0 * blur, 1.0)));
     return seen.xyz + (1.0 - seen.w) * sky;
 }

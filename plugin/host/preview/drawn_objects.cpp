@@ -39,11 +39,7 @@ struct Vertex {
     float material;
 };
 
-constexpr int kShadowSide = 2048, kSeenSide = 1024;  // texels, at most
-// The mirrored picture's pixels are twice as wide as the picture's: waves blur what they show.
-constexpr double kMirroredPixels = 2.0;
-constexpr double kWaterIndex = 1.34;  // as in core/lighting/special.glsl
-constexpr double kWidest = 4.0;       // tangents of what such an eye sees to either side
+constexpr int kShadowSide = 2048;  // texels, at most
 
 void set_matrix(const ShaderProgram& program, const char* name, const glm::dmat4& value) {
     const glm::mat4 rounded(value);
@@ -157,7 +153,7 @@ void DrawnObjects::set_hulls() {
 void DrawnObjects::place_hulls() {
     std::vector<PlacedHull> hulls;
     for (std::size_t i = 0; i < objects_.size(); ++i)
-        hulls.push_back({objects_[i].hull.get(), placed_[i].grid_from, &objects_[i].beside});
+        hulls.push_back({objects_[i].hull.get(), grid_from_[i], &objects_[i].beside});
     const std::vector<glm::vec4> texels = hulls_.places(hulls);
     edit_texture(hull_places_);
     texels_as_they_are();
@@ -187,27 +183,32 @@ std::array<glm::dvec3, 8> DrawnObjects::corners(std::size_t object) const {
     for (int i = 0; i < 8; ++i) {
         const glm::dvec3 corner((i & 1) != 0 ? most.x : least.x, (i & 2) != 0 ? most.y : least.y,
                                 (i & 4) != 0 ? most.z : least.z);
-        made[i] = glm::dvec3(placed_[object].grid_from * glm::dvec4(corner, 1.0));
+        made[i] = glm::dvec3(grid_from_[object] * glm::dvec4(corner, 1.0));
     }
     return made;
 }
 
 void DrawnObjects::place(const Eye& eye) {
     eye_ = eye;
-    placed_.clear();
+    grid_from_.clear();
+    bodies_.clear();
     for (const DrawnObject& object : objects_) {
         const glm::dvec3 flat_m = object.place_m - glm::dvec3(eye.origin_m, 0.0);
         const glm::dvec3 vertical = earth_up(glm::dvec2(flat_m), eye.curvature_per_m);
-        Placed& placed = placed_.emplace_back();
+        glm::dmat4& grid_from = grid_from_.emplace_back();
         for (int axis = 0; axis < 3; ++axis)
-            placed.grid_from[axis] = glm::dvec4(from_level(object.axes[axis], vertical), 0.0);
-        placed.grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
-        placed.water_m = on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z;
+            grid_from[axis] = glm::dvec4(from_level(object.axes[axis], vertical), 0.0);
+        grid_from[3] = glm::dvec4(on_earth(flat_m, eye.curvature_per_m), 1.0);
+        bodies_.push_back({grid_from_box(grid_from, object.mesh->least_m(), object.mesh->most_m()),
+                           on_earth(glm::dvec3(glm::dvec2(flat_m), object.water_m), eye.curvature_per_m).z});
     }
     place_hulls();
     fit_shadow();
-    fit_mirror();
-    fit_water();
+    const glm::dvec3 eye_m = eye.view.position_m - glm::dvec3(eye.origin_m, 0.0);
+    mirrored_.from = mirrored_view(bodies_, eye_m, eye.view.pixel_tangent(), eye.largest_texture);
+    in_water_.from = in_water_view(bodies_, eye_m, eye.view.pixel_tangent(), eye.largest_texture);
+    size(mirrored_, true);
+    if (any_in_water()) size(in_water_, false);
 }
 
 // The sun's rays, parallel, round all objects.
@@ -238,117 +239,14 @@ void DrawnObjects::fit_shadow() {
     shadow_from_grid_ = size * translation(-least) * turn;
 }
 
-double DrawnObjects::mean_water_m() const {
-    double water_m = 0.0;
-    for (const Placed& placed : placed_) water_m += placed.water_m / static_cast<double>(placed_.size());
-    return water_m;
-}
-
-// From the eye's mirror image, as far as they are above the water.
-void DrawnObjects::fit_mirror() {
-    std::vector<glm::dvec3> places;
-    for (std::size_t i = 0; i < objects_.size(); ++i)
-        for (glm::dvec3 corner : corners(i)) {
-            corner.z = std::max(corner.z, placed_[i].water_m);
-            places.push_back(corner);
-        }
-    const glm::dvec2 eye_m = glm::dvec2(eye_.view.position_m) - eye_.origin_m;
-    fit(mirrored_, glm::dvec3(eye_m, 2.0 * mean_water_m() - eye_.view.position_m.z), places, true);
-}
-
-// As far as they are in the water, from where their middle there sees the eye through a level surface: n times as far behind it, where
-// rays aside meet.
-void DrawnObjects::fit_water() {
-    in_water_.size = {};
-    constexpr double kLeast_m = 1e-3;
-    const double water_m = mean_water_m(), high_m = eye_.view.position_m.z - water_m;
-    std::vector<glm::dvec3> places;
-    glm::dvec3 middle(0.0);
-    for (std::size_t i = 0; i < objects_.size(); ++i) {
-        const std::array<glm::dvec3, 8> all = corners(i);
-        if (std::ranges::none_of(all,
-                                 [&](const glm::dvec3& at) { return at.z < placed_[i].water_m - kLeast_m; }))
-            continue;
-        for (glm::dvec3 corner : all) {
-            corner.z = std::min(corner.z, placed_[i].water_m);
-            places.push_back(corner);
-            middle += corner;
-        }
-    }
-    if (places.empty() || !(high_m > kLeast_m)) return;
-    middle /= static_cast<double>(places.size());
-    const glm::dvec3 above(glm::dvec2(eye_.view.position_m) - eye_.origin_m, eye_.view.position_m.z);
-    const double deep_m = std::max(water_m - middle.z, kLeast_m);
-    const glm::dvec2 level(glm::dvec2(middle) - glm::dvec2(above));
-    const double far_m = glm::length(level);
-    // Where the ray between them crosses the surface: Snell's law, by halves.
-    double near = 0.0, far = far_m;
-    for (int i = 0; i < 60; ++i) {
-        const double at = 0.5 * (near + far);
-        (at / std::hypot(at, high_m) < kWaterIndex * (far_m - at) / std::hypot(far_m - at, deep_m) ? near
-                                                                                                   : far) =
-            at;
-    }
-    const glm::dvec3 crossing(glm::dvec2(above) + (far_m > 0.0 ? level * (near / far_m) : glm::dvec2(0.0)),
-                              water_m);
-    const glm::dvec3 down = glm::normalize(glm::dvec3(glm::dvec2(middle), water_m - deep_m) - crossing);
-    fit(in_water_, crossing - kWaterIndex * glm::distance(above, crossing) * down, places, false);
-}
-
-void DrawnObjects::fit(Seen& seen, glm::dvec3 eye_m, std::span<const glm::dvec3> places,
-                       bool is_blurred) const {
-    seen.eye_m = eye_m;
-    glm::dvec3 middle(0.0);
-    for (const glm::dvec3& place : places)
-        if (const double away = glm::distance(place, eye_m); away > 0.0) middle += (place - eye_m) / away;
-    if (!(glm::length(middle) > 1e-9)) middle = glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 ahead = glm::normalize(middle);
-    const glm::dvec3 side = glm::normalize(
-        glm::cross(ahead, std::abs(ahead.z) < 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0)));
-    const glm::dvec3 up = glm::cross(side, ahead);
-    glm::dvec2 least(kWidest), most(-kWidest);
-    for (const glm::dvec3& place : places) {
-        const glm::dvec3 at = place - eye_m;
-        const double along = glm::dot(ahead, at);
-        glm::dvec2 tangents(glm::dot(side, at), glm::dot(up, at));
-        if (along * kWidest > std::max(std::abs(tangents.x), std::abs(tangents.y)))
-            tangents /= along;
-        else  // beside the eye, or behind it
-            tangents *= 2.0 * kWidest / std::max(std::max(std::abs(tangents.x), std::abs(tangents.y)), 1e-9);
-        least = glm::min(least, tangents);
-        most = glm::max(most, tangents);
-    }
-    least = glm::max(least, glm::dvec2(-kWidest));
-    most = glm::min(most, glm::dvec2(kWidest));
-    const double pixel = eye_.view.pixel_tangent() * (is_blurred ? kMirroredPixels : 1.0);
-    const int largest = std::min(kSeenSide, eye_.largest_texture);
-    const glm::dvec2 span = glm::max(most - least, glm::dvec2(1e-4));
-    glm::ivec2 size;
-    for (int axis = 0; axis < 2;
-         ++axis) {  // sides of powers of two, so that a moving camera seldom needs others
-        size[axis] = 16;
-        while (size[axis] < largest && size[axis] * pixel < span[axis]) size[axis] *= 2;
-    }
-    // A rim of nothing.
-    const glm::dvec2 rim = span * 2.0 / glm::dvec2(size);
-    least -= rim;
-    most += rim;
-    seen.texels = std::min(size.x / (most.x - least.x), size.y / (most.y - least.y));
-    glm::dmat4 clip(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        clip[axis][0] = (2.0 * side[axis] - (most.x + least.x) * ahead[axis]) / (most.x - least.x);
-        clip[axis][1] = (2.0 * up[axis] - (most.y + least.y) * ahead[axis]) / (most.y - least.y);
-        clip[axis][3] = ahead[axis];
-    }
-    seen.from_grid = clip * translation(-eye_m);
-    seen.from_grid[3][2] = 0.0;
-    seen.size = size;
+void DrawnObjects::size(Seen& seen, bool has_levels) const {
+    const glm::ivec2 size = seen.from.size;
     glm::ivec2 there(0);
     edit_texture(seen.light);
     glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &there.x);
     glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &there.y);
     if (there == size) return;
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, is_blurred ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, has_levels ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
@@ -404,7 +302,7 @@ void DrawnObjects::draw_shadow(const ShaderProgram& program) {
         clip[3][axis] = -1.0;
     }
     for (std::size_t i = 0; i < objects_.size(); ++i) {
-        set_matrix(program, "clip_from_object", clip * shadow_from_grid_ * placed_[i].grid_from);
+        set_matrix(program, "clip_from_object", clip * shadow_from_grid_ * grid_from_[i]);
         const Mesh& mesh = mesh_of(objects_[i]);
         glBindVertexArray(mesh.array.name());
         glDrawArrays(GL_TRIANGLES, 0, mesh.count);
@@ -446,12 +344,12 @@ void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip
     for (std::size_t i = 0; i < objects_.size(); ++i) {
         const DrawnObject& object = objects_[i];
         const Mesh& mesh = mesh_of(object);
-        set_matrix(program, "clip_from_object", clip_from_grid * placed_[i].grid_from);
-        set_matrix(program, "grid_from_object", placed_[i].grid_from);
+        set_matrix(program, "clip_from_object", clip_from_grid * grid_from_[i]);
+        set_matrix(program, "grid_from_object", grid_from_[i]);
         glUniform3f(program.uniform("object_colour"), object.colour.x, object.colour.y, object.colour.z);
         glUniform1f(program.uniform("object_glow"), object.glow);
         glUniform1i(program.uniform("object_holdout"), object.holdout ? 1 : 0);
-        glUniform1f(program.uniform("object_water_m"), static_cast<float>(placed_[i].water_m));
+        glUniform1f(program.uniform("object_water_m"), static_cast<float>(bodies_[i].water_m));
         bind_texture(first_unit + kMaterials, mesh.materials);
         glBindVertexArray(mesh.array.name());
         glDrawArrays(GL_TRIANGLES, 0, mesh.count);
@@ -463,7 +361,7 @@ void DrawnObjects::draw_into(const Seen& seen, const ShaderProgram& program, int
     glViewport(0, 0, seen.size.x, seen.size.y);
     glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    draw_all(program, seen.from_grid, seen.eye_m, first_unit);
+    draw_all(program, seen.from.clip_from_grid, seen.from.eye_m, first_unit);
 }
 
 void DrawnObjects::draw_mirrored(const ShaderProgram& program, int first_unit) {
@@ -486,31 +384,16 @@ void DrawnObjects::bind(const ShaderProgram& program, int first_unit) const {
     bind_hulls(program, first_unit);
     glUniform1i(program.uniform("mirrored_objects"), first_unit + kMirrored);
     bind_texture(first_unit + kMirrored, mirrored_.light);
-    set_matrix(program, "mirrored_from_grid", mirrored_.from_grid);
-    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirrored_.texels));
+    set_matrix(program, "mirrored_from_grid", mirrored_.from.clip_from_grid);
+    glUniform1f(program.uniform("mirrored_texels"), static_cast<float>(mirrored_.from.texels));
     glUniform1i(program.uniform("objects_in_water"), first_unit + kInWater);
     glUniform1i(program.uniform("objects_in_water_depth"), first_unit + kInWaterDepth);
     bind_texture(first_unit + kInWater, in_water_.light);
     bind_texture(first_unit + kInWaterDepth, in_water_.depth);
-    set_matrix(program, "in_water_from_grid", in_water_.from_grid);
+    set_matrix(program, "in_water_from_grid", in_water_.from.clip_from_grid);
     glUniform3f(program.uniform("in_water_ahead"), eye_.reversed_depth ? 0.0f : 1.0f,
                 eye_.reversed_depth ? 1.0f : -1.0f, any_in_water() ? static_cast<float>(eye_.near_m) : 0.0f);
-    // The nearest ones, where there are more.
-    std::vector<std::size_t> order(objects_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto away = [&](std::size_t i) {
-        return glm::distance(glm::dvec3(placed_[i].grid_from[3]), mirrored_.eye_m);
-    };
-    if (order.size() > kObjectBoxes) std::ranges::sort(order, {}, away);
-    order.resize(std::min<std::size_t>(order.size(), kObjectBoxes));
-    std::vector<glm::mat4> boxes;
-    for (const std::size_t i : order) {
-        const glm::dvec3 least = objects_[i].mesh->least_m(), most = objects_[i].mesh->most_m();
-        glm::dmat4 box = translation(0.5 * (least + most));
-        for (int axis = 0; axis < 3; ++axis)
-            box[axis][axis] = std::max(0.5 * (most[axis] - least[axis]), 1e-3);
-        boxes.emplace_back(glm::inverse(placed_[i].grid_from * box));
-    }
+    const std::vector<glm::mat4> boxes = object_boxes(bodies_, mirrored_.from.eye_m);
     glUniform1i(program.uniform("object_count"), static_cast<GLint>(boxes.size()));
     glUniformMatrix4fv(program.uniform("object_boxes"), static_cast<GLsizei>(boxes.size()), GL_FALSE,
                        glm::value_ptr(boxes.front()));
@@ -521,7 +404,7 @@ std::size_t DrawnObjects::bytes(const Scene& scene) {
     std::set<const ObjectMesh*> meshes;
     for (const SceneObject& object : scene.objects) meshes.insert(object.mesh.get());
     std::size_t all = std::size_t{kShadowSide} * kShadowSide * sizeof(float) +
-                      std::size_t{kSeenSide} * kSeenSide * 2 * (2 * sizeof(glm::vec4));
+                      std::size_t{kObjectsSide} * kObjectsSide * 2 * (2 * sizeof(glm::vec4));
     all += 2 * hulls_bytes(scene);  // with the texture
     for (const ObjectMesh* mesh : meshes) all += 2 * mesh->data().triangles.size() * sizeof(Vertex);
     return all;

@@ -19,6 +19,7 @@
 #include "core/surface/view.h"
 #include "pelagic/object_mesh.h"
 #include "pelagic/scene.h"
+#include "plugin/host/gpu/objects_view.h"
 #include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/uniforms.h"
 #include "plugin/host/preview/gl_objects.h"
@@ -64,7 +65,7 @@ class DrawnObjects {
     void draw_shadow(const ShaderProgram& program);
     // The program must be in use, with all that isn't of objects set.
     void draw_mirrored(const ShaderProgram& program, int first_unit);
-    bool any_in_water() const { return in_water_.size.x > 0; }
+    bool any_in_water() const { return in_water_.from.size.x > 0; }
     void draw_in_water(const ShaderProgram& program, int first_unit);
     void draw(const ShaderProgram& program, int first_unit);
     // For the sea's program, which is in use.
@@ -84,28 +85,18 @@ class DrawnObjects {
         GlTexture materials;
         GLsizei count = 0;
     };
-    struct Placed {
-        glm::dmat4 grid_from{1.0};
-        double water_m = 0.0;  // in the grid
-    };
-    // Of all objects from a place of the grid, upright.
+    // What the sea shows of all objects: its image of them, and them in the water.
     struct Seen {
         GlTexture light, depth;
         GlFramebuffer framebuffer;
-        glm::ivec2 size{0};         // 0: there is none
-        glm::dmat4 from_grid{1.0};  // x and y of the clip coordinates, and the distance ahead as w
-        glm::dvec3 eye_m{0.0};
-        double texels = 1.0;  // a tangent of 1
+        ObjectsView from;
     };
     const Mesh& mesh_of(const DrawnObject& object) const;
     std::array<glm::dvec3, 8> corners(std::size_t object) const;
     void set_hulls();
     void place_hulls();
     void fit_shadow();
-    void fit_mirror();
-    void fit_water();
-    void fit(Seen& seen, glm::dvec3 eye_m, std::span<const glm::dvec3> places, bool is_blurred) const;
-    double mean_water_m() const;
+    void size(Seen& seen, bool has_levels) const;
     void draw_into(const Seen& seen, const ShaderProgram& program, int first_unit) const;
     void draw_all(const ShaderProgram& program, const glm::dmat4& clip_from_grid, glm::dvec3 eye_m,
                   int first_unit) const;
@@ -117,7 +108,8 @@ class DrawnObjects {
     PackedHulls hulls_{{}};
     GlTexture hull_maps_, hull_places_;
     Eye eye_;
-    std::vector<Placed> placed_;
+    std::vector<glm::dmat4> grid_from_;  // of each object
+    std::vector<ViewedBody> bodies_;
 
     GlTexture shadow_;
     GlFramebuffer shadow_framebuffer_;

@@ -8,6 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -18,8 +21,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/evaluate/hulls.h"
+#include "core/evaluate/object_place.h"
 #include "core/lighting/air.h"
+#include "core/lighting/object.h"
 #include "core/lighting/tone.h"
+#include "core/plan/hulls.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
 #include "core/scene/canonical.h"
@@ -27,7 +34,9 @@
 #include "core/scene/text.h"
 #include "core/surface/footprint_levels.h"
 #include "core/surface/projected_grid.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/host/gpu/foam_worker.h"
+#include "plugin/host/gpu/objects_view.h"
 #include "plugin/host/gpu/packed_frame.h"
 #include "plugin/host/gpu/packed_hulls.h"
 #include "plugin/host/gpu/shader_variants.h"
@@ -97,12 +106,22 @@ struct GpuLight {
     Metered metered{};
 };
 
+using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+glm::dmat4 checked_matrix(const Matrix& from, const char* name) {
+    if (from.ndim() != 2 || from.shape(0) != 4 || from.shape(1) != 4)
+        throw py::value_error(std::string(name) + ": accepted: matrices (4, 4)");
+    glm::dmat4 made;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) made[column][row] = from.at(row, column);
+    return made;
+}
+
 // The hulls of a host's own objects.
 class GpuHulls {
   public:
     using Points = py::array_t<float, py::array::c_style | py::array::forcecast>;
     using Triangles = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
-    using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
     explicit GpuHulls(const std::vector<std::pair<Points, Triangles>>& meshes) {
         std::vector<ObjectMeshData> all;
@@ -121,8 +140,9 @@ class GpuHulls {
         const OthersMayRun others_may_run;
         for (ObjectMeshData& data : all) {
             hulls_.emplace_back();
+            meshes_.emplace_back();
             try {
-                meshes_.push_back(std::make_shared<const ObjectMesh>(std::move(data)));
+                meshes_.back() = std::make_shared<const ObjectMesh>(std::move(data));
                 hulls_.back() = hull_of(*meshes_.back());
             } catch (const std::invalid_argument&) {  // an artist's mesh may be anything
             }
@@ -136,18 +156,40 @@ class GpuHulls {
         texels.resize(static_cast<std::size_t>(rows) * kHullColumns);
         return array_of<float>(std::move(texels), {rows, kHullColumns, 1});
     }
-    py::array places(const std::vector<Matrix>& grid_from) const {
+    // Where each mesh is in the grid.
+    std::vector<glm::dmat4> checked(const std::vector<Matrix>& grid_from) const {
         if (grid_from.size() != hulls_.size())
             throw py::value_error("grid_from: accepted: a matrix for each mesh");
-        std::vector<PlacedHull> placed;
+        std::vector<glm::dmat4> made;
+        for (const Matrix& each : grid_from) made.push_back(checked_matrix(each, "grid_from"));
+        return made;
+    }
+    // The hulls as a scene's objects, so that the same rules hold; water_m: height of the water at those that float.
+    Scene as_scene(const std::vector<glm::dmat4>& grid_from,
+                   const std::vector<std::optional<double>>& water_m) const {
+        if (water_m.size() != hulls_.size())
+            throw py::value_error("water_m: accepted: a height, or None, for each mesh");
+        Scene scene;
         for (std::size_t i = 0; i < hulls_.size(); ++i) {
-            if (grid_from[i].ndim() != 2 || grid_from[i].shape(0) != 4 || grid_from[i].shape(1) != 4)
-                throw py::value_error("grid_from: accepted: matrices (4, 4)");
-            PlacedHull& hull = placed.emplace_back(hulls_[i].get());
-            for (int row = 0; row < 4; ++row)
-                for (int column = 0; column < 4; ++column)
-                    hull.grid_from[column][row] = grid_from[i].at(row, column);
+            SceneObject& object = scene.objects.emplace_back();
+            const glm::dmat4& at = grid_from[i];
+            // What is flat has no inside.
+            if (!hulls_[i] || !(std::abs(glm::determinant(glm::dmat3(at))) > 1e-12)) continue;
+            object.mesh = meshes_[i];
+            object.scale = glm::length(glm::dvec3(at[0]));
+            object.floats = water_m[i].has_value();
+            object.east_m = at[3].x;
+            object.north_m = at[3].y;
+            object.up_m = at[3].z - water_m[i].value_or(0.0);
+            object.heading_deg = glm::degrees(std::atan2(at[0].y, at[0].x));
         }
+        return scene;
+    }
+    py::array places(const std::vector<glm::dmat4>& grid_from,
+                     const std::vector<Hulls::Beside>& beside) const {
+        std::vector<PlacedHull> placed;
+        for (std::size_t i = 0; i < hulls_.size(); ++i)
+            placed.push_back({hulls_[i].get(), grid_from[i], beside.empty() ? nullptr : &beside[i]});
         std::vector<glm::vec4> texels = packed_.places(placed);
         const auto rows = static_cast<py::ssize_t>(texels.size() / kHullPlaceColumns);
         return array_of<float>(std::move(texels), {rows, kHullPlaceColumns});
@@ -158,23 +200,6 @@ class GpuHulls {
     std::vector<std::shared_ptr<const Hull>> hulls_;
     PackedHulls packed_{{}};
 };
-
-void add_gpu_hulls(py::module_& module) {
-    py::class_<GpuHulls>(
-        module, "GpuHulls", py::module_local(),
-        "Where a host's own objects keep water out, for GpuSea's shader with hulls: as the objects of a shot do.\n\n"
-        "meshes: (points, triangles) of each, float32 (n, 3) [m] in its own axes, z up, and indices (m, 3). Some tenths of a second "
-        "for a large one; other threads run meanwhile, and equal meshes are made once. What keeps no water out does nothing: a sheet, a mesh without "
-        "area, one with indices out of range or numbers that aren't finite.")
-        .def(py::init<const std::vector<std::pair<GpuHulls::Points, GpuHulls::Triangles>>&>(),
-             py::arg("meshes"))
-        .def_property_readonly("map", &GpuHulls::map,
-                               "The texture hull_maps: float32 (height, width, 1), texels as they are.")
-        .def(
-            "places", &GpuHulls::places, py::arg("grid_from"),
-            "The texture hull_places, float32 (height, width, 4): of matrices (4, 4), one for each mesh, from its axes to the grid's "
-            "coordinates.");
-}
 
 glm::dvec2 checked_origin(std::array<double, 2> origin_m) {
     const glm::dvec2 origin(origin_m[0], origin_m[1]);
@@ -204,6 +229,13 @@ double checked_footprint(double finest_m) {
     if (!(finest_m >= 0.0 && finest_m < 1e6))
         throw py::value_error("finest_m: accepted: a length below 1e6 m, from 0 up");
     return finest_m;
+}
+
+std::vector<double> checked_footprints(std::vector<double> footprints_m) {
+    for (const double footprint_m : footprints_m)
+        if (!(footprint_m > 0.0 && footprint_m < 1e6))
+            throw py::value_error("hull_footprints_m: accepted: lengths above 0, below 1e6 m");
+    return footprints_m;
 }
 
 template <class Made, class... More>
@@ -240,6 +272,37 @@ py::array triangles_of(const GpuGrid& grid) {
     return array_of<std::uint32_t>(std::move(indices), {count, 3});
 }
 
+// The uniforms of the objects that the sea mirrors in a view.
+py::dict mirror_of(const GpuGrid& grid, const View& view, const std::vector<Matrix>& grid_from,
+                   const std::vector<std::array<std::array<double, 3>, 2>>& boxes_m,
+                   const std::vector<double>& water_m) {
+    if (grid_from.empty() || boxes_m.size() != grid_from.size() || water_m.size() != grid_from.size())
+        throw py::value_error("grid_from: accepted: a matrix, a box and a height of each body, one at least");
+    std::vector<ViewedBody> bodies;
+    for (std::size_t i = 0; i < grid_from.size(); ++i) {
+        const auto& [least, most] = boxes_m[i];
+        bodies.push_back({grid_from_box(checked_matrix(grid_from[i], "grid_from"),
+                                        {least[0], least[1], least[2]}, {most[0], most[1], most[2]}),
+                          water_m[i]});
+    }
+    const ObjectsView made = mirrored_view(bodies, view.position_m - glm::dvec3(grid.grid->origin_m, 0.0),
+                                           view.pixel_tangent(), kObjectsSide);
+    py::array_t<double> clip({4, 4});
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            clip.mutable_at(row, column) = made.clip_from_grid[column][row];
+    const std::vector<glm::mat4> boxes = object_boxes(bodies, made.eye_m);
+    std::vector<float> numbers(&boxes.front()[0].x, &boxes.front()[0].x + 16 * boxes.size());
+    const auto count = static_cast<py::ssize_t>(boxes.size());
+    py::dict told;
+    told["size"] = py::make_tuple(made.size.x, made.size.y);
+    told["eye_m"] = py::make_tuple(made.eye_m.x, made.eye_m.y, made.eye_m.z);
+    told["clip_from_grid"] = clip;
+    told["texels"] = made.texels;
+    told["boxes"] = array_of<float>(std::move(numbers), {count, 16});
+    return told;
+}
+
 // ---- Sea
 
 // GpuSea's thread. The program's end waits for it.
@@ -265,19 +328,24 @@ class FoamThread final : public NativeWork {
 
 class GpuSea {
   public:
-    GpuSea(const Scene& scene, double finest_m, const BuildWatch& watch = {})
+    GpuSea(const Scene& scene, double finest_m, const std::vector<double>& hull_footprints_m,
+           const BuildWatch& watch = {})
         : finest_m_(finest_m),
+          hull_footprints_m_(hull_footprints_m),
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(without_budget(scene))),
           sea_(std::make_shared<const SeaOverTime<float>>(
-              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
+              make_plan(prepared_, queries_of(*prepared_, finest_m, hull_footprints_m),
+                        {.double_precision = false}),
+              watch)),
           frame_(sea_),
           now_(std::make_shared<Tables>(sea_->first())) {}
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
 
     double finest_m() const { return finest_m_; }
+    const std::vector<double>& hull_footprints_m() const { return hull_footprints_m_; }
     double finest_for(const View& view) const {
         const double finest_m = projected_grid_needs(view, projected_grid_options(*prepared_)).finest_pixel_m;
         return first_level_m(std::max(finest_m, kLeast_m));
@@ -303,9 +371,41 @@ class GpuSea {
             [&] { return surface_above_camera(frame_, view, projected_grid_options(*prepared_)); });
     }
 
-    py::dict shaders(const GpuLight& light, bool shadows, bool hulls) const {
-        DrawOptions options{
-            .lighting = lighting_, .has_shadow = shadows, .has_hulls = hulls, .for_host = true};
+    // The water along hulls at the time that was set; empty where this sea wasn't built for them. at: where a scene's objects are in the
+    // world; per_s: how that changes, but for the waves.
+    std::vector<Hulls::Beside> beside(const Scene& bodies, const std::vector<glm::dmat4>& at,
+                                      const std::vector<glm::dmat4>& per_s) const {
+        const std::optional<Query> asked = hulls_query(bodies, false);
+        if (!asked || !std::ranges::all_of(asked->cell_m, [&](double m) {
+                return std::ranges::find(hull_footprints_m_, m) != hull_footprints_m_.end();
+            }))
+            return {};
+        const OthersMayRun others_may_run;
+        const std::lock_guard reading(mutex_);
+        const std::optional<int> query = hulls_query(frame_.sea().plan());
+        if (!frame_.is_set() || !query) return {};
+        return tbb::this_task_arena::isolate([&] {
+            std::vector<Hulls::Moved> moved;
+            for (std::size_t i = 0; i < at.size(); ++i) {
+                Hulls::Moved& body = moved.emplace_back();
+                body.axes = glm::dmat3(at[i]);
+                body.place_m = glm::dvec3(at[i][3]);
+                body.axes_per_s = glm::dmat3(per_s[i]);
+                body.place_mps = glm::dvec3(per_s[i][3]);
+                if (bodies.objects[i].mesh && bodies.objects[i].floats) add_waves(bodies, i, *query, body);
+            }
+            Hulls hulls(bodies);
+            hulls.place(moved);
+            return hulls.beside(frame_, query);
+        });
+    }
+
+    py::dict shaders(const GpuLight& light, bool shadows, bool hulls, bool mirror) const {
+        DrawOptions options{.lighting = lighting_,
+                            .has_shadow = shadows,
+                            .has_hulls = hulls,
+                            .has_mirror = mirror,
+                            .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
         options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
@@ -315,6 +415,8 @@ class GpuSea {
         py::dict made;
         made["sea"] = pair(ShaderVariant::of_sea(now()->layout(), options, light.map_size));
         made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
+        if (mirror)
+            made["object"] = pair(ShaderVariant::of_object(options, light.map_size, ObjectPicture::Mirrored));
         return made;
     }
 
@@ -415,6 +517,19 @@ class GpuSea {
         return dict_of(water_);
     }
 
+    // The same holds of it.
+    py::dict surroundings(const Scene& scene, const std::shared_ptr<const GpuLight>& light) const {
+        std::string from = canonical(scene);
+        if (const auto tables = now(); light != surroundings_of_ || from != surroundings_from_) {
+            surroundings_ = surroundings_uniforms(object_surroundings(
+                lighting_, light->sky, make_water(scene, tables->layout().sea().plan().from->spectrum),
+                law_coverage(scene)));
+            surroundings_from_ = std::move(from);
+            surroundings_of_ = light;
+        }
+        return dict_of(surroundings_);
+    }
+
     bool has_living_foam() const { return now()->layout().has_living_foam(); }
     void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
         if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
@@ -504,6 +619,27 @@ class GpuSea {
                (has_bubbles(scene) ? " bubbles" : "");
     }
 
+    // How the waves move what floats on them.
+    void add_waves(const Scene& bodies, std::size_t object, int query, Hulls::Moved& body) const {
+        constexpr double kBeside_s = 0.01;
+        const auto pose = [&](double late_s) {
+            return place_object(frame_, bodies, bodies.objects[object], {.query = query, .late_s = late_s})
+                .pose;
+        };
+        const ObjectPose before = pose(-kBeside_s), behind = pose(kBeside_s);
+        const glm::dmat3 turns_per_s =
+            (behind.turn - before.turn) * glm::inverse(pose(0.0).turn) / (2.0 * kBeside_s);
+        body.axes_per_s += turns_per_s * body.axes;
+        body.place_mps += (behind.place_m - before.place_m) / (2.0 * kBeside_s);
+    }
+
+    static std::vector<Query> queries_of(const PreparedScene& prepared, double finest_m,
+                                         const std::vector<double>& hull_footprints_m) {
+        std::vector<Query> queries{query_of(prepared, finest_m)};
+        if (auto hulls = hulls_query({hull_footprints_m.begin(), hull_footprints_m.end()}))
+            queries.push_back(std::move(*hulls));
+        return queries;
+    }
     // A cell is several pixels wide.
     static Query query_of(const PreparedScene& prepared, double finest_m) {
         return view_query(prepared, {.products = {},
@@ -523,6 +659,7 @@ class GpuSea {
     static constexpr int kMostCells = 1024;
     static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres
     double finest_m_ = 0.0;
+    std::vector<double> hull_footprints_m_;
     std::string made_from_;
     LightingChoice lighting_;
     std::shared_ptr<const PreparedScene> prepared_;
@@ -535,7 +672,54 @@ class GpuSea {
     mutable std::vector<Uniform> water_;
     mutable std::string water_from_;
     mutable std::shared_ptr<const Tables> water_of_;
+    mutable std::vector<Uniform> surroundings_;
+    mutable std::string surroundings_from_;
+    mutable std::shared_ptr<const GpuLight> surroundings_of_;
 };
+
+// Of footprints that a sea's hulls' query has.
+std::vector<double> footprints_of_hulls(const GpuHulls& hulls, const std::vector<Matrix>& grid_from,
+                                        const std::vector<std::optional<double>>& water_m) {
+    const std::optional<Query> query = hulls_query(hulls.as_scene(hulls.checked(grid_from), water_m), false);
+    return query ? query->cell_m : std::vector<double>();
+}
+
+py::array places_of_hulls(const GpuHulls& hulls, const std::vector<Matrix>& grid_from, const GpuSea* sea,
+                          std::array<double, 2> origin_m, const std::vector<Matrix>& per_s,
+                          const std::vector<std::optional<double>>& water_m) {
+    const std::vector<glm::dmat4> at = hulls.checked(grid_from);
+    if (!sea) return hulls.places(at, {});
+    std::vector<glm::dmat4> world = at, changes;
+    for (glm::dmat4& each : world) each[3] += glm::dvec4(checked_origin(origin_m), 0.0, 0.0);
+    for (const Matrix& each : per_s) changes.push_back(checked_matrix(each, "per_s"));
+    if (changes.size() != at.size()) throw py::value_error("per_s: accepted: a matrix for each mesh");
+    return hulls.places(at, sea->beside(hulls.as_scene(world, water_m), world, changes));
+}
+
+void add_gpu_hulls(py::module_& module) {
+    py::class_<GpuHulls>(
+        module, "GpuHulls", py::module_local(),
+        "Where a host's own objects keep water out, for GpuSea's shader with hulls: as the objects of a shot do.\n\n"
+        "meshes: (points, triangles) of each, float32 (n, 3) [m] in its own axes, z up, and indices (m, 3). Some tenths of a second "
+        "for a large one; other threads run meanwhile, and equal meshes are made once. What keeps no water out does nothing: a sheet, a mesh without "
+        "area, one with indices out of range or numbers that aren't finite.")
+        .def(py::init<const std::vector<std::pair<GpuHulls::Points, GpuHulls::Triangles>>&>(),
+             py::arg("meshes"))
+        .def_property_readonly("map", &GpuHulls::map,
+                               "The texture hull_maps: float32 (height, width, 1), texels as they are.")
+        .def(
+            "places", &places_of_hulls, py::arg("grid_from"), py::arg("sea") = py::none(),
+            py::arg("origin_m") = std::array<double, 2>{0.0, 0.0}, py::arg("per_s") = py::list(),
+            py::arg("water_m") = py::list(),
+            "The texture hull_places, float32 (height, width, 4): of matrices (4, 4), one for each mesh, from its axes to the grid's "
+            "coordinates.\n\n"
+            "sea: the GpuSea whose water makes foam along them, at the time that was set; without one, and where that wasn't built for their "
+            "footprints_m(), there is none. origin_m: the grid's. per_s: how each of the matrices changes in a second of the sea, (4, 4), "
+            "without the waves; water_m: height of the water at what floats on it, which moves with the waves on top of that, and None for what doesn't.")
+        .def(
+            "footprints_m", &footprints_of_hulls, py::arg("grid_from"), py::arg("water_m"),
+            "What a GpuSea must be built for to know the water along them: footprints [m], few, and the same for hulls of about one size.");
+}
 
 void add_gpu_light(py::module_& module) {
     py::class_<GpuLight, std::shared_ptr<GpuLight>>(
@@ -601,6 +785,13 @@ void add_gpu_grid(py::module_& module) {
         .def_readonly(
             "vertices", &GpuGrid::vertices,
             "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
+        .def(
+            "mirror", &mirror_of, py::arg("view"), py::arg("grid_from"), py::arg("boxes_m"),
+            py::arg("water_m"),
+            "How the objects are drawn that the sea mirrors in a view, one body at least. grid_from: matrices (4, 4) from a body's axes to the "
+            "grid's coordinates; boxes_m: ((x, y, z), (x, y, z)), its least and its most there; water_m: height of the water at it. Returns size "
+            "(width, height) of the picture in texels, eye_m, clip_from_grid float64 (4, 4) (of x, y and w; see depth_of_distance), and the sea's "
+            "uniforms: mirrored_from_grid is clip_from_grid, mirrored_texels is texels, and boxes, float32 (object_count, 16), object_boxes, column by column.")
         .def_property_readonly("triangles", &triangles_of,
                                "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
 }
@@ -610,7 +801,6 @@ void add_gpu_grid(py::module_& module) {
 void add_viewport(py::module_& module) {
     add_gpu_light(module);
     add_gpu_grid(module);
-    add_gpu_hulls(module);
     py::class_<GpuSea, std::shared_ptr<GpuSea>>(
         module, "GpuSea", py::module_local(),
         "A sea for pictures from any camera, with what a GPU needs to draw it by itself: the preview's "
@@ -618,19 +808,23 @@ void add_viewport(py::module_& module) {
         "Built once from a scene, which takes as long as a Sea; other threads run meanwhile. ShotError for an "
         "invalid scene. Single precision. finest_m: no pixel's footprint is taken as finer [m], and what is "
         "left out of it roughens the surface; each halving costs up to four times the memory and the time. 0: "
-        "nothing is left out.")
-        .def(py::init([](const Scene& scene, double finest_m) {
-                 return make_beside_others<GpuSea>(scene, checked_footprint(finest_m));
+        "nothing is left out. hull_footprints_m: GpuHulls.footprints_m() of hulls that are to have foam along them; each costs part of a frame.")
+        .def(py::init([](const Scene& scene, double finest_m, const std::vector<double>& hull_footprints_m) {
+                 return make_beside_others<GpuSea>(scene, checked_footprint(finest_m),
+                                                   checked_footprints(hull_footprints_m));
              }),
-             py::arg("scene"), py::arg("finest_m") = 0.0)
+             py::arg("scene"), py::arg("finest_m") = 0.0, py::arg("hull_footprints_m") = py::list())
         .def_static(
             "begin",
-            [](const Scene& scene, double finest_m) {
-                return begin_making<GpuSea>(scene, checked_footprint(finest_m));
+            [](const Scene& scene, double finest_m, const std::vector<double>& hull_footprints_m) {
+                return begin_making<GpuSea>(scene, checked_footprint(finest_m),
+                                            checked_footprints(hull_footprints_m));
             },
-            py::arg("scene"), py::arg("finest_m") = 0.0,
+            py::arg("scene"), py::arg("finest_m") = 0.0, py::arg("hull_footprints_m") = py::list(),
             "Begins to build one: a Task whose result is the GpuSea.")
         .def_property_readonly("finest_m", &GpuSea::finest_m, "As it was built [m].")
+        .def_property_readonly("hull_footprints_m", &GpuSea::hull_footprints_m,
+                               "As it was built: a list [m].")
         .def("finest_for", &GpuSea::finest_for, py::arg("view"),
              "The finest_m that shows all waves that the pixels of this view can hold: a power of two [m].")
         .def("serves", &GpuSea::serves, py::arg("scene"),
@@ -643,7 +837,7 @@ void add_viewport(py::module_& module) {
             "in the air, the only one that can be drawn.")
         .def(
             "shaders", &GpuSea::shaders, py::arg("light"), py::arg("shadows") = false,
-            py::arg("hulls") = false,
+            py::arg("hulls") = false, py::arg("mirror") = false,
             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
             "Equal for seas with as many cascades and footprints.\n\n"
             "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
@@ -657,7 +851,14 @@ void add_viewport(py::module_& module) {
             "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth), vec4 "
             "shadow_reach (its width, height and depth [m], the tangent of the sun's radius), shadow_off (of depth), and view_height_m as "
             "eye_height_m.\n\n"
-            "hulls: with the textures of GpuHulls, no sea is drawn in them.")
+            "hulls: with the textures of GpuHulls, no sea is drawn in them.\n\n"
+            "mirror: the sea mirrors the host's own objects. It draws them by the shader \"object\" as GpuGrid.mirror() says, linear light and "
+            "coverage, into a texture mirrored_objects of twice that width: there level 0 begins at (0, 0), and level k, each texel the mean of "
+            "four, at (width, 0) and its own size more. That shader's attributes are place_in and normal_in (three each, the object's own) and "
+            "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0. Its uniforms besides "
+            "GpuLight's, surroundings() and those of shadows: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
+            "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), bool object_holdout, object_water_m (height of the water), "
+            "shadow_texel_m (how far off its own surface a place asks for its shadow).")
         .def_property_readonly(
             "uniforms", &GpuSea::uniforms,
             "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "
@@ -675,6 +876,9 @@ void add_viewport(py::module_& module) {
             "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"), py::arg("light"),
             "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea and this GpuLight serve has it, "
             "for a grid's origin [m].")
+        .def(
+            "surroundings", &GpuSea::surroundings, py::arg("scene"), py::arg("light"),
+            "Uniforms of the shader \"object\" by name: the light of sky and sea round bodies, of a scene that this sea and this GpuLight serve.")
         .def("water", &GpuSea::water, py::arg("scene"),
              "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")
         .def_property_readonly(
@@ -704,6 +908,7 @@ void add_viewport(py::module_& module) {
             "scene's surface.cell_px. At most 1024 cells a side: where a view needs more, they are larger. on_earth: "
             "False for a flat sea, whatever the scene's surface.earth_curvature.")
         .def_property_readonly("bytes", &GpuSea::bytes, "Memory that it holds [bytes].");
+    add_gpu_hulls(module);
 }
 
 }  // namespace pelagic::python

@@ -22,6 +22,12 @@ def view(height_m=4.0, resolution=(320, 180)):
                         tan_half_width=0.5, resolution=resolution)
 
 
+def a_tub():
+    """Points and triangles of a box of 6 by 4 by 2 m without a lid."""
+    corners = np.array([(x, y, z) for z in (-1, 1) for y in (-2, 2) for x in (-3, 3)], np.float32)
+    return corners, np.array([(0, 1, 3), (0, 3, 2), (0, 1, 5), (0, 5, 4), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 3, 7), (1, 7, 5)])
+
+
 class Seas(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -46,8 +52,7 @@ class Seas(unittest.TestCase):
             sea.textures["cell_fields"][0, 0, 0] = 1.0
 
     def test_hulls_are_textures_and_a_shader_of_their_own(self):
-        corners = np.array([(x, y, z) for z in (-1, 1) for y in (-2, 2) for x in (-3, 3)], np.float32)
-        tub = np.array([(0, 1, 3), (0, 3, 2), (0, 1, 5), (0, 5, 4), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 3, 7), (1, 7, 5)])
+        corners, tub = a_tub()
         sheet = corners[:4], tub[:2]
         hulls = pelagic.GpuHulls([(corners, tub), sheet, (corners[:1], np.zeros((1, 3), int))])
         matrix = np.eye(4)
@@ -67,6 +72,88 @@ class Seas(unittest.TestCase):
         sea.set(0.0)
         self.assertNotIn("hull_maps", sea.shaders(light)["sea"][1])
         self.assertIn("hull_maps", sea.shaders(light, hulls=True)["sea"][1])
+
+    def test_foam_along_hulls_is_of_the_water_and_of_their_own_way(self):
+        hulls, at, still = pelagic.GpuHulls([a_tub()]), np.eye(4), np.zeros((4, 4))
+        footprints_m = hulls.footprints_m([at], [None])
+        self.assertEqual(len(footprints_m), 1)
+        self.assertEqual(len(hulls.footprints_m([at], [0.0])), 3)  # what floats asks for waves as long as it is
+        self.assertEqual(hulls.footprints_m([np.diag((1.0, 1.0, 0.0, 1.0))], [None]), [])
+        sea = pelagic.GpuSea(small_scene(), 0.125, footprints_m)
+        self.assertEqual(sea.hull_footprints_m, footprints_m)
+
+        def foam(*more):
+            """Its strength, its width, and the water's velocities less the hull's [m/s]."""
+            texels = hulls.places([at], *more).reshape(-1, 4)
+            return texels[5, 0], texels[5, 1], texels[1 + 6:, :3]
+
+        self.assertEqual(foam()[0], 0.0)
+        self.assertEqual(foam(sea, (0.0, 0.0), [still], [None])[0], 0.0)  # it has no time yet
+        sea.set(1.0)
+        self.sea.set(1.0)
+        self.assertEqual(foam(self.sea, (0.0, 0.0), [still], [None])[0], 0.0)  # it wasn't built for it
+        strength, width_m, standing = foam(sea, (0.0, 0.0), [still], [None])
+        self.assertAlmostEqual(strength, 0.9, places=6)
+        self.assertAlmostEqual(width_m, 0.12 * 4.0, places=6)
+        known = np.abs(standing).max(1) > 0.0
+        self.assertGreater(known.sum(), 50)
+        # Under way at 3 m/s, and turning by 0.1 a second about its origin.
+        way = still.copy()
+        way[:2, 3] = 3.0, -1.0
+        np.testing.assert_allclose(foam(sea, (0.0, 0.0), [way], [None])[2][known], standing[known] - (3.0, -1.0, 0.0), atol=1e-5)
+        turn = still.copy()
+        turn[:2, :2] = (0.0, -0.1), (0.1, 0.0)
+        turned = (standing - foam(sea, (0.0, 0.0), [turn], [None])[2])[known]
+        self.assertLess(np.abs(turned.mean(0)).max(), 0.1)
+        self.assertAlmostEqual(np.hypot(turned[:, 0], turned[:, 1]).max(), 0.1 * math.hypot(3.0, 2.0), delta=0.1)
+        # Elsewhere the water is another; the grid's origin is what tells.
+        there = foam(sea, (40.0, 7.0), [still], [None])[2]
+        self.assertGreater(np.abs(there[known] - standing[known]).max(), 0.1)
+        # What floats goes along with the water under it.
+        afloat = pelagic.GpuSea(small_scene(), 0.125, hulls.footprints_m([at], [0.0]))
+        afloat.set(1.0)
+        rising = np.abs(foam(afloat, (0.0, 0.0), [still], [0.0])[2][known, 2]).mean()
+        self.assertLess(rising, 0.7 * np.abs(standing[known, 2]).mean())
+        for wrong in ((sea, (0.0, 0.0), [], [None]), (sea, (0.0, 0.0), [still], [])):
+            with self.assertRaises(ValueError):
+                hulls.places([at], *wrong)
+        with self.assertRaisesRegex(ValueError, "hull_footprints_m"):
+            pelagic.GpuSea(small_scene(), 0.125, [0.0])
+
+    def test_the_mirrored_picture_holds_the_bodies(self):
+        sea, light = self.sea, pelagic.GpuLight(small_scene())
+        sea.set(0.0)
+        self.assertNotIn("object", sea.shaders(light))
+        self.assertNotIn("mirrored_objects", sea.shaders(light)["sea"][1])
+        shaders = sea.shaders(light, mirror=True)
+        self.assertIn("mirrored_objects", shaders["sea"][1])
+        self.assertIn("kMirrored = true", shaders["object"][1])
+        self.assertNotIn("host_colour", shaders["object"][1])  # light, not colours
+        grid, matrix = sea.grid(view()), np.eye(4)
+        matrix[:3, 3] = np.array((9.0, 60.0, 1.0)) - (*grid.origin_m, 0.0)
+        box = ((-3.0, -2.0, -1.5), (3.0, 2.0, 4.0))
+        told = grid.mirror(view(), [matrix], [box], [0.25])
+        self.assertTrue(all(16 <= side <= 1024 and side & (side - 1) == 0 for side in told["size"]), told["size"])
+        np.testing.assert_allclose(np.add(told["eye_m"], (*grid.origin_m, 0.0)), (7.0, -3.0, 0.5 - 4.0), atol=1e-9)
+        corners = np.array([(*(matrix @ (x, y, z, 1.0))[:2], max(z + 1.0, 0.25), 1.0) for x in (-3, 3) for y in (-2, 2) for z in (-1.5, 4.0)])
+        clip = corners @ told["clip_from_grid"].T
+        np.testing.assert_allclose(clip[:, 3], clip[:, 3].clip(50.0, 75.0))
+        places = clip[:, :2] / clip[:, 3:]
+        self.assertTrue((np.abs(places) < 1.0).all())
+        np.testing.assert_allclose(np.ptp(places, axis=0), 2.0 * (1.0 - 4.0 / (np.array(told["size"]) + 4.0)), atol=0.02)
+        # The box as a cube.
+        cube = told["boxes"].reshape(-1, 4, 4)[0].T @ (matrix @ (3.0, -2.0, 4.0, 1.0))
+        np.testing.assert_allclose(cube, (1.0, -1.0, 1.0, 1.0), atol=1e-4)
+        many = [matrix + np.eye(4, k=3) * 3.0 * i for i in range(20)]
+        self.assertEqual(grid.mirror(view(), many, [box] * 20, [0.0] * 20)["boxes"].shape, (16, 16))
+        with self.assertRaises(ValueError):
+            grid.mirror(view(), [], [], [])
+        round_it = sea.surroundings(small_scene(), light)
+        self.assertEqual(round_it, sea.surroundings(small_scene(), light))
+        self.assertGreater(min(round_it["object_flat_part"]), 0.0)
+        foamy = small_scene()
+        foamy.sea.wind_speed_mps = 25.0
+        self.assertGreater(min(np.subtract(sea.surroundings(foamy, light)["object_water"], round_it["object_water"])), 0.0)
 
     def test_pictures_of_masks_are_a_texture(self):
         picture = str(pathlib.Path(__file__).parents[4] / "examples" / "data" / "tiles.exr")

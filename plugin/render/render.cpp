@@ -509,9 +509,13 @@ class RendererOf final : public Impl {
     // Places before the view's eye as LitObjects has them.
     glm::dvec3 eye_place() const { return view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0); }
     Ray ray_of(int first_row, std::size_t sample) const {
+        const glm::dvec3 towards = view_.direction(seen_at(first_row, sample));
         return {.from = glm::vec3(eye_place()),
-                .towards = glm::vec3(view_.direction(seen_at(first_row, sample)))};
+                .towards = glm::vec3(towards),
+                .spread = sample_tangent() * static_cast<float>(glm::dot(towards, view_.forward))};
     }
+    // What a sample covers in the picture's middle: the view has a pixel for each.
+    float sample_tangent() const { return static_cast<float>(view_.pixel_tangent()); }
     glm::vec3 sea_place(int first_row, std::size_t sample) const {
         const std::uint32_t triangle = batch_.triangles[sample];
         const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
@@ -673,10 +677,18 @@ class RendererOf final : public Impl {
             }
             sea_.mirror(batch_.seen, i, std::span(places).first(count), std::span(mirrored).first(count));
             const glm::vec3 left = left_before(i);
+            // Facets of slopes so spread turn the rays by twice as much, of which each of them has its share.
+            const float mirrored_spread =
+                sample_tangent() +
+                2.0f * std::sqrt((variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]) /
+                                 static_cast<float>(count));
             BodiesInSea& shown = batch_.in_sea[sample];
             for (std::uint32_t k = 0; k < count; ++k) {
                 if (!(mirrored[k].weight > 0.0f)) continue;
-                const Ray ray{.from = place + 1e-3f * batch_.seen.up[i], .towards = mirrored[k].from};
+                const Ray ray{.from = place + 1e-3f * batch_.seen.up[i],
+                              .towards = mirrored[k].from,
+                              .width_m = sample_tangent() * batch_.seen.distance_m[i],
+                              .spread = mirrored_spread};
                 const glm::vec3 weight = mirrored[k].weight * left, sky = weight * objects_->sky(ray.towards);
                 shown.sky += sky;
                 const RayHit hit = objects_->nearest(ray);
@@ -702,7 +714,11 @@ class RendererOf final : public Impl {
             const float cosine = glm::dot(upright, to_eye);
             if (!(cosine > 0.02f)) return;
             const Ray ray{
-                .from = place, .towards = refracted_by_water(-to_eye, upright), .farthest_m = clear_m};
+                .from = place,
+                .towards = refracted_by_water(-to_eye, upright),
+                .farthest_m = clear_m,
+                .width_m = sample_tangent() * batch_.seen.distance_m[i],
+                .spread = sample_tangent()};
             const RayHit hit = objects_->nearest(ray);
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);

@@ -15,6 +15,7 @@ void main() {
     object_place = (grid_from_object * vec4(place_in, 1.0)).xyz;
     object_normal = mat3(grid_from_object) * normal_in;
     object_material = material_in;
+    place_image();
     vec4 clip = clip_from_object * vec4(place_in, 1.0);
     gl_Position = vec4(clip.x, clip.y, depth_of_distance.x * clip.w + depth_of_distance.y, clip.w);
 }

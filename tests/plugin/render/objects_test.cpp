@@ -264,12 +264,12 @@ std::vector<double> shown_colours(Scene scene, const RenderOptions& options) {
 }
 
 TEST(Objects, HaveThePicturesOfTheirMaterials) {
-    constexpr int kChecks = 4;
+    constexpr int kChecks = 2;
     const glm::dvec3 least(-8, -3, 0.5), most(8, 3, 8.5);
     Scene scene = calm_scene();
     scene.camera.position_m = {14.0, -30.0, 6.0};
     scene.camera.look_at_m = {0.0, 0.0, 4.0};
-    scene.objects = {object(with_checker(*box(glm::vec3(least), glm::vec3(most)), kChecks, 64))};
+    scene.objects = {object(with_checker(*box(glm::vec3(least), glm::vec3(most)), kChecks, 128))};
     const View view = view_at(scene.camera, 1);
     const std::vector<double> shown = shown_colours(scene, options_of(scene, "all", 1));
     int right = 0, beside = 0;
@@ -284,10 +284,11 @@ TEST(Objects, HaveThePicturesOfTheirMaterials) {
         const bool is_front = std::abs(at.y) < 1e-6, is_right = std::abs(at.x - kChecks) < 1e-6;
         if (!is_front && !is_right) continue;
         const glm::dvec2 place(is_front ? at.x : at.y, at.z), in_check = glm::fract(place);
-        // Half of the sample's width on the side, and a texel: there two squares are mixed.
+        // Half of the sample's width on the side, and two texels of the coarser level, which is up to twice as wide: there two squares are mixed.
         const glm::dvec2 a_check = glm::dvec2(is_front ? 16.0 : 6.0, 8.0) / static_cast<double>(kChecks);
         const double sample_m = view.pixel_tangent() * away;
-        const glm::dvec2 rim = (sample_m / std::abs(is_front ? towards.y : towards.x) + 2.0 / 64) / a_check;
+        const glm::dvec2 rim =
+            2.5 * sample_m / std::abs(is_front ? towards.y : towards.x) / a_check + 2.0 / 128;
         if (glm::any(glm::lessThan(in_check, rim)) || glm::any(glm::greaterThan(in_check, 1.0 - rim))) {
             ++beside;
             EXPECT_GT(shown[i], 0.25 - 1e-3);
@@ -298,7 +299,7 @@ TEST(Objects, HaveThePicturesOfTheirMaterials) {
         EXPECT_NEAR(shown[i], is_bright ? 0.75 : 0.25, 1e-4) << place.x << ' ' << place.y;
         ++right;
     }
-    EXPECT_GT(right, 500);
+    EXPECT_GT(right, 400);
     EXPECT_GT(beside, 100);
 }
 
@@ -306,7 +307,7 @@ TEST(Objects, HaveThePicturesOfTheirMaterials) {
 // plain body.
 TEST(Objects, HavePicturesThatAreTheirMeanFarAway) {
     Scene scene = calm_scene();
-    scene.camera.position_m = {300.0, -600.0, 30.0};
+    scene.camera.position_m = {150.0, -300.0, 30.0};
     scene.camera.look_at_m = {0.0, 0.0, 10.0};
     const auto plain = box({-60, -40, -1}, {60, 40, 40}, {.name = "grey", .colour = glm::vec3(0.5f)});
     scene.objects = {object(with_checker(*plain, 512, 2))};

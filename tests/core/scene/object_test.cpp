@@ -158,8 +158,8 @@ TEST(ObjectImage, RefusesWhatIsNone) {
     EXPECT_NE(refused(0, 1, {}).find("a picture of 0 x 1 texels; accepted: 1 … 16384 a side"), std::string::npos);
     EXPECT_NE(refused(1, 20000, {}).find("accepted: 1 … 16384"), std::string::npos);
     EXPECT_NE(refused(1, 1, {0, 0}).find("has 2 numbers; accepted: 3"), std::string::npos);
-    for (const std::uint16_t bits : {0x3c01, 0x7c00, 0x7e00, 0x8001, 0xfe00})  // above 1, infinite, none, below 0
-        EXPECT_NE(refused(1, 1, {0, bits, 0}).find("has a number outside the range"), std::string::npos);
+    for (const int bits : {0x3c01, 0x7c00, 0x7e00, 0x8001, 0xfe00})  // above 1, infinite, none, below 0
+        EXPECT_NE(refused(1, 1, {0, static_cast<std::uint16_t>(bits), 0}).find("has a number outside the range"), std::string::npos);
     EXPECT_NE(refusal([](auto& m) { m.materials[0].image = 0; }).find("has the picture 0"), std::string::npos);
     EXPECT_NE(refusal([](auto& m) { m.images = {checker(2, 2)}, m.materials[0].image = 0; }).find("has the picture 0"),
               std::string::npos);

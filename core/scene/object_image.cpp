@@ -96,7 +96,8 @@ ObjectImage::ObjectImage(int width, int height, std::vector<std::uint16_t> rgb) 
     const std::size_t count = 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (rgb.size() != count)
         refuse(" has " + std::to_string(rgb.size()) + " numbers", std::to_string(count) + ", three a texel");
-    constexpr std::uint16_t kOne = 0x3c00;  // larger bits are larger numbers, infinities, those that are none, and below 0
+    constexpr std::uint16_t kOne =
+        0x3c00;  // larger bits are larger numbers, infinities, those that are none, and below 0
     if (std::ranges::any_of(rgb, [](std::uint16_t bits) { return bits > kOne; }))
         refuse(" has a number outside the range", "0 … 1");
     levels_.push_back({width, height, std::move(rgb)});

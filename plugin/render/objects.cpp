@@ -358,10 +358,11 @@ LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const
     if (const float facing = -glm::dot(at.normal, ray.towards); facing < kLeastFacing)
         at.normal = glm::normalize(at.normal - (kLeastFacing - facing) * ray.towards);
     const ObjectMaterial& material = mesh.materials[mesh.material[hit.triangle]];
-    at.look = {.colour = body.colour * (material.image < 0 ? material.colour
-                                                           : image_colour(ray, hit, *mesh.images[material.image])),
-               .roughness = material.roughness,
-               .glow = body.glow * material.glow};
+    at.look = {
+        .colour = body.colour * (material.image < 0 ? material.colour
+                                                    : image_colour(ray, hit, *mesh.images[material.image])),
+        .roughness = material.roughness,
+        .glow = body.glow * material.glow};
     at.smooth = at.place + smooth_lift(mesh, first, weights, body, at.geometric);
     return at;
 }
@@ -381,7 +382,7 @@ glm::vec3 LitObjects::image_colour(const Ray& ray, const RayHit& hit, const Obje
     const double width_m = ray.width_m + static_cast<double>(ray.spread) * hit.distance_m;
     if (!(width_m > 0.0)) return image.colour(at, 0.0f);
     const glm::dvec3 towards(ray.towards), u = corner(1) - corner(0), v = corner(2) - corner(0),
-        twice_area = glm::cross(u, v);
+                                           twice_area = glm::cross(u, v);
     const double area2 = glm::dot(twice_area, twice_area);
     const glm::dvec3 upright = twice_area / std::sqrt(area2);
     constexpr double kLeastFacing = 0.01;
@@ -394,7 +395,8 @@ glm::vec3 LitObjects::image_colour(const Ray& ray, const RayHit& hit, const Obje
                glm::dvec2(third) * (glm::dot(glm::cross(u, way), twice_area) / area2);
     };
     const glm::dvec2 texels(image.levels().front().width, image.levels().front().height);
-    glm::dvec2 longer = in_picture(width_m / facing * along), shorter = in_picture(width_m * glm::cross(upright, along));
+    glm::dvec2 longer = in_picture(width_m / facing * along),
+               shorter = in_picture(width_m * glm::cross(upright, along));
     double long_texels = glm::length(longer * texels), short_texels = glm::length(shorter * texels);
     if (short_texels > long_texels) {
         std::swap(longer, shorter);

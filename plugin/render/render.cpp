@@ -713,12 +713,11 @@ class RendererOf final : public Impl {
             const glm::vec3 to_eye = batch_.seen.to_eye[i];
             const float cosine = glm::dot(upright, to_eye);
             if (!(cosine > 0.02f)) return;
-            const Ray ray{
-                .from = place,
-                .towards = refracted_by_water(-to_eye, upright),
-                .farthest_m = clear_m,
-                .width_m = sample_tangent() * batch_.seen.distance_m[i],
-                .spread = sample_tangent()};
+            const Ray ray{.from = place,
+                          .towards = refracted_by_water(-to_eye, upright),
+                          .farthest_m = clear_m,
+                          .width_m = sample_tangent() * batch_.seen.distance_m[i],
+                          .spread = sample_tangent()};
             const RayHit hit = objects_->nearest(ray);
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);

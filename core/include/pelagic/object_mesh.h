@@ -49,7 +49,7 @@ struct ObjectMaterial {
     glm::vec3 colour{0.8f};  // of its diffuse reflection, 0 … 1
     float roughness = 0.5f;  // 0 … 1: a mirror's varnish … none; the square root of GGX's α
     glm::vec3 glow{0.0f};    // of the light that it gives, 0 … 1: times objects[].glow_cd_m2
-    int image = -1;          // into images, whose colour takes the place of `colour`, which is its mean; −1: none
+    int image = -1;  // into images, whose colour takes the place of `colour`, which is its mean; −1: none
     bool operator==(const ObjectMaterial&) const = default;
 };
 

@@ -99,17 +99,20 @@ class MaterialReader {
             // Those of "-s", "-o" and "-t" are one to three, and the name may be a number itself.
             const std::size_t most = is_scale || is_shift || option == "-t" ? 3 : option == "-mm" ? 2 : 1;
             for (std::size_t i = 0; i < most && at + 1 < words.size(); ++i, ++at) {
-                if (most == 3 && words[at].find_first_not_of("+-.0123456789eE") != std::string_view::npos) break;
+                if (most == 3 && words[at].find_first_not_of("+-.0123456789eE") != std::string_view::npos)
+                    break;
                 if (!(is_scale || is_shift)) continue;
                 const double number = number_of(words[at]);
                 if (!limits::kObjectImageAt.holds(number))
-                    throw Refused{quoted(words[at]) + " is outside the range", text_of(limits::kObjectImageAt)};
+                    throw Refused{quoted(words[at]) + " is outside the range",
+                                  text_of(limits::kObjectImageAt)};
                 if (i < 2) (is_scale ? of.scale : of.shift)[static_cast<int>(i)] = static_cast<float>(number);
             }
         }
         Words name(words.begin() + static_cast<std::ptrdiff_t>(at) - 1, words.end());
         of.picture = joined(name);
-        if (of.picture.empty()) throw Refused{quoted(words[0]) + " names no picture", "the name of a PNG or an OpenEXR"};
+        if (of.picture.empty())
+            throw Refused{quoted(words[0]) + " names no picture", "the name of a PNG or an OpenEXR"};
     }
 
     static void take(FileMaterial& of, const Words& words, const std::string& line) {
@@ -206,7 +209,8 @@ class ObjectParser {
     // One to three numbers; the third is of pictures with depth.
     void take_image_at(const Words& words) {
         if (words.size() < 2 || words.size() > 4)
-            throw Refused{"a texture coordinate has " + std::to_string(words.size() - 1) + " numbers", "one to three"};
+            throw Refused{"a texture coordinate has " + std::to_string(words.size() - 1) + " numbers",
+                          "one to three"};
         const glm::dvec2 at(number_of(words[1]), words.size() > 2 ? number_of(words[2]) : 0.0);
         if (!limits::kObjectImageAt.holds(at.x) || !limits::kObjectImageAt.holds(at.y))
             throw Refused{"the texture coordinate is outside the range", text_of(limits::kObjectImageAt)};
@@ -284,8 +288,8 @@ class ObjectParser {
                 const ObjectImage::Level& whole = images_.back()->levels().front();
                 texels_ += static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(whole.height);
             } catch (const PictureRefused& refused) {
-                throw ObjError(read.picture_line + ": the picture " + quoted_text(shortened(read.picture)) + ' ' +
-                                   refused.problem,
+                throw ObjError(read.picture_line + ": the picture " + quoted_text(shortened(read.picture)) +
+                                   ' ' + refused.problem,
                                refused.accepted);
             }
         return at->second;
@@ -374,8 +378,8 @@ class ObjectParser {
 
 }  // namespace
 
-ObjectMesh parse_object_obj(std::string_view text, const std::string& name,
-                            const MaterialText& material_text, const MaterialPicture& picture) {
+ObjectMesh parse_object_obj(std::string_view text, const std::string& name, const MaterialText& material_text,
+                            const MaterialPicture& picture) {
     return ObjectParser(text, name, material_text, picture).parse();
 }
 

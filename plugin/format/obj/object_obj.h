@@ -43,7 +43,7 @@ using MaterialPicture =
 // Notes of the mesh say what was passed over though it would be seen: materials that aren't there (they are grey), pictures of
 // anything but the colour, transparency. Throws ObjError for anything else: lines of none of these kinds, curved surfaces, numbers that aren't finite, more than
 // limits.h has, and a body without area.
-ObjectMesh parse_object_obj(std::string_view text, const std::string& name,
-                            const MaterialText& material_text, const MaterialPicture& picture);
+ObjectMesh parse_object_obj(std::string_view text, const std::string& name, const MaterialText& material_text,
+                            const MaterialPicture& picture);
 
 }  // namespace pelagic

@@ -119,13 +119,12 @@ void Polygons::find_faces_of_points() {
     std::vector<std::size_t> next(first_of_point_.begin(), first_of_point_.end() - 1);
     for (std::size_t f = 0; f < faces_.size(); ++f)
         for (std::size_t i = 0; i < faces_[f].count; ++i)
-            corners_of_points_[next[corners_[faces_[f].first + i].point]++] = {
-                static_cast<std::uint32_t>(f), static_cast<std::uint32_t>(i)};
+            corners_of_points_[next[corners_[faces_[f].first + i].point]++] = {static_cast<std::uint32_t>(f),
+                                                                               static_cast<std::uint32_t>(i)};
 }
 
 bool Polygons::has_normal(const Corner& corner) const {
-    return corner.normal != kNone &&
-           normals[static_cast<std::size_t>(corner.normal)] != glm::vec3(0.0f);
+    return corner.normal != kNone && normals[static_cast<std::size_t>(corner.normal)] != glm::vec3(0.0f);
 }
 
 // The angle of a face at its corner.
@@ -170,8 +169,7 @@ void Polygons::add_triangles(const Face& face, Ears& ears) {
     ears.cut([&](std::size_t a, std::size_t b, std::size_t c) {
         const std::array corners{a, b, c};
         const glm::dvec3 from = place(face.first + a);
-        if (glm::cross(place(face.first + b) - from, place(face.first + c) - from) == glm::dvec3(0.0))
-            return;
+        if (glm::cross(place(face.first + b) - from, place(face.first + c) - from) == glm::dvec3(0.0)) return;
         for (const std::size_t i : corners) {
             mesh_.triangles.push_back(corners_[face.first + i].point);
             mesh_.normals.push_back(ears.normals_of_face[i]);

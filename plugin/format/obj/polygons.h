@@ -66,7 +66,8 @@ class Polygons {
     std::vector<std::size_t> first_of_point_;
     std::vector<FaceCorner> corners_of_points_;
     ObjectMeshData mesh_;
-    std::vector<std::int32_t> plain_of_;  // of each material, the one in the picture's mean; kNone: not there yet
+    std::vector<std::int32_t>
+        plain_of_;  // of each material, the one in the picture's mean; kNone: not there yet
     bool has_lost_picture_ = false;
 };
 

@@ -31,8 +31,9 @@ std::shared_ptr<const ObjectMesh> from_usd(std::string_view bytes) {
     try {
         body = usd::read_body(bytes, 3 * limits::kObjectTriangles);
     } catch (const usd::ReadError& error) {
-        throw ObjError(std::string("the mesh ") + error.what(),
-                       "a crate (.usdc) with meshes of its own: usdcat --flatten -o NAME.usdc, or export it as OBJ");
+        throw ObjError(
+            std::string("the mesh ") + error.what(),
+            "a crate (.usdc) with meshes of its own: usdcat --flatten -o NAME.usdc, or export it as OBJ");
     }
     const auto refuse = [](const std::string& problem, const std::string& accepted) {
         throw ObjError("the mesh " + problem, accepted);
@@ -45,7 +46,8 @@ std::shared_ptr<const ObjectMesh> from_usd(std::string_view bytes) {
         const glm::vec3 colour(mesh.colour);
         const auto [material, is_new] = of_colour.try_emplace({colour.x, colour.y, colour.z},
                                                               static_cast<std::uint16_t>(materials.size()));
-        if (is_new) materials.push_back({.name = "colour " + std::to_string(materials.size() + 1), .colour = colour});
+        if (is_new)
+            materials.push_back({.name = "colour " + std::to_string(materials.size() + 1), .colour = colour});
         if (materials.size() > limits::kObjectMaterials)
             refuse("has too many colours", "at most " + std::to_string(limits::kObjectMaterials));
         const std::size_t first_point = polygons.points_m.size();
@@ -93,7 +95,8 @@ std::shared_ptr<const ObjectMesh> load_object(const std::filesystem::path& file)
     const std::string name = file.filename().string();
     const bool is_usd = has_ending(name, ".usdc") || has_ending(name, ".usd") || has_ending(name, ".usda");
     if (!is_usd && !has_ending(name, ".obj"))
-        throw ObjError("is neither Wavefront OBJ nor USD", "a mesh exported as .obj, z up and in metres, or as .usdc");
+        throw ObjError("is neither Wavefront OBJ nor USD",
+                       "a mesh exported as .obj, z up and in metres, or as .usdc");
     std::string text;
     try {
         text = read_text_file(file, kMostObjectBytes);

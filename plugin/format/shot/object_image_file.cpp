@@ -53,10 +53,11 @@ std::shared_ptr<const ObjectImage> from_png(std::string_view bytes, std::size_t 
     std::vector<std::uint16_t> rgb(pixels.rgb.size());
     const std::size_t row = 3 * static_cast<std::size_t>(pixels.width);
     for (int y = 0; y < pixels.height; ++y)
-        std::transform(pixels.rgb.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)),
-                       pixels.rgb.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y + 1)),
-                       rgb.begin() + static_cast<std::ptrdiff_t>(place_of_row(y, pixels.width, pixels.height)),
-                       [&](std::uint8_t byte) { return linear[byte]; });
+        std::transform(
+            pixels.rgb.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)),
+            pixels.rgb.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y + 1)),
+            rgb.begin() + static_cast<std::ptrdiff_t>(place_of_row(y, pixels.width, pixels.height)),
+            [&](std::uint8_t byte) { return linear[byte]; });
     return std::make_shared<const ObjectImage>(pixels.width, pixels.height, std::move(rgb));
 }
 

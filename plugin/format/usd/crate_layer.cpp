@@ -154,7 +154,8 @@ LayerCursor elements(std::string_view file, std::uint64_t value, std::size_t mos
     if (place == 0) return LayerCursor({});
     LayerCursor in(file, place);
     count = in.number<std::uint64_t>();
-    if (count > most) throw ReadError("has an array of " + std::to_string(count) + " elements, more than a body may have");
+    if (count > most)
+        throw ReadError("has an array of " + std::to_string(count) + " elements, more than a body may have");
     return in;
 }
 
@@ -165,8 +166,8 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
     constexpr std::uint64_t kMostTokenBytes = std::uint64_t{1} << 30;
     const std::string_view version = LayerCursor(bytes, kVersionPlace).take(2);
     if (version[0] != 0 || version[1] < 7)
-        throw ReadError("is a crate of version " + std::to_string(version[0]) + '.' + std::to_string(version[1]) +
-                        ", which isn't read");
+        throw ReadError("is a crate of version " + std::to_string(version[0]) + '.' +
+                        std::to_string(version[1]) + ", which isn't read");
     LayerCursor contents(bytes, LayerCursor(bytes, kContentsPlace).number<std::uint64_t>());
     const auto sections = contents.number<std::uint64_t>();
     const auto section = [&](std::string_view wanted) {
@@ -204,7 +205,8 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
     // The first is the layer; then each is followed by its first child, and says how far away its next sibling is.
     nodes_.resize(path_count);
     constexpr Node kNobody = ~Node{0};
-    std::vector<Node> numbered(path_count, kNobody);  // by the path's index: its number here, in the order of the tree
+    std::vector<Node> numbered(path_count,
+                               kNobody);  // by the path's index: its number here, in the order of the tree
     std::vector<std::pair<std::uint64_t, Node>> later{{0, kNobody}};
     Node count = 0;
     while (!later.empty()) {
@@ -216,7 +218,9 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
             const auto name = static_cast<std::int32_t>(names[at]);
             Item& item = nodes_[node];
             item.is_property = name < 0;
-            item.token = parent == kNobody ? 0 : static_cast<std::uint32_t>(item.is_property ? -std::int64_t{name} : name);
+            item.token = parent == kNobody
+                             ? 0
+                             : static_cast<std::uint32_t>(item.is_property ? -std::int64_t{name} : name);
             if (item.token >= tokens_.size()) refuse_layer();
             if (parent != kNobody) nodes_[parent].children.push_back(node);
             const auto jump = static_cast<std::int32_t>(jumps[at]);
@@ -230,9 +234,11 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
 
     LayerCursor specs = section("SPECS");
     const auto spec_count = specs.number<std::uint64_t>();
-    const auto spec_paths = unpacked_numbers(specs, spec_count), spec_sets = unpacked_numbers(specs, spec_count);
+    const auto spec_paths = unpacked_numbers(specs, spec_count),
+               spec_sets = unpacked_numbers(specs, spec_count);
     for (std::uint64_t i = 0; i < spec_count; ++i) {
-        if (spec_paths[i] >= path_count || numbered[spec_paths[i]] == kNobody || spec_sets[i] >= field_sets_.size())
+        if (spec_paths[i] >= path_count || numbered[spec_paths[i]] == kNobody ||
+            spec_sets[i] >= field_sets_.size())
             refuse_layer();
         Item& item = nodes_[numbered[spec_paths[i]]];
         item.is_there = true;
@@ -247,7 +253,8 @@ std::string_view CrateLayer::token_text(std::uint64_t index) const {
 
 std::optional<std::uint64_t> CrateLayer::field(Node node, std::string_view name) const {
     constexpr std::uint32_t kEnd = ~std::uint32_t{0};
-    for (std::uint64_t at = nodes_[node].field_set; at < field_sets_.size() && field_sets_[at] != kEnd; ++at) {
+    for (std::uint64_t at = nodes_[node].field_set; at < field_sets_.size() && field_sets_[at] != kEnd;
+         ++at) {
         const std::uint32_t number = field_sets_[at];
         if (number >= field_tokens_.size()) refuse_layer();
         if (token_text(field_tokens_[number]) == name) return field_values_[number];
@@ -415,7 +422,8 @@ std::optional<std::vector<glm::vec3>> CrateLayer::vectors(Node node, std::string
     else if (type == LayerType::Vec3d)
         take(in.numbers<double>(3 * count), [](double each) { return static_cast<float>(each); });
     else
-        take(in.numbers<std::uint16_t>(3 * count), [](std::uint16_t each) { return glm::unpackHalf1x16(each); });
+        take(in.numbers<std::uint16_t>(3 * count),
+             [](std::uint16_t each) { return glm::unpackHalf1x16(each); });
     return read;
 }
 

@@ -7,8 +7,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <string_view>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plugin/format/usd/read_mesh.h"
@@ -32,11 +32,14 @@ class CrateLayer {
     std::optional<std::string_view> token(Node node, std::string_view field) const;
     std::optional<double> number(Node node, std::string_view field) const;  // also of bool and of integers
     std::optional<glm::dvec3> vector(Node node, std::string_view field) const;
-    std::optional<glm::dmat4> matrix(Node node, std::string_view field) const;  // its columns are the file's rows
-    std::optional<std::vector<double>> quaternion(Node node, std::string_view field) const;  // i, j, k, and the real part
+    std::optional<glm::dmat4> matrix(Node node,
+                                     std::string_view field) const;  // its columns are the file's rows
+    std::optional<std::vector<double>> quaternion(
+        Node node, std::string_view field) const;  // i, j, k, and the real part
     std::optional<std::vector<std::string_view>> tokens(Node node, std::string_view field) const;
     // Of arrays; at most so many elements.
-    std::optional<std::vector<std::int32_t>> integers(Node node, std::string_view field, std::size_t most) const;
+    std::optional<std::vector<std::int32_t>> integers(Node node, std::string_view field,
+                                                      std::size_t most) const;
     std::optional<std::vector<glm::vec3>> vectors(Node node, std::string_view field, std::size_t most) const;
 
   private:

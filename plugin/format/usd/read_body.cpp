@@ -84,7 +84,8 @@ class BodyReader {
         constexpr int kDeepest = 500;
         if (depth > kDeepest) throw ReadError("has prims too deep in each other");
         constexpr double kDef = 0.0;
-        if (layer_.number(prim, "specifier").value_or(1.0) != kDef) return;  // classes, and what changes another layer's
+        if (layer_.number(prim, "specifier").value_or(1.0) != kDef)
+            return;  // classes, and what changes another layer's
         if (layer_.number(prim, "active").value_or(1.0) == 0.0) return;
         if (const auto shown = layer_.property(prim, "visibility");
             shown && layer_.token(*shown, "default").value_or("inherited") == "invisible")
@@ -95,12 +96,14 @@ class BodyReader {
             if (is == "render") place.is_seen = true;
         }
         for (const char* arc : {"references", "payload", "inheritPaths", "specializes", "variantSetNames"})
-            if (layer_.has(prim, arc)) remark("references, payloads, classes and variants are passed over", layer_.name(prim));
+            if (layer_.has(prim, arc))
+                remark("references, payloads, classes and variants are passed over", layer_.name(prim));
         transform(prim, place.from);
         const std::string_view type = layer_.token(prim, "typeName").value_or("");
         if (type == "Mesh" && place.is_seen) add_mesh(prim, place.from);
         constexpr std::array<std::string_view, 12> kShapes{
-            "PointInstancer", "Cube", "Sphere", "Cylinder", "Cone", "Capsule", "Plane", "BasisCurves", "NurbsCurves", "NurbsPatch", "Points", "Volume"};
+            "PointInstancer", "Cube",        "Sphere",      "Cylinder",   "Cone",   "Capsule",
+            "Plane",          "BasisCurves", "NurbsCurves", "NurbsPatch", "Points", "Volume"};
         if (place.is_seen && std::ranges::find(kShapes, type) != kShapes.end()) {
             remark("of shapes, meshes alone are read; passed over", layer_.name(prim));
             return;  // what an instancer has below it is drawn by it alone
@@ -123,7 +126,8 @@ class BodyReader {
             const bool is_inverse = op.starts_with(kInvert);
             if (is_inverse) op.remove_prefix(kInvert.size());
             const auto at = layer_.property(prim, op);
-            if (!op.starts_with(kOp) || !at) throw ReadError("has the transform '" + std::string(op) + "', which isn't there");
+            if (!op.starts_with(kOp) || !at)
+                throw ReadError("has the transform '" + std::string(op) + "', which isn't there");
             std::string_view kind = op.substr(kOp.size());
             kind = kind.substr(0, kind.find(':'));
             const std::optional<glm::dmat4> one = transform_of(*at, kind);
@@ -191,8 +195,7 @@ class BodyReader {
                    name);
             return;
         }
-        if (points->size() > most_ - points_)
-            throw ReadError("has more points than a body may have");
+        if (points->size() > most_ - points_) throw ReadError("has more points than a body may have");
         points_ += points->size();
         corners_ += indices->size();
         const auto refuse = [&](const char* what) { throw ReadError("has a mesh '" + name + "' " + what); };
@@ -201,9 +204,11 @@ class BodyReader {
             if (count < 0) refuse("with a face of fewer than no corners");
             corners += count;
         }
-        if (corners != static_cast<std::int64_t>(indices->size())) refuse("whose faces have another number of corners than it has indices");
+        if (corners != static_cast<std::int64_t>(indices->size()))
+            refuse("whose faces have another number of corners than it has indices");
         for (const std::int32_t index : *indices)
-            if (index < 0 || static_cast<std::size_t>(index) >= points->size()) refuse("with a corner whose point isn't there");
+            if (index < 0 || static_cast<std::size_t>(index) >= points->size())
+                refuse("with a corner whose point isn't there");
         const glm::dmat3 linear(from);
         const double size = glm::determinant(linear);
         if (size == 0.0) return remark("meshes that are scaled to nothing are passed over", name);
@@ -226,7 +231,8 @@ class BodyReader {
 
         // Seen from outside.
         const auto orientation = layer_.property(prim, "orientation");
-        const bool is_left = orientation && layer_.token(*orientation, "default").value_or("") == "leftHanded";
+        const bool is_left =
+            orientation && layer_.token(*orientation, "default").value_or("") == "leftHanded";
         if (is_left != (size < 0.0)) {
             std::size_t first = 0;
             for (const std::int32_t count : *counts) {

@@ -13,9 +13,10 @@ namespace pelagic::usd {
 // One Mesh prim: metres, z up, its parents' transforms and the layer's upAxis and metersPerUnit applied.
 struct BodyMesh {
     std::vector<glm::dvec3> points_m;
-    std::vector<std::int32_t> counts, indices;  // of faces, counter-clockwise seen from outside; whole, and in range
-    std::vector<glm::dvec3> normals;            // of each corner, of any length; empty: none
-    glm::dvec3 colour{0.8};                     // linear Rec. 709, 0 … 1
+    std::vector<std::int32_t> counts,
+        indices;                      // of faces, counter-clockwise seen from outside; whole, and in range
+    std::vector<glm::dvec3> normals;  // of each corner, of any length; empty: none
+    glm::dvec3 colour{0.8};           // linear Rec. 709, 0 … 1
 };
 struct Body {
     std::vector<BodyMesh> meshes;

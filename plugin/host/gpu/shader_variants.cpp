@@ -268,7 +268,8 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
     drawn.layers = drawn.layers && !mirrored;
     return {lighting_constants(lighting, sky_map_size) + picture_constants(drawn) + object_constants(true) +
                 constant("kMirrored", mirrored),
-            {options.has_images ? "plugin/host/gpu/object_image_vertex.glsl" : "plugin/host/gpu/object_plain_vertex.glsl",
+            {options.has_images ? "plugin/host/gpu/object_image_vertex.glsl"
+                                : "plugin/host/gpu/object_plain_vertex.glsl",
              "plugin/host/gpu/object_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl", sky_alone_file(false)},
@@ -277,7 +278,8 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
                     spray_files(lighting),
                     sun_files(true),
                     output_files(options),
-                    {options.has_images ? "plugin/host/gpu/object_image_fragment.glsl" : "plugin/host/gpu/object_plain_fragment.glsl",
+                    {options.has_images ? "plugin/host/gpu/object_image_fragment.glsl"
+                                        : "plugin/host/gpu/object_plain_fragment.glsl",
                      "plugin/host/gpu/object_fragment.glsl"}})};
 }
 

@@ -223,9 +223,8 @@ void DrawnObjects::bind_hulls(const ShaderProgram& program, int first_unit) cons
 }
 
 bool DrawnObjects::has_images() const {
-    return std::ranges::any_of(objects_, [](const DrawnObject& object) {
-        return !object.mesh->data().images.empty();
-    });
+    return std::ranges::any_of(objects_,
+                               [](const DrawnObject& object) { return !object.mesh->data().images.empty(); });
 }
 
 const DrawnObjects::Mesh& DrawnObjects::mesh_of(const DrawnObject& object) const {

@@ -121,7 +121,8 @@ TEST(ObjectImage, IsBetweenTexelsAndLevelsAndRepeats) {
         EXPECT_EQ(image->colour({shift + 0.375f, shift + 0.25f}, -1.0f), glm::vec3(0.0f));
         EXPECT_EQ(image->colour({shift + 0.1875f, 0.25f}, 0.0f), glm::vec3(0.75f));
         EXPECT_EQ(image->colour({shift, 0.25f}, 0.0f), glm::vec3(0.5f));  // between the last and the first
-        EXPECT_EQ(image->colour({0.125f, shift + 0.25f}, 0.5f), glm::vec3(0.75f));  // and a level that is grey
+        EXPECT_EQ(image->colour({0.125f, shift + 0.25f}, 0.5f),
+                  glm::vec3(0.75f));  // and a level that is grey
     }
     EXPECT_EQ(image->colour({0.3f, 0.1f}, 1e9f), glm::vec3(0.5f));
     // One texel is all there is; whatever the place.
@@ -155,16 +156,24 @@ TEST(ObjectImage, RefusesWhatIsNone) {
         }
         return std::string();
     };
-    EXPECT_NE(refused(0, 1, {}).find("a picture of 0 x 1 texels; accepted: 1 … 16384 a side"), std::string::npos);
+    EXPECT_NE(refused(0, 1, {}).find("a picture of 0 x 1 texels; accepted: 1 … 16384 a side"),
+              std::string::npos);
     EXPECT_NE(refused(1, 20000, {}).find("accepted: 1 … 16384"), std::string::npos);
     EXPECT_NE(refused(1, 1, {0, 0}).find("has 2 numbers; accepted: 3"), std::string::npos);
     for (const int bits : {0x3c01, 0x7c00, 0x7e00, 0x8001, 0xfe00})  // above 1, infinite, none, below 0
-        EXPECT_NE(refused(1, 1, {0, static_cast<std::uint16_t>(bits), 0}).find("has a number outside the range"), std::string::npos);
-    EXPECT_NE(refusal([](auto& m) { m.materials[0].image = 0; }).find("has the picture 0"), std::string::npos);
-    EXPECT_NE(refusal([](auto& m) { m.images = {checker(2, 2)}, m.materials[0].image = 0; }).find("has the picture 0"),
+        EXPECT_NE(
+            refused(1, 1, {0, static_cast<std::uint16_t>(bits), 0}).find("has a number outside the range"),
+            std::string::npos);
+    EXPECT_NE(refusal([](auto& m) { m.materials[0].image = 0; }).find("has the picture 0"),
+              std::string::npos);
+    EXPECT_NE(refusal([](auto& m) {
+                  m.images = {checker(2, 2)}, m.materials[0].image = 0;
+              }).find("has the picture 0"),
               std::string::npos);
     EXPECT_NE(refusal([](auto& m) { m.image_at.resize(2); }).find("2 places in pictures"), std::string::npos);
-    EXPECT_NE(refusal([](auto& m) { m.image_at.resize(3, glm::vec2(std::nanf(""))); }).find("of corner 0 is outside"),
+    EXPECT_NE(refusal([](auto& m) {
+                  m.image_at.resize(3, glm::vec2(std::nanf("")));
+              }).find("of corner 0 is outside"),
               std::string::npos);
 }
 

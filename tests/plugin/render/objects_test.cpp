@@ -230,7 +230,9 @@ std::shared_ptr<const ObjectMesh> with_checker(const ObjectMesh& of, int checks,
         const glm::vec3 n = glm::abs(mesh.normals[i]),
                         at = (mesh.points_m[mesh.triangles[i]] - glm::vec3(of.least_m())) /
                              glm::vec3(of.most_m() - of.least_m());
-        mesh.image_at.push_back(n.x > 0.5f ? glm::vec2(at.y, at.z) : n.y > 0.5f ? glm::vec2(at.x, at.z) : glm::vec2(at.x, at.y));
+        mesh.image_at.push_back(n.x > 0.5f   ? glm::vec2(at.y, at.z)
+                                : n.y > 0.5f ? glm::vec2(at.x, at.z)
+                                             : glm::vec2(at.x, at.y));
     }
     return std::make_shared<const ObjectMesh>(std::move(mesh));
 }
@@ -279,7 +281,8 @@ TEST(Objects, HaveThePicturesOfTheirMaterials) {
             view.direction({static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5});
         const double away = distance_to_box(view.position_m, towards, least, most);
         if (!(away < 1e9) || std::isnan(shown[i])) continue;
-        const glm::dvec3 at = (view.position_m + away * towards - least) / (most - least) * static_cast<double>(kChecks);
+        const glm::dvec3 at =
+            (view.position_m + away * towards - least) / (most - least) * static_cast<double>(kChecks);
         // The side in front, and the one to the right.
         const bool is_front = std::abs(at.y) < 1e-6, is_right = std::abs(at.x - kChecks) < 1e-6;
         if (!is_front && !is_right) continue;

@@ -24,9 +24,11 @@ ObjectMesh read_body(const std::string& text, const Files& files = {}) {
     };
     // Of two texels, black and white.
     const MaterialPicture picture = [](const std::string& file, std::size_t most_texels) {
-        if (file != "checker.png" && file != "my glass.png") throw PictureRefused{"is no file", "one that is"};
+        if (file != "checker.png" && file != "my glass.png")
+            throw PictureRefused{"is no file", "one that is"};
         EXPECT_GE(most_texels, 2u);
-        return std::make_shared<const ObjectImage>(2, 1, std::vector<std::uint16_t>{0, 0, 0, 0x3c00, 0x3c00, 0x3c00});
+        return std::make_shared<const ObjectImage>(
+            2, 1, std::vector<std::uint16_t>{0, 0, 0, 0x3c00, 0x3c00, 0x3c00});
     };
     return parse_object_obj(text, "b.obj", material_text, picture);
 }
@@ -230,7 +232,8 @@ TEST(ObjectObj, IsTheSameWhateverTheCommentsAndTheLocale) {
 TEST(ObjectObj, HasPicturesOfItsColours) {
     const std::string vt = "vt 0 0\nvt 1 0\nvt 1 1 0\nvt 0.25\n";
     const auto one = [&](const std::string& mtl, const std::string& faces = "usemtl m\nf 1/1 2/2 3/3\n") {
-        return read_body("mtllib a.mtl\n" + std::string(kPlate) + vt + faces, {{"a.mtl", "newmtl m\n" + mtl}});
+        return read_body("mtllib a.mtl\n" + std::string(kPlate) + vt + faces,
+                         {{"a.mtl", "newmtl m\n" + mtl}});
     };
     // The picture takes the place of Kd, which is its mean for whoever draws no pictures.
     const ObjectMesh body = one("Kd 0.1 0.1 0.1\nmap_Kd checker.png\n");
@@ -239,18 +242,22 @@ TEST(ObjectObj, HasPicturesOfItsColours) {
     EXPECT_EQ(body.data().image_at, (std::vector<glm::vec2>{{0, 0}, {1, 0}, {1, 1}}));
     EXPECT_TRUE(body.notes().empty());
     // Coordinates without a second number, names with spaces and options; triangles stay near 0.
-    EXPECT_EQ(one("map_Kd -blendu on -s 2 4 -o 0.5 my glass.png\n", "usemtl m\nf 1/1 2/3 3/4\n").data().image_at,
-              (std::vector<glm::vec2>{{0.5, 0}, {2.5, 4}, {1, 0}}));
+    EXPECT_EQ(
+        one("map_Kd -blendu on -s 2 4 -o 0.5 my glass.png\n", "usemtl m\nf 1/1 2/3 3/4\n").data().image_at,
+        (std::vector<glm::vec2>{{0.5, 0}, {2.5, 4}, {1, 0}}));
     EXPECT_EQ(one("map_Kd -o -3.25 checker.png\n").data().image_at,
               (std::vector<glm::vec2>{{0.75, 0}, {1.75, 0}, {1.75, 1}}));
     // Two materials of a file share it. Faces without coordinates have the mean, and say so; all is cut as before.
     const ObjectMesh two =
-        read_body("mtllib a.mtl\n" + std::string(kPlate) + vt + "usemtl m\nf 1/1 2/2 3/3 4/4\nusemtl n\nf 1/1 2/2 3/3\nf 1 2/1 3/1\n",
+        read_body("mtllib a.mtl\n" + std::string(kPlate) + vt +
+                      "usemtl m\nf 1/1 2/2 3/3 4/4\nusemtl n\nf 1/1 2/2 3/3\nf 1 2/1 3/1\n",
                   {{"a.mtl", "newmtl m\nmap_Kd checker.png\nnewmtl n\nmap_Kd checker.png\n"}});
     EXPECT_EQ(two.data().images.size(), 1u);
     EXPECT_EQ(two.data().material, (std::vector<std::uint16_t>{0, 0, 1, 2}));
     EXPECT_EQ(two.data().materials[2], (ObjectMaterial{.name = "n", .colour = glm::vec3(0.5f)}));
-    EXPECT_EQ(two.notes(), std::vector<std::string>{"faces without texture coordinates show the mean of their material's picture"});
+    EXPECT_EQ(two.notes(),
+              std::vector<std::string>{
+                  "faces without texture coordinates show the mean of their material's picture"});
     // No picture of a material that no face has; no places where there is no picture.
     EXPECT_TRUE(one("newmtl other\nmap_Kd nowhere.png\n").data().images.empty());
     EXPECT_TRUE(one("Kd 1 1 1\n").data().image_at.empty());
@@ -261,8 +268,10 @@ TEST(ObjectObj, HasPicturesOfItsColours) {
     EXPECT_EQ(refusal_of("\nmap_Kd nowhere.png\n"),
               "a.mtl:3: the picture \"nowhere.png\" is no file; accepted: one that is");
     EXPECT_NE(refusal_of("map_Kd\n").find("a.mtl:2: \"map_Kd\" names no picture"), std::string::npos);
-    EXPECT_NE(refusal_of("map_Kd -s nan checker.png\n").find("a.mtl:2: the picture \"nan checker.png\""), std::string::npos);
-    EXPECT_NE(refusal_of("map_Kd -s 1e9 checker.png\n").find("a.mtl:2: \"1e9\" is outside the range"), std::string::npos);
+    EXPECT_NE(refusal_of("map_Kd -s nan checker.png\n").find("a.mtl:2: the picture \"nan checker.png\""),
+              std::string::npos);
+    EXPECT_NE(refusal_of("map_Kd -s 1e9 checker.png\n").find("a.mtl:2: \"1e9\" is outside the range"),
+              std::string::npos);
     EXPECT_NE(body_refusal("mtllib a.mtl\n" + std::string(kPlate) + "vt 0\nvt 2\nusemtl m\nf 1/1 2/2 3/2\n",
                            {{"a.mtl", "newmtl m\nmap_Kd -s 1e4 checker.png\n"}})
                   .find("a.mtl:2: the picture repeats too often on a triangle"),

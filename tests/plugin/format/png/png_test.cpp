@@ -119,12 +119,14 @@ TEST(Decode, ReadsWhatOthersWrite) {
         EXPECT_TRUE(png_image_write_to_memory(&image, bytes.data(), &size, 0, buffer, 0, colours));
         return bytes;
     };
-    const std::vector<std::uint8_t> grey{7, 200}, alpha{1, 2, 3, 0, 4, 5, 6, 128}, index{1, 0}, palette{9, 8, 7, 6, 5, 4};
+    const std::vector<std::uint8_t> grey{7, 200}, alpha{1, 2, 3, 0, 4, 5, 6, 128}, index{1, 0},
+        palette{9, 8, 7, 6, 5, 4};
     const std::vector<std::uint16_t> wide{65535, 0};
     using Rgb = std::vector<std::uint8_t>;
     EXPECT_EQ(decode(written(PNG_FORMAT_GRAY, grey.data()), 2).rgb, (Rgb{7, 7, 7, 200, 200, 200}));
     EXPECT_EQ(decode(written(PNG_FORMAT_RGBA, alpha.data()), 2).rgb, (Rgb{1, 2, 3, 4, 5, 6}));
-    EXPECT_EQ(decode(written(PNG_FORMAT_RGB_COLORMAP, index.data(), palette.data()), 2).rgb, (Rgb{6, 5, 4, 9, 8, 7}));
+    EXPECT_EQ(decode(written(PNG_FORMAT_RGB_COLORMAP, index.data(), palette.data()), 2).rgb,
+              (Rgb{6, 5, 4, 9, 8, 7}));
     EXPECT_EQ(decode(written(PNG_FORMAT_LINEAR_Y, wide.data()), 2).rgb, (Rgb{255, 255, 255, 0, 0, 0}));
 }
 

@@ -479,8 +479,9 @@ TEST(Shot, ACageIsReadFromItsFile) {
 TEST(Shot, BodiesHaveThePicturesBesideThem) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "s.toml";
-    folder.write("boat.obj",
-                 "mtllib paint.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
+    folder.write(
+        "boat.obj",
+        "mtllib paint.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
     const auto body_of = [&](const std::string& picture) {
         folder.write("paint.mtl", "newmtl red\nmap_Kd " + picture + "\n");
         return parse_shot("[[objects]]\nfile = \"boat.obj\"\n", file, no_check).objects[0].mesh;
@@ -521,12 +522,14 @@ TEST(Shot, BodiesHaveThePicturesBesideThem) {
     // What is wrong, with file and line.
     const std::string at = file.string() + ":2:8: objects[0].file = \"boat.obj\": paint.mtl:2: the picture ";
     folder.write("paint.jpg", "any");
-    EXPECT_EQ(refused_with("paint.jpg"), at + "\"paint.jpg\" is a JPEG; accepted: a PNG or an OpenEXR: convert it");
+    EXPECT_EQ(refused_with("paint.jpg"),
+              at + "\"paint.jpg\" is a JPEG; accepted: a PNG or an OpenEXR: convert it");
     EXPECT_EQ(refused_with("paint.tga"),
               at + "\"paint.tga\" is neither PNG nor OpenEXR; accepted: a PNG or an OpenEXR: convert it");
     EXPECT_EQ(refused_with("none.png"), at + "\"none.png\" does not exist; accepted: a PNG or an OpenEXR");
     for (const std::string& away : {std::string("in/../paint.png"), (folder.path() / "paint.png").string()})
-        EXPECT_NE(refused_with(away).find("lies outside the mesh's folder"), std::string::npos) << refused_with(away);
+        EXPECT_NE(refused_with(away).find("lies outside the mesh's folder"), std::string::npos)
+            << refused_with(away);
     folder.write("bad.png", png.substr(0, png.size() - 20));
     EXPECT_NE(refused_with("bad.png").find("\"bad.png\" is cut short or damaged"), std::string::npos);
     folder.write("bad.png", "any");
@@ -542,8 +545,10 @@ TEST(Shot, BodiesHaveThePicturesBesideThem) {
     EXPECT_EQ(refused_with("nan.exr"), at + "\"nan.exr\" has NaN in line 1; accepted: numbers");
     const std::vector<std::uint8_t> wide(std::size_t{3} * 20000);
     folder.write("wide.png", png::encode({.width = 20000, .height = 1, .bytes = wide}));
-    EXPECT_NE(refused_with("wide.png").find("\"wide.png\" has 20000 x 1 texels; accepted: pictures of at most 16384 texels a side"),
-              std::string::npos);
+    EXPECT_NE(
+        refused_with("wide.png")
+            .find("\"wide.png\" has 20000 x 1 texels; accepted: pictures of at most 16384 texels a side"),
+        std::string::npos);
     // A header that promises more than there is room for takes no memory.
     std::string huge = png;
     huge.replace(16, 8, std::string("\0\0\xff\xff\0\0\xff\xff", 8));
@@ -603,7 +608,8 @@ TEST(Shot, BodiesAreReadFromTheirFiles) {
     const std::string at = file.string();
     EXPECT_EQ(
         refused_with("[[objects]]\nup_m = 1\n"),
-        at + ":1:1: objects[0].file = (missing): has no default; accepted: a string, the path of an .obj; " +
+        at +
+            ":1:1: objects[0].file = (missing): has no default; accepted: a string, the path of an .obj or a .usdc; " +
             find_key("objects[].file")->help);
     EXPECT_EQ(
         refused_with("[[objects]]\nfile = \"bad.obj\"\n"),
@@ -613,12 +619,12 @@ TEST(Shot, BodiesAreReadFromTheirFiles) {
     EXPECT_EQ(
         refused_with("[[objects]]\nfile = \"none.obj\"\n"),
         at +
-            ":2:8: objects[0].file = \"none.obj\": the mesh does not exist; accepted: a Wavefront OBJ of at most 1 GiB");
+            ":2:8: objects[0].file = \"none.obj\": the mesh does not exist; accepted: a Wavefront OBJ or a USD crate of at most 1 GiB");
     EXPECT_EQ(
-        refused_with("[[objects]]\nfile = \"boat.usdc\"\n"),
+        refused_with("[[objects]]\nfile = \"boat.stl\"\n"),
         at +
-            ":2:8: objects[0].file = \"boat.usdc\": is no Wavefront OBJ; accepted: a mesh exported as OBJ, z up and in "
-            "metres");
+            ":2:8: objects[0].file = \"boat.stl\": is neither Wavefront OBJ nor USD; accepted: a mesh exported as .obj, z "
+            "up and in metres, or as .usdc");
     EXPECT_EQ(
         refused_with("[[objects]]\nfile = \"boat.obj\"\n\n[[objects]]\nfile = \"boat.obj\"\n"),
         at +

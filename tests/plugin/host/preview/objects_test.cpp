@@ -500,7 +500,8 @@ TEST(PreviewsObjects, HaveThePicturesThatRenderHas) {
         mesh.materials[0].image = 0;
         mesh.material[10] = mesh.material[11] = 1;  // the top
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            const glm::vec3 n = glm::abs(mesh.normals[i]), at = mesh.points_m[mesh.triangles[i]] / glm::vec3(kHalf_m);
+            const glm::vec3 n = glm::abs(mesh.normals[i]),
+                            at = mesh.points_m[mesh.triangles[i]] / glm::vec3(kHalf_m);
             const float often = away == 1.0 ? 0.5f : 64.0f;
             mesh.image_at.push_back(often * (n.x > 0.5f ? glm::vec2(at.y, at.z) : glm::vec2(at.x, at.z)));
         }
@@ -527,8 +528,10 @@ TEST(PreviewsObjects, HaveThePicturesThatRenderHas) {
         }
         ASSERT_GT(differences.size(), 1000u);
         std::ranges::sort(differences);
-        const double median = differences[differences.size() / 2], nearly_all = differences[differences.size() * 95 / 100];
-        std::printf("    %zu pixels, red %.2f ... %.2f: difference %.4f in half, 95 %% have %.4f\n", differences.size(), least, most, median, nearly_all);
+        const double median = differences[differences.size() / 2],
+                     nearly_all = differences[differences.size() * 95 / 100];
+        std::printf("    %zu pixels, red %.2f ... %.2f: difference %.4f in half, 95 %% have %.4f\n",
+                    differences.size(), least, most, median, nearly_all);
         EXPECT_LE(median, 0.03);
         EXPECT_LE(nearly_all, 0.12);
         EXPECT_EQ(most - least > 0.4, away == 1.0);

@@ -984,9 +984,9 @@ void add_objects(Built& out) {
         key_of_member<std::string>(
             {.name = "file",
              .help =
-                 "its mesh, a Wavefront OBJ in metres, z up, its bow along +x and 0 at the waterline; a path from the shot "
-                 "file's folder",
-             .accepted = "a string, the path of an .obj"}),
+                 "its mesh, a Wavefront OBJ in metres, z up, its bow along +x and 0 at the waterline, or a USD crate; a path "
+                 "from the shot file's folder",
+             .accepted = "a string, the path of an .obj or a .usdc"}),
         [](const SceneObject& object) { return KeyValue(object.file); },
         [](SceneObject& object, const KeyValue& value) {
             return MemberValue<std::string>::take(value, object.file);

@@ -131,6 +131,9 @@ inline constexpr Range kWaterGain{0.0, 10.0};
 inline constexpr int kObjects = 64;                          // each has a colour in mattes, and its own pose
 inline constexpr std::size_t kObjectTriangles = 20'000'000;  // of all bodies: some 2 GB with what rays need
 inline constexpr std::size_t kObjectMaterials = 4096;        // of a body
+inline constexpr int kObjectImageSide = 1 << 14;             // texels
+inline constexpr std::size_t kObjectTexels = std::size_t{1} << 28;  // of a body's pictures: 2 GB
+inline constexpr Range kObjectImageAt{-1e4, 1e4};    // repeats: a float holds a thousandth there
 inline constexpr std::size_t kObjectCorners = 1000;  // of a face: to cut it goes with the square and more
 inline constexpr Range kObjectPoint_m{-1e6, 1e6};    // a float holds 6 cm there
 inline constexpr Range kObjectUp_m{-1e4, 1e5};

@@ -37,6 +37,9 @@ void check_counts(const ObjectMeshData& mesh) {
     if (mesh.material.size() != corners / 3)
         refuse("there are materials of " + std::to_string(mesh.material.size()) + " triangles",
                "of each of the " + std::to_string(corners / 3));
+    if (!mesh.image_at.empty() && mesh.image_at.size() != corners)
+        refuse("there are " + std::to_string(mesh.image_at.size()) + " places in pictures",
+               "one for each of the " + std::to_string(corners) + " corners, or none");
     if (mesh.materials.empty() || mesh.materials.size() > limits::kObjectMaterials)
         refuse("there are " + std::to_string(mesh.materials.size()) + " materials",
                "1 … " + std::to_string(limits::kObjectMaterials));
@@ -65,6 +68,18 @@ void check_values(const ObjectMeshData& mesh) {
             !kShare.holds(material.roughness))
             refuse("the material " + quoted_text(material.name) + " has a number outside the range",
                    text_of(kShare));
+    for (const ObjectMaterial& material : mesh.materials)
+        if (material.image != -1 &&
+            (material.image < 0 || static_cast<std::size_t>(material.image) >= mesh.images.size() ||
+             !mesh.images[static_cast<std::size_t>(material.image)] || mesh.image_at.empty()))
+            refuse("the material " + quoted_text(material.name) + " has the picture " +
+                       std::to_string(material.image),
+                   "-1 for none, or one of images, with places in it (image_at)");
+    for (std::size_t i = 0; i < mesh.image_at.size(); ++i)
+        if (!limits::kObjectImageAt.holds(mesh.image_at[i].x) ||
+            !limits::kObjectImageAt.holds(mesh.image_at[i].y))
+            refuse(number("the place in a picture of corner ", i) + " is outside the range",
+                   text_of(limits::kObjectImageAt));
 }
 
 bool has_area(const ObjectMeshData& mesh) {
@@ -76,7 +91,7 @@ bool has_area(const ObjectMeshData& mesh) {
 
 // The structured bindings name every member, so that a new member doesn't compile until it is added here.
 std::string content_of(const ObjectMeshData& mesh) {
-    const auto& [points_m, triangles, normals, material, materials] = mesh;
+    const auto& [points_m, triangles, normals, material, materials, images, image_at] = mesh;
     ByteHash hash;
     const auto add_bits = [&](auto bits) {
         for (std::size_t byte = 0; byte < sizeof bits; ++byte)
@@ -95,10 +110,21 @@ std::string content_of(const ObjectMeshData& mesh) {
     add_list(normals, add_vector);
     add_list(material, add_bits);
     add_list(materials, [&](const ObjectMaterial& of) {
-        const auto& [name, colour, roughness, glow] = of;
+        const auto& [name, colour, roughness, glow, image] = of;
         add_list(name, [&](char letter) { hash.add(static_cast<unsigned char>(letter)); });
         add_vector(colour), add_number(roughness), add_vector(glow);
+        if (image >= 0) add_bits(static_cast<std::uint32_t>(image));
     });
+    // A body without pictures keeps the content that it had before there were any.
+    if (!images.empty() || !image_at.empty()) {
+        add_list(images, [&](const std::shared_ptr<const ObjectImage>& of) {
+            if (!of) return;
+            const ObjectImage::Level& whole = of->levels().front();
+            add_bits(static_cast<std::uint32_t>(whole.width));
+            add_list(whole.rgb, add_bits);
+        });
+        add_list(image_at, [&](const glm::vec2& at) { add_number(at.x), add_number(at.y); });
+    }
     return hash.text();
 }
 
@@ -123,8 +149,10 @@ ObjectMesh::ObjectMesh(ObjectMeshData data, std::vector<std::string> notes)
 }
 
 std::size_t ObjectMesh::bytes() const {
+    std::size_t pictures = bytes_of(data_.images) + bytes_of(data_.image_at);
+    for (const auto& image : data_.images) pictures += image ? image->bytes() : 0;
     return sizeof *this + bytes_of(data_.points_m) + bytes_of(data_.triangles) + bytes_of(data_.normals) +
-           bytes_of(data_.material) + bytes_of(data_.materials);
+           bytes_of(data_.material) + bytes_of(data_.materials) + pictures;
 }
 
 }  // namespace pelagic

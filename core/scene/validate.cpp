@@ -726,7 +726,7 @@ void check_objects(SceneChecker& check, const Scene& scene) {
         if (!object.mesh) {
             check.refuse({here + ".file", quoted_text(object.file),
                           object.file.empty() ? "names no file" : "is named and not read",
-                          "the path of an .obj, which the host reads"});
+                          "the path of an .obj or a .usdc, which the host reads"});
         } else if (triangles.try_emplace(object.mesh.get()).second) {
             all_triangles += object.mesh->data().triangles.size() / 3;
         }

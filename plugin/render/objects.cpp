@@ -379,11 +379,57 @@ LitObjects::Surface LitObjects::surface(const Ray& ray, const RayHit& hit) const
     if (const float facing = -glm::dot(at.normal, ray.towards); facing < kLeastFacing)
         at.normal = glm::normalize(at.normal - (kLeastFacing - facing) * ray.towards);
     const ObjectMaterial& material = mesh.materials[mesh.material[hit.triangle]];
-    at.look = {.colour = body.colour * material.colour,
-               .roughness = material.roughness,
-               .glow = body.glow * material.glow};
+    at.look = {
+        .colour = body.colour * (material.image < 0 ? material.colour
+                                                    : image_colour(ray, hit, *mesh.images[material.image])),
+        .roughness = material.roughness,
+        .glow = body.glow * material.glow};
     at.smooth = at.place + smooth_lift(mesh, first, weights, body, at.geometric);
     return at;
+}
+
+// The mean of a picture in the ellipse that the ray's cone cuts out of the triangle's plane: by samples along its longer axis, of the level
+// whose texels are as wide as the shorter one (McCormack et al. 1999, "Feline").
+glm::vec3 LitObjects::image_colour(const Ray& ray, const RayHit& hit, const ObjectImage& image) const {
+    const Body& body = bodies_[hit.body];
+    const ObjectMeshData& mesh = body.mesh->data();
+    const std::size_t first = 3 * std::size_t{hit.triangle};
+    const auto corner = [&](std::size_t i) {
+        return glm::dmat3(body.axes) * glm::dvec3(mesh.points_m[mesh.triangles[first + i]]);
+    };
+    const glm::vec2 from = mesh.image_at[first], second = mesh.image_at[first + 1] - from,
+                    third = mesh.image_at[first + 2] - from;
+    const glm::vec2 at = from + hit.weights.x * second + hit.weights.y * third;
+    const double width_m = ray.width_m + static_cast<double>(ray.spread) * hit.distance_m;
+    if (!(width_m > 0.0)) return image.colour(at, 0.0f);
+    const glm::dvec3 towards(ray.towards), u = corner(1) - corner(0), v = corner(2) - corner(0),
+                                           twice_area = glm::cross(u, v);
+    const double area2 = glm::dot(twice_area, twice_area);
+    const glm::dvec3 upright = twice_area / std::sqrt(area2);
+    constexpr double kLeastFacing = 0.01;
+    const double facing = std::max(std::abs(glm::dot(upright, towards)), kLeastFacing);
+    // Straight on any direction is the longer one.
+    glm::dvec3 along = towards - glm::dot(towards, upright) * upright;
+    along = glm::length(along) > 1e-6 ? glm::normalize(along) : u / glm::length(u);
+    const auto in_picture = [&](const glm::dvec3& way) {
+        return glm::dvec2(second) * (glm::dot(glm::cross(way, v), twice_area) / area2) +
+               glm::dvec2(third) * (glm::dot(glm::cross(u, way), twice_area) / area2);
+    };
+    const glm::dvec2 texels(image.levels().front().width, image.levels().front().height);
+    glm::dvec2 longer = in_picture(width_m / facing * along),
+               shorter = in_picture(width_m * glm::cross(upright, along));
+    double long_texels = glm::length(longer * texels), short_texels = glm::length(shorter * texels);
+    if (short_texels > long_texels) {
+        std::swap(longer, shorter);
+        std::swap(long_texels, short_texels);
+    }
+    constexpr double kMostTaps = 8.0;
+    const double samples = std::clamp(std::round(long_texels / std::max(short_texels, 1.0)), 1.0, kMostTaps);
+    const auto level = static_cast<float>(std::log2(std::max({short_texels, long_texels / samples, 1.0})));
+    glm::vec3 sum(0.0f);
+    for (double i = 0.5; i < samples; i += 1.0)
+        sum += image.colour(at + glm::vec2((i / samples - 0.5) * longer), level);
+    return sum / static_cast<float>(samples);
 }
 
 glm::vec3 LitObjects::normal(const Ray& ray, const RayHit& hit) const {
@@ -439,7 +485,8 @@ Ray LitObjects::ray_from(const Surface& at, const glm::vec3& towards) const {
 // What comes from a direction, and what would without any body.
 LitObjects::Incoming LitObjects::incoming(const Surface& at, const glm::vec3& from, float blur_rad,
                                           glm::vec2 number, const LampsOver& lamps, float density) const {
-    const Ray ray = ray_from(at, from);
+    Ray ray = ray_from(at, from);
+    ray.spread = blur_rad;
     const glm::vec3 open = from.z < 0.0f ? sea(-from, true) : sky(from, blur_rad);
     if (const RayHit hit = nearest(ray); hit.is_hit() && hit.distance_m <= ray.farthest_m) {
         const glm::vec3 light = estimate(ray, hit, number) - light_of_places(lamps, ray, hit, density);

@@ -155,6 +155,7 @@ class LitObjects {
     glm::vec3 smooth_lift(const ObjectMeshData& mesh, std::size_t first, const glm::vec3& weights,
                           const Body& body, const glm::vec3& geometric) const;
     Surface surface(const Ray& ray, const RayHit& hit) const;
+    glm::vec3 image_colour(const Ray& ray, const RayHit& hit, const ObjectImage& image) const;
     bool may_meet(const Ray& ray) const;
     bool is_blocked(const Ray& ray) const;
     bool is_sunny(const Surface& at) const;

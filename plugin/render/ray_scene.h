@@ -19,6 +19,8 @@ namespace pelagic {
 struct Ray {
     glm::vec3 from{0.0f}, towards{0.0f, 0.0f, 1.0f};  // [m]; unit
     float nearest_m = 0.0f, farthest_m = 1e30f;
+    // What it stands for: a cone so wide where it begins [m], and by so much wider with each metre. Pictures on bodies are filtered by it.
+    float width_m = 0.0f, spread = 0.0f;
 };
 
 struct RayHit {

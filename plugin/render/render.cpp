@@ -509,9 +509,13 @@ class RendererOf final : public Impl {
     // Places before the view's eye as LitObjects has them.
     glm::dvec3 eye_place() const { return view_.position_m - glm::dvec3(mesh_.points.origin_m, 0.0); }
     Ray ray_of(int first_row, std::size_t sample) const {
+        const glm::dvec3 towards = view_.direction(seen_at(first_row, sample));
         return {.from = glm::vec3(eye_place()),
-                .towards = glm::vec3(view_.direction(seen_at(first_row, sample)))};
+                .towards = glm::vec3(towards),
+                .spread = sample_tangent() * static_cast<float>(glm::dot(towards, view_.forward))};
     }
+    // What a sample covers in the picture's middle: the view has a pixel for each.
+    float sample_tangent() const { return static_cast<float>(view_.pixel_tangent()); }
     glm::vec3 sea_place(int first_row, std::size_t sample) const {
         const std::uint32_t triangle = batch_.triangles[sample];
         const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
@@ -697,17 +701,25 @@ class RendererOf final : public Impl {
             const glm::vec3 left = left_before(i);
             if (lamps.count > 0)
                 batch_.in_sea[sample].more += left * objects_->mirrored_places(lamps, numbers);
-            mirror_by_rays(facets, above_sea(first_row, i), left, numbers, lamps, batch_.in_sea[sample],
-                           rays);
+            if (rays == 0) return;
+            // Facets of slopes so spread turn the rays by twice as much, of which each of them has its share.
+            const float spread =
+                sample_tangent() +
+                2.0f * std::sqrt((variance[i].x + variance[i].y + batch_.seen.mesh_variance[i]) /
+                                 static_cast<float>(rays));
+            mirror_by_rays(facets,
+                           {.from = above_sea(first_row, i),
+                            .width_m = sample_tangent() * batch_.seen.distance_m[i],
+                            .spread = spread},
+                           left, numbers, lamps, batch_.in_sea[sample], rays);
         });
     }
 
     static constexpr std::uint32_t kMirroringFacets = 64;  // of a pixel
 
-    void mirror_by_rays(const SeaFacets& facets, const glm::vec3& from, const glm::vec3& left,
-                        const SampleNumbers& numbers, const LitObjects::LampsInSea& lamps, BodiesInSea& shown,
-                        std::uint32_t count) const {
-        if (count == 0) return;
+    // ray: all but where it goes.
+    void mirror_by_rays(const SeaFacets& facets, Ray ray, const glm::vec3& left, const SampleNumbers& numbers,
+                        const LitObjects::LampsInSea& lamps, BodiesInSea& shown, std::uint32_t count) const {
         constexpr std::uint32_t kUse = 100, kBounce = 101;
         const SampleNumbers::Places of_facets = numbers.places(kUse), bounces = numbers.places(kBounce);
         // All facets of a pixel lie at even steps of x from a place that chance gives, a sample's far from each other: the sum of a bell
@@ -722,7 +734,7 @@ class RendererOf final : public Impl {
                       static_cast<float>(count * numbers.all);
             const MirroredLight mirrored = facets.mirrored(place, count);
             if (!(mirrored.weight > 0.0f)) continue;
-            const Ray ray{.from = from, .towards = mirrored.from};
+            ray.towards = mirrored.from;
             const glm::vec3 weight = mirrored.weight * left, sky = weight * objects_->sky(ray.towards);
             shown.sky += sky;
             const RayHit hit = objects_->nearest(ray);
@@ -752,8 +764,11 @@ class RendererOf final : public Impl {
             const glm::vec3 to_eye = batch_.seen.to_eye[i];
             const float cosine = glm::dot(upright, to_eye);
             if (!(cosine > 0.02f)) return;
-            const Ray ray{
-                .from = place, .towards = refracted_by_water(-to_eye, upright), .farthest_m = clear_m};
+            const Ray ray{.from = place,
+                          .towards = refracted_by_water(-to_eye, upright),
+                          .farthest_m = clear_m,
+                          .width_m = sample_tangent() * batch_.seen.distance_m[i],
+                          .spread = sample_tangent()};
             const RayHit hit = objects_->nearest(ray);
             if (!hit.is_hit() || hit.distance_m > clear_m) return;
             const float clear = coverage.empty() ? 1.0f : 1.0f - std::clamp(coverage[i], 0.0f, 1.0f);

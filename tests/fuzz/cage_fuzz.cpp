@@ -62,8 +62,13 @@ void expect_meshed(const Cage& cage, const CageLimit& limit, int segments) {
 // ObjectMesh itself refuses what isn't whole, in no words of a file's. The bytes are its materials, too.
 void expect_body(std::string_view text) {
     try {
-        const ObjectMesh body =
-            parse_object_obj(text, "fuzz.obj", [&](const std::string&) { return std::string(text); });
+        const ObjectMesh body = parse_object_obj(
+            text, "fuzz.obj", [&](const std::string&) { return std::string(text); },
+            [](const std::string& file, std::size_t) {
+                if (file.size() > 8) throw PictureRefused{"is too long", "a short name"};
+                return std::make_shared<const ObjectImage>(1, 1,
+                                                           std::vector<std::uint16_t>{0x3c00, 0, 0x3800});
+            });
         hold(body.data().triangles.size() >= 3, "a body has a triangle");
     } catch (const ObjError& error) {
         hold(!error.problem().empty() && !error.accepted().empty(), "a refusal says why", error.what());

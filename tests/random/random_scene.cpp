@@ -783,7 +783,7 @@ std::optional<Scene> RandomScene::scene() const {
     }
     // One for all scenes: a mesh keeps its hull, which takes a tenth of a second.
     static const auto body = std::make_shared<const ObjectMesh>(
-        parse_object_obj(kBody, kBodyName, [](const std::string&) { return std::nullopt; }));
+        parse_object_obj(kBody, kBodyName, [](const std::string&) { return std::nullopt; }, {}));
     for (SceneObject& object : scene.objects) object.mesh = body;
     return scene;
 }

@@ -21,12 +21,35 @@ std::shared_ptr<const Hull> hull_of(const ObjectMesh& mesh);
 
 inline namespace PELAGIC_VERSION_NAMESPACE {
 
+// A picture of a body's colour, linear Rec. 709, with its mip levels: each has half the sides of the one before, rounded down, and its mean.
+class ObjectImage {
+  public:
+    // rgb: IEEE half floats, 0 … 1, three a texel; rows from the bottom, as texture coordinates go, x fastest. Throws
+    // std::invalid_argument for sides out of their range, a count that isn't theirs, and numbers out of range.
+    ObjectImage(int width, int height, std::vector<std::uint16_t> rgb);
+
+    struct Level {
+        int width = 0, height = 0;
+        std::vector<std::uint16_t> rgb;  // as above
+    };
+    const std::vector<Level>& levels() const { return levels_; }  // the last is one texel
+    glm::vec3 mean() const;
+    // Round a place of the picture, (0, 0) its lower left corner and (1, 1) its upper right one, repeated beyond: between the four nearest
+    // texels, and between two levels, as OpenGL does (its specification 3.3, 3.8.11). level: 0 … the last; others are the nearest of these.
+    glm::vec3 colour(glm::vec2 at, float level) const;
+    std::size_t bytes() const;
+
+  private:
+    std::vector<Level> levels_;
+};
+
 // What a part of a body is made of; colours are linear Rec. 709.
 struct ObjectMaterial {
     std::string name;
     glm::vec3 colour{0.8f};  // of its diffuse reflection, 0 … 1
     float roughness = 0.5f;  // 0 … 1: a mirror's varnish … none; the square root of GGX's α
     glm::vec3 glow{0.0f};    // of the light that it gives, 0 … 1: times objects[].glow_cd_m2
+    int image = -1;  // into images, whose colour takes the place of `colour`, which is its mean; −1: none
     bool operator==(const ObjectMaterial&) const = default;
 };
 
@@ -39,6 +62,9 @@ struct ObjectMeshData {
         normals;  // unit, one for each corner of each triangle, in the order of `triangles`
     std::vector<std::uint16_t> material;    // of each triangle, into materials
     std::vector<ObjectMaterial> materials;  // at least one
+    std::vector<std::shared_ptr<const ObjectImage>> images{};
+    // Of each corner, in the order of `triangles`: the place in its material's picture. Empty where no material has one.
+    std::vector<glm::vec2> image_at{};
 };
 
 class ObjectMesh {

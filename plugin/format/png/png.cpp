@@ -57,6 +57,29 @@ bool read(png_structp file, png_infop info, std::string_view& left, png_bytep ro
     return left.empty();
 }
 
+// Up to the pixels, and the pixels, whatever they are, as three bytes each. As write().
+bool read_header(png_structp file, png_infop info, std::string_view& left) {
+    if (setjmp(png_jmpbuf(file)) != 0) return false;
+    png_set_read_fn(file, &left, pelagic_png_read);
+    png_set_user_limits(file, kLargest, kLargest);
+    png_set_crc_action(file, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
+    png_read_info(file, info);
+    return true;
+}
+bool read_pixels(png_structp file, png_infop info, png_bytepp rows) {
+    if (setjmp(png_jmpbuf(file)) != 0) return false;
+    png_set_scale_16(file);
+    png_set_expand(file);
+    png_set_gray_to_rgb(file);
+    png_set_strip_alpha(file);
+    png_set_interlace_handling(file);
+    png_read_update_info(file, info);
+    if (png_get_rowbytes(file, info) != std::size_t{3} * png_get_image_width(file, info)) return false;
+    png_read_image(file, rows);
+    png_read_end(file, nullptr);
+    return true;
+}
+
 std::size_t bytes_a_pixel(const Image& image) {
     return image.has_alpha ? 4 : 3;
 }
@@ -109,6 +132,33 @@ std::string encode(const Image& image) {
     if (sink.error) std::rethrow_exception(sink.error);
     if (!whole) throw std::bad_alloc();  // the only failure left after the checks above
     return std::move(sink.bytes);
+}
+
+Pixels decode(std::string_view bytes, std::size_t most) {
+    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
+    if (!bytes.starts_with(kSignature)) throw ReadError("is no PNG");
+    png_structp file = png_create_read_struct(
+        PNG_LIBPNG_VER_STRING, nullptr, [](png_structp reader, png_const_charp) { png_longjmp(reader, 1); },
+        [](png_structp, png_const_charp) {});
+    png_infop info = file == nullptr ? nullptr : png_create_info_struct(file);
+    struct Closed {
+        png_structp& file;
+        png_infop& info;
+        ~Closed() { png_destroy_read_struct(&file, &info, nullptr); }
+    } const closed{file, info};
+    if (info == nullptr) throw std::bad_alloc();
+    constexpr const char* kDamaged = "is cut short or damaged";
+    if (!read_header(file, info, bytes)) throw ReadError(kDamaged);
+    const std::size_t width = png_get_image_width(file, info), height = png_get_image_height(file, info);
+    if (width * height > most)
+        throw ReadError("has " + std::to_string(width) + " x " + std::to_string(height) +
+                        " pixels, more than there is room for");
+    Pixels pixels{static_cast<int>(width), static_cast<int>(height),
+                  std::vector<std::uint8_t>(3 * width * height)};
+    std::vector<png_bytep> rows(height);
+    for (std::size_t y = 0; y < height; ++y) rows[y] = pixels.rgb.data() + 3 * width * y;
+    if (!read_pixels(file, info, rows.data())) throw ReadError(kDamaged);
+    return pixels;
 }
 
 bool is_whole(std::string_view bytes) {

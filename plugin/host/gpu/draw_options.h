@@ -22,6 +22,7 @@ struct DrawOptions {
     bool from_below = false;    // all of the picture looks through water (plugin/render/waterline.h)
     bool behind_glass = false;  // nothing nearer than the camera's front glass is seen (ditto)
     bool has_objects = false;   // they throw shadows on the sea, and it mirrors them
+    bool has_images = false;    // materials of the objects have pictures
     bool has_shadow = false;    // for a host: its own objects throw shadows on the sea
     bool has_hulls = false;     // for a host: its own objects keep water out; objects here always may
     bool has_mirror = false;    // for a host: the sea mirrors its own objects

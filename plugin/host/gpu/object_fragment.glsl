@@ -39,7 +39,7 @@ void main() {
     }
     vec4 coat = texelFetch(object_materials, ivec2(0, int(object_material)), 0);
     vec4 glow = texelFetch(object_materials, ivec2(1, int(object_material)), 0);
-    ObjectLook look = ObjectLook(object_colour * coat.xyz, coat.w, object_glow * glow.xyz);
+    ObjectLook look = ObjectLook(object_colour * coat_colour(coat.xyz), coat.w, object_glow * glow.xyz);
     ObjectSurroundings surroundings = ObjectSurroundings(object_flat_part, object_x, object_y, object_z, object_xy, object_yz,
                                                          object_zz, object_xz, object_xx_yy, object_water);
     if (kInWater) {

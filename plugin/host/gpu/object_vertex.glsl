@@ -17,6 +17,7 @@ void main() {
     mat3 axes = mat3(grid_from_object);
     object_normal = normal_in.x * cross(axes[1], axes[2]) + normal_in.y * cross(axes[2], axes[0]) + normal_in.z * cross(axes[0], axes[1]);
     object_material = material_in;
+    place_image();
     vec4 clip = clip_from_object * vec4(place_in, 1.0);
     gl_Position = vec4(clip.x, clip.y, depth_of_distance.x * clip.w + depth_of_distance.y, clip.w);
 }

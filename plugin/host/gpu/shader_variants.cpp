@@ -277,7 +277,9 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
     return {lighting_constants(lighting, sky_map_size) + picture_constants(drawn) + object_constants(true) +
                 constant("kMirrored", picture == ObjectPicture::Mirrored) +
                 constant("kInWater", picture == ObjectPicture::InWater),
-            {"plugin/host/gpu/object_vertex.glsl"},
+            {options.has_images ? "plugin/host/gpu/object_image_vertex.glsl"
+                                : "plugin/host/gpu/object_plain_vertex.glsl",
+             "plugin/host/gpu/object_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/host/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl"},
                     mirror_files(false),
@@ -287,7 +289,9 @@ ShaderVariant ShaderVariant::of_object(const DrawOptions& options, int sky_map_s
                     spray_files(lighting),
                     sun_files(true, options.for_host),
                     output_files(drawn),
-                    {"plugin/host/gpu/object_fragment.glsl"}})};
+                    {options.has_images ? "plugin/host/gpu/object_image_fragment.glsl"
+                                        : "plugin/host/gpu/object_plain_fragment.glsl",
+                     "plugin/host/gpu/object_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_object_shadow() {

@@ -8,6 +8,8 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -23,6 +25,7 @@
 namespace pelagic {
 namespace {
 
+// The objects' own programs ask for no hulls.
 enum Unit : int {
     kMaterials,
     kShadow,
@@ -31,12 +34,17 @@ enum Unit : int {
     kHullMaps,
     kHullPlaces,
     kInWater,
-    kInWaterDepth
+    kInWaterDepth,
+    kImage = kHullMaps
 };
 
 struct Vertex {
     glm::vec3 place_m, normal;
     float material;
+};
+struct ImageVertex {
+    Vertex vertex;
+    glm::vec2 image_at;
 };
 
 constexpr int kShadowSide = 2048;  // texels, at most
@@ -44,6 +52,28 @@ constexpr int kShadowSide = 2048;  // texels, at most
 void set_matrix(const ShaderProgram& program, const char* name, const glm::dmat4& value) {
     const glm::mat4 rounded(value);
     glUniformMatrix4fv(program.uniform(name), 1, GL_FALSE, glm::value_ptr(rounded));
+}
+
+// With the picture's own mip levels, from the largest one on that the driver takes.
+void set_image(const GlTexture& texture, const ObjectImage& image) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    edit_texture(texture);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_REPEAT);
+    // As many taps as plugin/render/objects.cpp has.
+    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+        glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8.0f);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, sizeof(std::uint16_t));
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    GLint number = 0;
+    for (const ObjectImage::Level& level : image.levels())
+        if (std::max(level.width, level.height) <= largest)
+            glTexImage2D(GL_TEXTURE_2D, number++, GL_RGB16F, level.width, level.height, 0, GL_RGB,
+                         GL_HALF_FLOAT, level.rgb.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, number - 1);
 }
 
 glm::dmat4 translation(glm::dvec3 by) {
@@ -95,19 +125,46 @@ void DrawnObjects::set(std::vector<DrawnObject> objects, const ObjectSurrounding
         Mesh& mesh = meshes_.emplace_back();
         mesh.of = object.mesh;
         mesh.count = static_cast<GLsizei>(data.triangles.size());
-        std::vector<Vertex> vertices(data.triangles.size());
-        for (std::size_t i = 0; i < vertices.size(); ++i)
-            vertices[i] = {data.points_m[data.triangles[i]], data.normals[i],
-                           static_cast<float>(data.material[i / 3])};
+        const auto vertex = [&](std::size_t i) {
+            return Vertex{data.points_m[data.triangles[i]], data.normals[i],
+                          static_cast<float>(data.material[i / 3])};
+        };
+        std::vector<Vertex> vertices;
+        std::vector<ImageVertex> with_images;
+        if (data.image_at.empty()) {
+            vertices.resize(data.triangles.size());
+            for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = vertex(i);
+            mesh.parts.push_back({.count = mesh.count});
+        } else {
+            const auto image_of = [&](std::size_t triangle) {
+                return data.materials[data.material[triangle]].image;
+            };
+            std::vector<std::size_t> order(data.material.size());
+            std::iota(order.begin(), order.end(), std::size_t{0});
+            std::ranges::stable_sort(order, {}, image_of);
+            for (const std::size_t triangle : order) {
+                if (mesh.parts.empty() || mesh.parts.back().image != image_of(triangle))
+                    mesh.parts.push_back(
+                        {.image = image_of(triangle), .first = static_cast<GLint>(with_images.size())});
+                mesh.parts.back().count += 3;
+                for (std::size_t i = 3 * triangle; i < 3 * triangle + 3; ++i)
+                    with_images.push_back({vertex(i), data.image_at[i]});
+            }
+            for (const auto& image : data.images)
+                set_image(*mesh.images.emplace_back(std::make_unique<GlTexture>()), *image);
+        }
+        const std::size_t stride = data.image_at.empty() ? sizeof(Vertex) : sizeof(ImageVertex);
         glBindVertexArray(mesh.array.name());
         glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
-        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
-                     vertices.data(), GL_STATIC_DRAW);
-        const auto attribute = [](GLuint location, GLint size, std::size_t offset) {
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.triangles.size() * stride),
+                     data.image_at.empty() ? static_cast<const void*>(vertices.data()) : with_images.data(),
+                     GL_STATIC_DRAW);
+        const auto attribute = [&](GLuint location, GLint size, std::size_t offset) {
             glEnableVertexAttribArray(location);
-            glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+            glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
                                   reinterpret_cast<const void*>(offset));
         };
+        if (!data.image_at.empty()) attribute(3, 2, offsetof(ImageVertex, image_at));
         attribute(0, 3, offsetof(Vertex, place_m));
         attribute(1, 3, offsetof(Vertex, normal));
         attribute(2, 1, offsetof(Vertex, material));
@@ -170,6 +227,11 @@ void DrawnObjects::bind_hulls(const ShaderProgram& program, int first_unit) cons
     bind_texture(first_unit + kHullMaps, hull_maps_);
     bind_texture(first_unit + kHullPlaces, hull_places_);
     glUniform1f(program.uniform("behind_all"), eye_.reversed_depth ? 1e-30f : 0.99999994f);
+}
+
+bool DrawnObjects::has_images() const {
+    return std::ranges::any_of(objects_,
+                               [](const DrawnObject& object) { return !object.mesh->data().images.empty(); });
 }
 
 const DrawnObjects::Mesh& DrawnObjects::mesh_of(const DrawnObject& object) const {
@@ -335,6 +397,7 @@ void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip
     bind_shadow(program, first_unit);
     set_uniforms(program, surroundings_);
     glUniform1i(program.uniform("object_materials"), first_unit + kMaterials);
+    glUniform1i(program.uniform("object_image"), first_unit + kImage);
     glUniform3f(program.uniform("object_eye"), static_cast<float>(eye_m.x), static_cast<float>(eye_m.y),
                 static_cast<float>(eye_m.z));
     if (eye_.reversed_depth)
@@ -352,7 +415,12 @@ void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip
         glUniform1f(program.uniform("object_water_m"), static_cast<float>(bodies_[i].water_m));
         bind_texture(first_unit + kMaterials, mesh.materials);
         glBindVertexArray(mesh.array.name());
-        glDrawArrays(GL_TRIANGLES, 0, mesh.count);
+        for (const Mesh::Part& part : mesh.parts) {
+            glUniform1i(program.uniform("object_has_image"), part.image >= 0 ? 1 : 0);
+            if (part.image >= 0)
+                bind_texture(first_unit + kImage, *mesh.images[static_cast<std::size_t>(part.image)]);
+            glDrawArrays(GL_TRIANGLES, part.first, part.count);
+        }
     }
 }
 
@@ -406,7 +474,11 @@ std::size_t DrawnObjects::bytes(const Scene& scene) {
     std::size_t all = std::size_t{kShadowSide} * kShadowSide * sizeof(float) +
                       std::size_t{kObjectsSide} * kObjectsSide * 2 * (2 * sizeof(glm::vec4));
     all += 2 * hulls_bytes(scene);  // with the texture
-    for (const ObjectMesh* mesh : meshes) all += 2 * mesh->data().triangles.size() * sizeof(Vertex);
+    for (const ObjectMesh* mesh : meshes) {
+        const ObjectMeshData& data = mesh->data();
+        all += 2 * data.triangles.size() * (data.image_at.empty() ? sizeof(Vertex) : sizeof(ImageVertex));
+        for (const auto& image : data.images) all += image->bytes();  // the driver's
+    }
     return all;
 }
 

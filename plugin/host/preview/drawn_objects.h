@@ -48,6 +48,7 @@ class DrawnObjects {
     // Meshes that are there already stay as they are; those of no object any more go.
     void set(std::vector<DrawnObject> objects, const ObjectSurroundings& surroundings);
     bool empty() const { return objects_.empty(); }
+    bool has_images() const;
 
     // What a picture of them needs: the eye's place in the grid whose origin is given, and the sun.
     struct Eye {
@@ -84,6 +85,14 @@ class DrawnObjects {
         GlBuffer vertices;
         GlTexture materials;
         GLsizei count = 0;
+        // Vertices side by side with one picture, or with none (−1).
+        struct Part {
+            int image = -1;
+            GLint first = 0;
+            GLsizei count = 0;
+        };
+        std::vector<Part> parts;
+        std::vector<std::unique_ptr<GlTexture>> images;
     };
     // What the sea shows of all objects: its image of them, and them in the water.
     struct Seen {

@@ -692,6 +692,7 @@ void SeaRenderer::draw(const View& view, const SeaMesh& mesh, const DrawOptions&
     drawn.lighting.spray = options.lighting.spray && !of.spray.empty() && !options.from_below;
     drawn.is_shaped = !mesh.normal.empty();
     drawn.has_objects = of.objects && !options.from_below;
+    drawn.has_images = drawn.has_objects && of.objects->has_images();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
     of.near_m = options.behind_glass ? kFrontGlass_m : kNear_m;

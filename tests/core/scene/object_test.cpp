@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include "core/scene/object_pose.h"
@@ -96,6 +97,102 @@ TEST(ObjectMesh, ContentIsAllThatIsInIt) {
         seen.push_back(ObjectMesh(data).content());
         for (std::size_t i = 0; i + 1 < seen.size(); ++i) EXPECT_NE(seen[i], seen.back());
     }
+}
+
+// ---- Pictures
+
+constexpr std::uint16_t kHalfOne = 0x3c00;
+
+std::shared_ptr<const ObjectImage> checker(int width, int height) {
+    std::vector<std::uint16_t> rgb;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) rgb.insert(rgb.end(), 3, (x + y) % 2 == 0 ? kHalfOne : 0);
+    return std::make_shared<const ObjectImage>(width, height, std::move(rgb));
+}
+
+TEST(ObjectImage, IsBetweenTexelsAndLevelsAndRepeats) {
+    const auto image = checker(4, 2);
+    ASSERT_EQ(image->levels().size(), 3u);
+    EXPECT_EQ(image->levels()[1].width, 2);
+    EXPECT_EQ(image->levels()[1].height, 1);
+    EXPECT_EQ(image->mean(), glm::vec3(0.5f));
+    for (const float shift : {-7.0f, 0.0f, 1.0f, 4096.0f}) {
+        EXPECT_EQ(image->colour({shift + 0.125f, 0.25f}, 0.0f), glm::vec3(1.0f));  // texels' middles
+        EXPECT_EQ(image->colour({shift + 0.375f, shift + 0.25f}, -1.0f), glm::vec3(0.0f));
+        EXPECT_EQ(image->colour({shift + 0.1875f, 0.25f}, 0.0f), glm::vec3(0.75f));
+        EXPECT_EQ(image->colour({shift, 0.25f}, 0.0f), glm::vec3(0.5f));  // between the last and the first
+        EXPECT_EQ(image->colour({0.125f, shift + 0.25f}, 0.5f),
+                  glm::vec3(0.75f));  // and a level that is grey
+    }
+    EXPECT_EQ(image->colour({0.3f, 0.1f}, 1e9f), glm::vec3(0.5f));
+    // One texel is all there is; whatever the place.
+    const ObjectImage red(1, 1, {kHalfOne, 0, 0});
+    for (const glm::vec2 at : {glm::vec2(0.0f), glm::vec2(0.99999994f), glm::vec2(-1e4f, 1e4f)})
+        EXPECT_EQ(red.colour(at, 0.5f), glm::vec3(1.0f, 0.0f, 0.0f));
+}
+
+// Levels of odd sides keep it too: their texels are of equal size, and the last is all of it.
+TEST(ObjectImage, KeepsItsMean) {
+    for (const auto& [width, height] : std::vector<std::pair<int, int>>{{5, 3}, {7, 1}, {1, 9}, {31, 17}}) {
+        std::vector<std::uint16_t> rgb;
+        double sum = 0.0;
+        for (int i = 0; i < width * height; ++i) {
+            const bool is_white = i * i % 7 < 3;
+            rgb.insert(rgb.end(), 3, is_white ? kHalfOne : 0);
+            sum += is_white;
+        }
+        const ObjectImage image(width, height, std::move(rgb));
+        // A half float's rounding at each of at most five levels.
+        EXPECT_NEAR(image.mean().y, sum / (width * height), 5 * 0x1p-12) << width << ' ' << height;
+    }
+}
+
+TEST(ObjectImage, RefusesWhatIsNone) {
+    const auto refused = [](int width, int height, std::vector<std::uint16_t> rgb) {
+        try {
+            const ObjectImage image(width, height, std::move(rgb));
+        } catch (const std::invalid_argument& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(refused(0, 1, {}).find("a picture of 0 x 1 texels; accepted: 1 … 16384 a side"),
+              std::string::npos);
+    EXPECT_NE(refused(1, 20000, {}).find("accepted: 1 … 16384"), std::string::npos);
+    EXPECT_NE(refused(1, 1, {0, 0}).find("has 2 numbers; accepted: 3"), std::string::npos);
+    for (const int bits : {0x3c01, 0x7c00, 0x7e00, 0x8001, 0xfe00})  // above 1, infinite, none, below 0
+        EXPECT_NE(
+            refused(1, 1, {0, static_cast<std::uint16_t>(bits), 0}).find("has a number outside the range"),
+            std::string::npos);
+    EXPECT_NE(refusal([](auto& m) { m.materials[0].image = 0; }).find("has the picture 0"),
+              std::string::npos);
+    EXPECT_NE(refusal([](auto& m) {
+                  m.images = {checker(2, 2)}, m.materials[0].image = 0;
+              }).find("has the picture 0"),
+              std::string::npos);
+    EXPECT_NE(refusal([](auto& m) { m.image_at.resize(2); }).find("2 places in pictures"), std::string::npos);
+    EXPECT_NE(refusal([](auto& m) {
+                  m.image_at.resize(3, glm::vec2(std::nanf("")));
+              }).find("of corner 0 is outside"),
+              std::string::npos);
+}
+
+TEST(ObjectImage, CountsInAMeshsContentAndBytes) {
+    const auto mesh = [](const std::shared_ptr<const ObjectImage>& image, float at = 0.0f) {
+        ObjectMeshData data = triangle();
+        data.images = {image};
+        data.image_at.assign(3, glm::vec2(at));
+        data.materials[0].image = 0;
+        return ObjectMesh(std::move(data));
+    };
+    const std::string content = mesh(checker(4, 2)).content();
+    EXPECT_NE(content, ObjectMesh(triangle()).content());
+    EXPECT_EQ(content, mesh(checker(4, 2)).content());
+    EXPECT_NE(content, mesh(checker(2, 4)).content());
+    EXPECT_NE(content, mesh(checker(4, 2), 0.5f).content());
+    EXPECT_NE(mesh(std::make_shared<const ObjectImage>(1, 1, std::vector<std::uint16_t>{0, 0, 0})).content(),
+              mesh(std::make_shared<const ObjectImage>(1, 1, std::vector<std::uint16_t>{0, 1, 0})).content());
+    EXPECT_GE(mesh(checker(64, 64)).bytes(), 64u * 64u * 6u * 4u / 3u);
 }
 
 // ---- Poses

@@ -776,11 +776,12 @@ TEST(Validate, BodiesHaveNamesAFileAndAPlace) {
         return text;
     };
     const auto twice = [](Scene& s) { s.objects.push_back(s.objects[0]); };
-    EXPECT_EQ(refusal([](Scene& s) { s.objects[0].mesh.reset(), s.objects[0].file.clear(); }),
-              "objects[0].file = \"\": names no file; accepted: the path of an .obj, which the host reads\n");
+    EXPECT_EQ(
+        refusal([](Scene& s) { s.objects[0].mesh.reset(), s.objects[0].file.clear(); }),
+        "objects[0].file = \"\": names no file; accepted: the path of an .obj or a .usdc, which the host reads\n");
     EXPECT_EQ(
         refusal([](Scene& s) { s.objects[0].mesh.reset(); }),
-        "objects[0].file = \"folder/boat.obj\": is named and not read; accepted: the path of an .obj, which the host "
+        "objects[0].file = \"folder/boat.obj\": is named and not read; accepted: the path of an .obj or a .usdc, which the host "
         "reads\n");
     EXPECT_EQ(
         refusal(twice),

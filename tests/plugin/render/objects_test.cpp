@@ -217,6 +217,123 @@ TEST(Objects, StandAndAreMirroredWhereGeometrySays) {
     EXPECT_LT(apart, 55);  // what the edges of both are
 }
 
+// Bright and dark squares, `checks` of them along each side of a box.
+std::shared_ptr<const ObjectMesh> with_checker(const ObjectMesh& of, int checks, int texels_a_check) {
+    const int side = checks * texels_a_check;
+    std::vector<std::uint16_t> rgb;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            // 0.75 and 0.25 as half floats
+            rgb.insert(rgb.end(), 3, (x / texels_a_check + y / texels_a_check) % 2 == 0 ? 0x3a00 : 0x3400);
+    ObjectMeshData mesh = of.data();
+    mesh.images = {std::make_shared<const ObjectImage>(side, side, std::move(rgb))};
+    for (ObjectMaterial& material : mesh.materials) material.image = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::vec3 n = glm::abs(mesh.normals[i]),
+                        at = (mesh.points_m[mesh.triangles[i]] - glm::vec3(of.least_m())) /
+                             glm::vec3(of.most_m() - of.least_m());
+        mesh.image_at.push_back(n.x > 0.5f   ? glm::vec2(at.y, at.z)
+                                : n.y > 0.5f ? glm::vec2(at.x, at.z)
+                                             : glm::vec2(at.x, at.y));
+    }
+    return std::make_shared<const ObjectMesh>(std::move(mesh));
+}
+
+// The colour that a body shows: where its light lies between that of a black one and that of a white one.
+std::vector<double> shown_colours(Scene scene, const RenderOptions& options) {
+    std::array<Picture, 3> pictures;
+    const std::shared_ptr<const ObjectMesh> mesh = scene.objects[0].mesh;
+    for (int i = 0; i < 3; ++i) {
+        if (i < 2) {
+            ObjectMeshData plain = mesh->data();
+            plain.images.clear(), plain.image_at.clear();
+            for (ObjectMaterial& material : plain.materials) {
+                material.image = -1;
+                material.colour = glm::vec3(static_cast<float>(i));
+            }
+            scene.objects[0].mesh = std::make_shared<const ObjectMesh>(std::move(plain));
+        } else {
+            scene.objects[0].mesh = mesh;
+        }
+        pictures[static_cast<std::size_t>(i)] = picture_of(scene, options);
+    }
+    std::vector<double> shown;
+    for (std::size_t i = 0; i < pictures[0].layers.size(); ++i) {
+        const auto light = [&](std::size_t of) {
+            return static_cast<double>(vector_of(pictures[of], PictureLayer::Object, i).y);
+        };
+        shown.push_back(light(1) > light(0) ? (light(2) - light(0)) / (light(1) - light(0)) : std::nan(""));
+    }
+    return shown;
+}
+
+TEST(Objects, HaveThePicturesOfTheirMaterials) {
+    constexpr int kChecks = 2;
+    const glm::dvec3 least(-8, -3, 0.5), most(8, 3, 8.5);
+    Scene scene = calm_scene();
+    scene.camera.position_m = {14.0, -30.0, 6.0};
+    scene.camera.look_at_m = {0.0, 0.0, 4.0};
+    scene.objects = {object(with_checker(*box(glm::vec3(least), glm::vec3(most)), kChecks, 128))};
+    const View view = view_at(scene.camera, 1);
+    const std::vector<double> shown = shown_colours(scene, options_of(scene, "all", 1));
+    int right = 0, beside = 0;
+    const auto width = static_cast<std::size_t>(view.resolution.x);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const glm::dvec3 towards =
+            view.direction({static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5});
+        const double away = distance_to_box(view.position_m, towards, least, most);
+        if (!(away < 1e9) || std::isnan(shown[i])) continue;
+        const glm::dvec3 at =
+            (view.position_m + away * towards - least) / (most - least) * static_cast<double>(kChecks);
+        // The side in front, and the one to the right.
+        const bool is_front = std::abs(at.y) < 1e-6, is_right = std::abs(at.x - kChecks) < 1e-6;
+        if (!is_front && !is_right) continue;
+        const glm::dvec2 place(is_front ? at.x : at.y, at.z), in_check = glm::fract(place);
+        // Half of the sample's width on the side, and two texels of the coarser level, which is up to twice as wide: there two squares are mixed.
+        const glm::dvec2 a_check = glm::dvec2(is_front ? 16.0 : 6.0, 8.0) / static_cast<double>(kChecks);
+        const double sample_m = view.pixel_tangent() * away;
+        const glm::dvec2 rim =
+            2.5 * sample_m / std::abs(is_front ? towards.y : towards.x) / a_check + 2.0 / 128;
+        if (glm::any(glm::lessThan(in_check, rim)) || glm::any(glm::greaterThan(in_check, 1.0 - rim))) {
+            ++beside;
+            EXPECT_GT(shown[i], 0.25 - 1e-3);
+            EXPECT_LT(shown[i], 0.75 + 1e-3);
+            continue;
+        }
+        const bool is_bright = (static_cast<int>(place.x) + static_cast<int>(place.y)) % 2 == 0;
+        EXPECT_NEAR(shown[i], is_bright ? 0.75 : 0.25, 1e-4) << place.x << ' ' << place.y;
+        ++right;
+    }
+    EXPECT_GT(right, 400);
+    EXPECT_GT(beside, 100);
+}
+
+// Squares much smaller than pixels are their mean, seen straight on and along the surface; and the sea's mirror image of them is that of a
+// plain body.
+TEST(Objects, HavePicturesThatAreTheirMeanFarAway) {
+    Scene scene = calm_scene();
+    scene.camera.position_m = {150.0, -300.0, 30.0};
+    scene.camera.look_at_m = {0.0, 0.0, 10.0};
+    const auto plain = box({-60, -40, -1}, {60, 40, 40}, {.name = "grey", .colour = glm::vec3(0.5f)});
+    scene.objects = {object(with_checker(*plain, 512, 2))};
+    int seen = 0;
+    for (const double shown : shown_colours(scene, options_of(scene, "all", 1)))
+        if (!std::isnan(shown)) {
+            // Levels keep the mean to a half float's rounding.
+            EXPECT_NEAR(shown, 0.5, 1e-3);
+            ++seen;
+        }
+    EXPECT_GT(seen, 300);
+    const Picture with = picture_of(scene, options_of(scene, "all", 1));
+    scene.objects[0].mesh = plain;
+    const Picture grey = picture_of(scene, options_of(scene, "all", 1));
+    double most = 0.0;
+    for (std::size_t i = 0; i < with.layers.size(); ++i)
+        most = std::max(most, std::abs(static_cast<double>(vector_of(with, PictureLayer::Reflection, i).y -
+                                                           vector_of(grey, PictureLayer::Reflection, i).y)));
+    EXPECT_LT(most, 2e-3);
+}
+
 // A body as bright as the sky behind it changes nothing where the sea mirrors it, however rough the sea is.
 TEST(Objects, AsBrightAsTheSkyAreNotSeenInTheWater) {
     Scene scene = calm_scene();

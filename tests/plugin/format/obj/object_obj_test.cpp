@@ -17,11 +17,20 @@ namespace {
 using Files = std::map<std::string, std::string>;
 
 ObjectMesh read_body(const std::string& text, const Files& files = {}) {
-    return parse_object_obj(text, "b.obj", [&](const std::string& file) -> std::optional<std::string> {
+    const MaterialText material_text = [&](const std::string& file) -> std::optional<std::string> {
         const auto found = files.find(file);
         if (found == files.end()) return std::nullopt;
         return found->second;
-    });
+    };
+    // Of two texels, black and white.
+    const MaterialPicture picture = [](const std::string& file, std::size_t most_texels) {
+        if (file != "checker.png" && file != "my glass.png")
+            throw PictureRefused{"is no file", "one that is"};
+        EXPECT_GE(most_texels, 2u);
+        return std::make_shared<const ObjectImage>(
+            2, 1, std::vector<std::uint16_t>{0, 0, 0, 0x3c00, 0x3c00, 0x3c00});
+    };
+    return parse_object_obj(text, "b.obj", material_text, picture);
 }
 
 std::string body_refusal(const std::string& text, const Files& files = {}) {
@@ -145,7 +154,7 @@ TEST(ObjectObj, ReadsMaterials) {
     const Files files{
         {"my paint.mtl",
          "newmtl hull\nKd 0.5 0.25 2\nNs 250\nillum 2\nKs 0.5 0.5 0.5\n\nnewmtl lamp\r\nKe 4 2 0\r\n"
-         "newmtl my glass\nPr 0.1\nNs 10\nd 0.3\nmap_Kd -s 1 1 1 glass.png\nnewmtl hull\nKd 0 0 0\n"
+         "newmtl my glass\nPr 0.1\nNs 10\nd 0.3\nmap_Ks -s 1 1 1 glass.png\nnewmtl hull\nKd 0 0 0\n"
          "newmtl none\nKd spectral file.rfl\nd 1.0\nTr 0\n"}};
     const std::string text =
         std::string("mtllib my paint.mtl\n") + kPlate +
@@ -164,7 +173,7 @@ TEST(ObjectObj, ReadsMaterials) {
     ASSERT_EQ(body.notes().size(), 3u);
     EXPECT_EQ(body.notes()[0], "materials that no MTL file of it has are grey: \"lost\"");
     EXPECT_EQ(body.notes()[1],
-              "pictures of materials are passed over: \"my glass\" (map_Kd -s 1 1 1 glass.png)");
+              "pictures of materials are passed over: \"my glass\" (map_Ks -s 1 1 1 glass.png)");
     EXPECT_EQ(body.notes()[2], "transparency is passed over, these are opaque: \"my glass\"");
     // Two files in a line, one of which is not there; the first of a name counts.
     const ObjectMesh two =
@@ -196,6 +205,9 @@ TEST(ObjectObj, RefusesWithTheLine) {
              {"v 1 2 nan\n", "is not a finite number"},
              {"v 1 2 1e7\n", "the point is outside the range"},
              {"vn 1 2\n", "a normal has 2 numbers"},
+             {"vt\n", "a texture coordinate has 0 numbers"},
+             {"vt 1 nan\n", "is not a finite number"},
+             {"vt 1 1e5\n", "the texture coordinate is outside the range"},
              {"s smooth\n", "\"smooth\" is no whole number"},
              {"surf 0 1 0 1 1 2\n", "\"surf\" begins no line that is known"}})
         EXPECT_NE(body_refusal(square + line).find(problem), std::string::npos)
@@ -217,13 +229,62 @@ TEST(ObjectObj, IsTheSameWhateverTheCommentsAndTheLocale) {
     std::setlocale(LC_ALL, "C");
 }
 
+TEST(ObjectObj, HasPicturesOfItsColours) {
+    const std::string vt = "vt 0 0\nvt 1 0\nvt 1 1 0\nvt 0.25\n";
+    const auto one = [&](const std::string& mtl, const std::string& faces = "usemtl m\nf 1/1 2/2 3/3\n") {
+        return read_body("mtllib a.mtl\n" + std::string(kPlate) + vt + faces,
+                         {{"a.mtl", "newmtl m\n" + mtl}});
+    };
+    // The picture takes the place of Kd, which is its mean for whoever draws no pictures.
+    const ObjectMesh body = one("Kd 0.1 0.1 0.1\nmap_Kd checker.png\n");
+    ASSERT_EQ(body.data().images.size(), 1u);
+    EXPECT_EQ(body.data().materials[0], (ObjectMaterial{.name = "m", .colour = glm::vec3(0.5f), .image = 0}));
+    EXPECT_EQ(body.data().image_at, (std::vector<glm::vec2>{{0, 0}, {1, 0}, {1, 1}}));
+    EXPECT_TRUE(body.notes().empty());
+    // Coordinates without a second number, names with spaces and options; triangles stay near 0.
+    EXPECT_EQ(
+        one("map_Kd -blendu on -s 2 4 -o 0.5 my glass.png\n", "usemtl m\nf 1/1 2/3 3/4\n").data().image_at,
+        (std::vector<glm::vec2>{{0.5, 0}, {2.5, 4}, {1, 0}}));
+    EXPECT_EQ(one("map_Kd -o -3.25 checker.png\n").data().image_at,
+              (std::vector<glm::vec2>{{0.75, 0}, {1.75, 0}, {1.75, 1}}));
+    // Two materials of a file share it. Faces without coordinates have the mean, and say so; all is cut as before.
+    const ObjectMesh two =
+        read_body("mtllib a.mtl\n" + std::string(kPlate) + vt +
+                      "usemtl m\nf 1/1 2/2 3/3 4/4\nusemtl n\nf 1/1 2/2 3/3\nf 1 2/1 3/1\n",
+                  {{"a.mtl", "newmtl m\nmap_Kd checker.png\nnewmtl n\nmap_Kd checker.png\n"}});
+    EXPECT_EQ(two.data().images.size(), 1u);
+    EXPECT_EQ(two.data().material, (std::vector<std::uint16_t>{0, 0, 1, 2}));
+    EXPECT_EQ(two.data().materials[2], (ObjectMaterial{.name = "n", .colour = glm::vec3(0.5f)}));
+    EXPECT_EQ(two.notes(),
+              std::vector<std::string>{
+                  "faces without texture coordinates show the mean of their material's picture"});
+    // No picture of a material that no face has; no places where there is no picture.
+    EXPECT_TRUE(one("newmtl other\nmap_Kd nowhere.png\n").data().images.empty());
+    EXPECT_TRUE(one("Kd 1 1 1\n").data().image_at.empty());
+    const auto refusal_of = [&](const std::string& mtl) {
+        return body_refusal("mtllib a.mtl\n" + std::string(kPlate) + vt + "usemtl m\nf 1/1 2/2 3/3\n",
+                            {{"a.mtl", "newmtl m\n" + mtl}});
+    };
+    EXPECT_EQ(refusal_of("\nmap_Kd nowhere.png\n"),
+              "a.mtl:3: the picture \"nowhere.png\" is no file; accepted: one that is");
+    EXPECT_NE(refusal_of("map_Kd\n").find("a.mtl:2: \"map_Kd\" names no picture"), std::string::npos);
+    EXPECT_NE(refusal_of("map_Kd -s nan checker.png\n").find("a.mtl:2: the picture \"nan checker.png\""),
+              std::string::npos);
+    EXPECT_NE(refusal_of("map_Kd -s 1e9 checker.png\n").find("a.mtl:2: \"1e9\" is outside the range"),
+              std::string::npos);
+    EXPECT_NE(body_refusal("mtllib a.mtl\n" + std::string(kPlate) + "vt 0\nvt 2\nusemtl m\nf 1/1 2/2 3/2\n",
+                           {{"a.mtl", "newmtl m\nmap_Kd -s 1e4 checker.png\n"}})
+                  .find("a.mtl:2: the picture repeats too often on a triangle"),
+              std::string::npos);
+}
+
 // Whatever is damaged, it is a body or a refusal.
 TEST(ObjectObj, SurvivesDamage) {
-    const Files files{{"a.mtl", "newmtl m\nKd 0.1 0.2 0.3\nKe 2 2 2\nnewmtl n\nmap_Kd x.png\n"}};
+    const Files files{{"a.mtl", "newmtl m\nKd 0.1 0.2 0.3\nKe 2 2 2\nnewmtl n\nmap_Kd checker.png\n"}};
     const std::string whole =
         "mtllib a.mtl\nusemtl m\n" + std::string(kPlate) +
-        "v 0.5 0.2 1\nv 3 -2 0.5\nvn 0 0 1\nvn 1e-300 0 0\ns 1\nf 1//1 2//2 3//1 4//2\nf 1 2 5\ns off\n"
-        "usemtl n\nf 2 6 3 5 4\nf -1 -2 -3 -4 -5 -6\n";
+        "v 0.5 0.2 1\nv 3 -2 0.5\nvt 0 1\nvn 0 0 1\nvn 1e-300 0 0\ns 1\nf 1//1 2//2 3//1 4//2\nf 1 2 5\ns off\n"
+        "usemtl n\nf 2/1 6/1 3/1 5/1 4\nf -1 -2 -3 -4 -5 -6\n";
     std::mt19937 random(7);
     const std::string letters = "0123456789-./ \n\\vfns#e+";
     int read_whole = 0;

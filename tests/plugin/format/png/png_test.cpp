@@ -97,5 +97,38 @@ TEST(Png, RefusesSizesThatItCannotHold) {
     EXPECT_THROW(encode({.width = 4, .height = 3, .bytes = rgb}), std::invalid_argument);
 }
 
+// Ours, and those of libpng's simplified writer: grey, with alpha, of 16 bits, with a palette.
+TEST(Decode, ReadsWhatOthersWrite) {
+    const std::vector<std::uint8_t> pixels = pattern(5, 3);
+    const std::string ours = encode({.width = 5, .height = 3, .bytes = pixels});
+    EXPECT_EQ(decode(ours, 15).rgb, pixels);
+    EXPECT_EQ(decode(ours, 15).width, 5);
+    EXPECT_THROW(decode(ours, 14), ReadError);
+    EXPECT_THROW(decode("", 1), ReadError);
+    for (std::size_t size = 8; size < ours.size(); ++size)
+        EXPECT_THROW(decode(std::string_view(ours).substr(0, size), 15), ReadError) << size;
+    const auto written = [](std::uint32_t format, const void* buffer, const void* colours = nullptr) {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        image.width = 2, image.height = 1;
+        image.format = format;
+        image.colormap_entries = colours ? 2 : 0;
+        png_alloc_size_t size = 0;
+        png_image_write_to_memory(&image, nullptr, &size, 0, buffer, 0, colours);
+        std::string bytes(size, 0);
+        EXPECT_TRUE(png_image_write_to_memory(&image, bytes.data(), &size, 0, buffer, 0, colours));
+        return bytes;
+    };
+    const std::vector<std::uint8_t> grey{7, 200}, alpha{1, 2, 3, 0, 4, 5, 6, 128}, index{1, 0},
+        palette{9, 8, 7, 6, 5, 4};
+    const std::vector<std::uint16_t> wide{65535, 0};
+    using Rgb = std::vector<std::uint8_t>;
+    EXPECT_EQ(decode(written(PNG_FORMAT_GRAY, grey.data()), 2).rgb, (Rgb{7, 7, 7, 200, 200, 200}));
+    EXPECT_EQ(decode(written(PNG_FORMAT_RGBA, alpha.data()), 2).rgb, (Rgb{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(decode(written(PNG_FORMAT_RGB_COLORMAP, index.data(), palette.data()), 2).rgb,
+              (Rgb{6, 5, 4, 9, 8, 7}));
+    EXPECT_EQ(decode(written(PNG_FORMAT_LINEAR_Y, wide.data()), 2).rgb, (Rgb{255, 255, 255, 0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace pelagic::png

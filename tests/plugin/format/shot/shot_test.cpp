@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <sstream>
 
 #include "core/scene/canonical.h"
@@ -13,6 +15,7 @@
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
 #include "plugin/format/exr/exr.h"
+#include "plugin/format/png/png.h"
 #include "temporary_folder.h"
 #include "tests/plugin/format/shot/no_check.h"
 
@@ -472,6 +475,87 @@ TEST(Shot, ACageIsReadFromItsFile) {
     EXPECT_EQ(lines(refused_with(cage + "cage_file = 3\n")), 1u);
 }
 
+// Pictures lie beside the mesh, as materials do: PNG, whose numbers are sRGB, and linear OpenEXR.
+TEST(Shot, BodiesHaveThePicturesBesideThem) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "s.toml";
+    folder.write(
+        "boat.obj",
+        "mtllib paint.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
+    const auto body_of = [&](const std::string& picture) {
+        folder.write("paint.mtl", "newmtl red\nmap_Kd " + picture + "\n");
+        return parse_shot("[[objects]]\nfile = \"boat.obj\"\n", file, no_check).objects[0].mesh;
+    };
+    const auto refused_with = [&](const std::string& picture) -> std::string {
+        try {
+            body_of(picture);
+        } catch (const ShotError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    // The upper row red, the lower one grey: 188 of sRGB is 0.503 of linear light.
+    const std::vector<std::uint8_t> bytes{255, 0, 0, 188, 188, 188};
+    const std::string png = png::encode({.width = 1, .height = 2, .bytes = bytes});
+    folder.write("paint.png", png);
+    const auto body = body_of("paint.png");
+    const ObjectImage& image = *body->data().images.at(0);
+    EXPECT_EQ(image.colour({0.5f, 0.75f}, 0.0f), glm::vec3(1.0f, 0.0f, 0.0f));
+    EXPECT_NEAR(image.colour({0.5f, 0.25f}, 0.0f).y, 0.50289, 2.5e-4);  // a half float's rounding
+    std::vector<float> linear{0.25f, 0.75f};
+    exr::Image of{.width = 1, .height = 2, .channels = {}};
+    for (const char* name : {"R", "G", "B"}) of.channels.push_back({.name = name, .data = linear.data()});
+    std::string exr = exr::encode_scanline({}, of);
+    std::filesystem::create_directory(folder.path() / "in");
+    folder.write("in/paint.exr", exr);
+    const auto other = body_of("in/paint.exr");
+    EXPECT_EQ(other->data().images.at(0)->colour({0.5f, 0.25f}, 0.0f), glm::vec3(0.25f));
+    EXPECT_EQ(other->data().images.at(0)->colour({0.5f, 0.75f}, 0.0f), glm::vec3(0.75f));
+    // By what is in the picture.
+    EXPECT_NE(body->content(), other->content());
+    linear = {0.25f, 7.0f};  // as bright as white
+    exr = exr::encode_scanline({}, of);
+    folder.write("in/paint.exr", exr);
+    const auto bright = body_of("in/paint.exr");
+    EXPECT_NE(bright->content(), other->content());
+    EXPECT_EQ(bright->data().images.at(0)->colour({0.5f, 0.75f}, 0.0f), glm::vec3(1.0f));
+    // What is wrong, with file and line.
+    const std::string at = file.string() + ":2:8: objects[0].file = \"boat.obj\": paint.mtl:2: the picture ";
+    folder.write("paint.jpg", "any");
+    EXPECT_EQ(refused_with("paint.jpg"),
+              at + "\"paint.jpg\" is a JPEG; accepted: a PNG or an OpenEXR: convert it");
+    EXPECT_EQ(refused_with("paint.tga"),
+              at + "\"paint.tga\" is neither PNG nor OpenEXR; accepted: a PNG or an OpenEXR: convert it");
+    EXPECT_EQ(refused_with("none.png"), at + "\"none.png\" does not exist; accepted: a PNG or an OpenEXR");
+    for (const std::string& away : {std::string("in/../paint.png"), (folder.path() / "paint.png").string()})
+        EXPECT_NE(refused_with(away).find("lies outside the mesh's folder"), std::string::npos)
+            << refused_with(away);
+    folder.write("bad.png", png.substr(0, png.size() - 20));
+    EXPECT_NE(refused_with("bad.png").find("\"bad.png\" is cut short or damaged"), std::string::npos);
+    folder.write("bad.png", "any");
+    EXPECT_NE(refused_with("bad.png").find("\"bad.png\" is no PNG"), std::string::npos);
+    folder.write("bad.exr", "any");
+    EXPECT_NE(refused_with("bad.exr").find("paint.mtl:2: the picture \"bad.exr\""), std::string::npos);
+    const float seven = 7.0f, nan = std::nanf("");
+    std::string number(sizeof seven, 0);
+    std::memcpy(number.data(), &seven, sizeof seven);
+    for (std::size_t place; (place = exr.find(number)) != std::string::npos;)
+        std::memcpy(exr.data() + place, &nan, sizeof nan);
+    folder.write("nan.exr", exr);
+    EXPECT_EQ(refused_with("nan.exr"), at + "\"nan.exr\" has NaN in line 1; accepted: numbers");
+    const std::vector<std::uint8_t> wide(std::size_t{3} * 20000);
+    folder.write("wide.png", png::encode({.width = 20000, .height = 1, .bytes = wide}));
+    EXPECT_NE(
+        refused_with("wide.png")
+            .find("\"wide.png\" has 20000 x 1 texels; accepted: pictures of at most 16384 texels a side"),
+        std::string::npos);
+    // A header that promises more than there is room for takes no memory.
+    std::string huge = png;
+    huge.replace(16, 8, std::string("\0\0\xff\xff\0\0\xff\xff", 8));
+    folder.write("huge.png", huge);
+    EXPECT_NE(refused_with("huge.png"), "");
+}
+
 TEST(Shot, BodiesAreReadFromTheirFiles) {
     const TemporaryFolder folder;
     const std::string triangle = "mtllib paint.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
@@ -524,7 +608,8 @@ TEST(Shot, BodiesAreReadFromTheirFiles) {
     const std::string at = file.string();
     EXPECT_EQ(
         refused_with("[[objects]]\nup_m = 1\n"),
-        at + ":1:1: objects[0].file = (missing): has no default; accepted: a string, the path of an .obj; " +
+        at +
+            ":1:1: objects[0].file = (missing): has no default; accepted: a string, the path of an .obj or a .usdc; " +
             find_key("objects[].file")->help);
     EXPECT_EQ(
         refused_with("[[objects]]\nfile = \"bad.obj\"\n"),
@@ -534,12 +619,12 @@ TEST(Shot, BodiesAreReadFromTheirFiles) {
     EXPECT_EQ(
         refused_with("[[objects]]\nfile = \"none.obj\"\n"),
         at +
-            ":2:8: objects[0].file = \"none.obj\": the mesh does not exist; accepted: a Wavefront OBJ of at most 1 GiB");
+            ":2:8: objects[0].file = \"none.obj\": the mesh does not exist; accepted: a Wavefront OBJ or a USD crate of at most 1 GiB");
     EXPECT_EQ(
-        refused_with("[[objects]]\nfile = \"boat.usdc\"\n"),
+        refused_with("[[objects]]\nfile = \"boat.stl\"\n"),
         at +
-            ":2:8: objects[0].file = \"boat.usdc\": is no Wavefront OBJ; accepted: a mesh exported as OBJ, z up and in "
-            "metres");
+            ":2:8: objects[0].file = \"boat.stl\": is neither Wavefront OBJ nor USD; accepted: a mesh exported as .obj, z "
+            "up and in metres, or as .usdc");
     EXPECT_EQ(
         refused_with("[[objects]]\nfile = \"boat.obj\"\n\n[[objects]]\nfile = \"boat.obj\"\n"),
         at +

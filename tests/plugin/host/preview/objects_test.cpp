@@ -540,6 +540,65 @@ TEST(PreviewsObjects, HaveFoamAlongTheirHullsAsPicturesDo) {
     EXPECT_LE(part(9), 0.05);
 }
 
+// A checker on the box: near, where it shows its squares, and far away, where it is grey.
+TEST(PreviewsObjects, HaveThePicturesThatRenderHas) {
+    for (const double away : {1.0, 14.0}) {
+        Scene scene = with_box(calm_scene());
+        scene.camera.position_m = away * glm::dvec3(-30.0, -50.0, 9.0);
+        scene.camera.fov_deg = 20.0 / away;
+        scene.camera.resolution = {160, 90};
+        constexpr int kSide = 64;
+        std::vector<std::uint16_t> rgb;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const bool is_bright = (x / 8 + y / 8) % 2 == 0;
+                rgb.insert(rgb.end(), {static_cast<std::uint16_t>(is_bright ? 0x3a00 : 0x2e66), 0x3400,
+                                       static_cast<std::uint16_t>(is_bright ? 0x2e66 : 0x3a00)});
+            }
+        ObjectMeshData mesh = scene.objects[0].mesh->data();
+        mesh.images = {std::make_shared<const ObjectImage>(kSide, kSide, std::move(rgb))};
+        mesh.materials.push_back({.name = "plain", .colour = glm::vec3(0.5f)});
+        mesh.materials[0].image = 0;
+        mesh.material[10] = mesh.material[11] = 1;  // the top
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const glm::vec3 n = glm::abs(mesh.normals[i]),
+                            at = mesh.points_m[mesh.triangles[i]] / glm::vec3(kHalf_m);
+            const float often = away == 1.0 ? 0.5f : 64.0f;
+            mesh.image_at.push_back(often * (n.x > 0.5f ? glm::vec2(at.y, at.z) : glm::vec2(at.x, at.z)));
+        }
+        scene.objects[0].mesh = std::make_shared<const ObjectMesh>(std::move(mesh));
+        ObjectStage stage(scene);
+        const Picture ours = stage.with_objects();
+        RenderOptions options = render_options(scene);
+        options.layers = parse_picture_layers("all");
+        options.samples = 1;
+        Picture rays;
+        Renderer(scene, options, make_sky(scene), std::array{1}).render(1, rays);
+        // Of red to blue: the light is about the same, whatever else the two make of it.
+        std::vector<double> differences;
+        double least = 1.0, most = 0.0;
+        for (std::size_t i = 0; i < rays.layers.size(); ++i) {
+            const auto red = [&](const Picture& of) {
+                const float* light = &of.data[index(PictureLayer::Object)][3 * i];
+                return light[1] > 0.0f ? static_cast<double>(light[0] / (light[0] + light[2])) : -1.0;
+            };
+            if (red(ours) < 0.0 || red(rays) < 0.0) continue;
+            differences.push_back(std::abs(red(ours) - red(rays)));
+            least = std::min(least, red(rays));
+            most = std::max(most, red(rays));
+        }
+        ASSERT_GT(differences.size(), 1000u);
+        std::ranges::sort(differences);
+        const double median = differences[differences.size() / 2],
+                     nearly_all = differences[differences.size() * 95 / 100];
+        std::printf("    %zu pixels, red %.2f ... %.2f: difference %.4f in half, 95 %% have %.4f\n",
+                    differences.size(), least, most, median, nearly_all);
+        EXPECT_LE(median, 0.03);
+        EXPECT_LE(nearly_all, 0.12);
+        EXPECT_EQ(most - least > 0.4, away == 1.0);
+    }
+}
+
 TEST(PreviewsObjects, AreCountedInTheMemory) {
     gpu::need_context();
     const Scene bare = object_scene(8.0, 35.0);

@@ -1,0 +1,2 @@
+// Without pictures, see object_image_vertex.glsl.
+void place_image() {}

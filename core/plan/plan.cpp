@@ -403,7 +403,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.breaking = breaking_of(scene, plan.filter);
-    plan.masks = plan_masks(scene);  // before the queries: a slick is one of their levels
+    plan.masks = plan_masks(scene, prepared.spectrum);  // before the queries: a slick is one of their levels
     // In pictures the edge of what breaks is as wide as a breaker's roller is thick, and the foam's pattern tears it: to a pixel it would be cut.
     // Two thirds of the height are by eye; a mean over footprints stays.
     constexpr double kRollerOverHeight = 2.0 / 3.0;

@@ -15,7 +15,7 @@
 namespace pelagic {
 namespace {
 
-constexpr double kDepthStep = 0.02;  // of ln d
+constexpr double kDepthStep = 0.05;  // of ln d
 
 double depth_place(double depth_m) {
     return std::log(std::max(depth_m, kCoastShore_m) / kCoastShore_m) / kDepthStep;
@@ -48,7 +48,7 @@ CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count) {
 TilesOverDepth::TilesOverDepth(const DirectionalSpectrum& spectrum, double deepest_m)
     : height_m_(std::sqrt(8.0 * spectrum.m0())) {
     // Waves of less energy than this are too few to be weighed.
-    constexpr double kLeast = 1e-6;
+    constexpr double kLeast = 1e-5;
     struct Waves {
         double omega, speed, sea, swell;
     };

@@ -102,7 +102,7 @@ class TilesOverDepth {
 
   private:
     double height_m_;             // rms, of the sea as it comes
-    std::vector<double> energy_;  // at depths a fiftieth apart, from the shore's on
+    std::vector<double> energy_;  // at depths a twentieth apart, from the shore's on
 };
 
 // Adds it to a scene's masks where tiles feel a coast (waves.coast with the model fft) and the sea has waves.

@@ -295,7 +295,10 @@ TEST(Validate, FramesSeedAndLoop) {
         s.objects[0].floats = true;
         s.objects[0].buoyancy = Buoyancy::Response;
     }));
-    expect_refused(tiles([](Scene& s) { s.output.cascade_tiles = true; }),
+    expect_refused(tiles([](Scene& s) {
+                       s.output.cascade_tiles = true;
+                       s.output.maps = {MapKind::Normal};
+                   }),
                    {"output.cascade_tiles", "true", "false, or waves.coast = false"});
     expect_refused(tiles([](Scene& s) { s.waves.heroes = {{}}; }),
                    {"waves.coast", "true", "no waves.heroes, or false"});

@@ -205,6 +205,7 @@ void PreparedQuery<T>::refresh() {
                             : statistics_->whole));
     FieldSet needed = fields_of(wanted_) & ~plan.dropped;
     if (breaks_) needed |= displacement_gradient_fields();
+    if (breaks_ && has_surf_) needed |= fields(Field::Height);
     if (has_random_tiling_ || has_masks_) needed |= gradient_fields(needed) & ~plan.dropped;
     for (LevelGrids& of : levels_) {
         of.grids.clear();

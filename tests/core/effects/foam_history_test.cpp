@@ -947,6 +947,7 @@ TEST(FoamHistory, InSurfNoMoreIsLeftThanBreaks) {
          {std::pair(WaveModel::Trochoid, 1.5), std::pair(WaveModel::Trochoid, 4.0),
           std::pair(WaveModel::Fft, 4.0)}) {
         scene.waves.model = model;
+        scene.waves.trains = model == WaveModel::Fft ? Waves{}.trains : 60;
         scene.effects.foam_decay_s = decay_s;
         Shown shown(sea_of(scene, 0.5));
         double active[2] = {}, total[2] = {};

@@ -117,6 +117,7 @@ inline BaseShot coast_tiles_shot() {
     BaseShot base = coast_shot();
     base.name = "tiles on a beach";
     base.scene.waves.model = WaveModel::Fft;
+    base.scene.waves.trains = Waves{}.trains;
     base.scene.waves.cascades = small_shot().waves.cascades;
     return base;
 }

@@ -48,7 +48,9 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
         extent.height_m = std::hypot(extent.height_m, hero_m);
         extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);
     }
-    if (const std::optional<MasksPlan> masks = plan_masks(scene, spectrum)) {
+    // Depths that nobody has read yet are refused by whoever plans.
+    const bool is_read = !scene.waves.coast || scene.waves.coast_depths;
+    if (const std::optional<MasksPlan> masks = is_read ? plan_masks(scene, spectrum) : plan_masks(scene)) {
         extent.height_m *= masks->largest();
         extent.reach_m *= masks->largest();
         for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();

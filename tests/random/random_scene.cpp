@@ -711,6 +711,7 @@ bool is_affordable(const RandomScene& random) {
         scene->surface.size_m / scene->output.voxel_m > 1.001 * cap(kVoxelsASide).high)
         return false;
     if (!scene->waves.cascades.empty() || scene->waves.model == WaveModel::Trochoid) return true;
+    scene->waves.coast = false;  // its depths aren't read, and cost next to nothing
     scene = settle(*scene, Purpose::Mesh, with_rates(recorded_rates())).scene;
     const int frame = scene->shot.first_frame;
     const std::size_t bytes =

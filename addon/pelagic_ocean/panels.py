@@ -99,16 +99,15 @@ def _matters(field, settings):
     kind, sized = settings.surface.kind, settings.output.maps or settings.output.volumes or settings.effects.spray or settings.uv_map
     has_size = kind in ("patch", "near-far")
     has_body = settings.water.body
-    has_trains = settings.waves.model == "trochoid"
-    is_coast = has_trains and settings.waves.coast
+    is_coast = settings.waves.coast
     return {"water.floor_colour": has_body and settings.sea.use_depth_m, "water.crest_light": has_body,
             "water.bubbles": has_body and settings.effects.whitecaps,
             "surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
             "surface.earth_curvature": kind in ("projected-grid", "near-far"),
             # Of Pelagic's own pictures: here beyond is horizon, and the floor is level, of one colour and evenly lit.
             "surface.beyond": False, "water.caustics": False, "water.floor_pattern": False, "water.floor_pattern_m": False,
-            # Here only waves feel that floor.
-            "sea.depth_file": has_trains, "sea.depth_size_m": is_coast, "sea.depth_east_m": is_coast, "sea.depth_north_m": is_coast}.get(field.path, True)
+            # Here only waves feel that floor, which must be a picture for them.
+            "sea.depth_size_m": is_coast, "sea.depth_east_m": is_coast, "sea.depth_north_m": is_coast}.get(field.path, True)
 
 
 def _draw_tables(layout, settings, tables, title):

@@ -28,7 +28,7 @@ OF_CAMERA = {"camera.exposure_ev", "camera.ev100"}  # what Blender's camera hasn
 ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", ("file",)), "sea.spectrum_time": ("sea.spectrum", ("file",)),
              "surface.cage_file": ("surface.kind", ("cage",)), "surface.cage_level": ("surface.kind", ("cage",)),
              "waves.trains": ("waves.model", ("trochoid",)), "waves.shortest_m": ("waves.model", ("trochoid",)),
-             "waves.longest_m": ("waves.model", ("trochoid",)), "waves.coast": ("waves.model", ("trochoid",)),
+             "waves.longest_m": ("waves.model", ("trochoid",)),
              "water.chlorophyll_mg_m3": ("water.type", ("ocean", "coastal", "turbid"))}
 
 # A unit of the table → arguments of a property. Degrees stay degrees: Blender's angles would be radians in scripts.

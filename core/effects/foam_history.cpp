@@ -656,9 +656,9 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
         threshold(kStride + 16);
     Results<T> results;
     results.set(Product::JacobianMoments, {moments.data()});
-    const Coast<T>* coast = level.frame.sea().coast().get();
+    const bool has_surf = level.frame.sea().has_surf();
     static thread_local std::vector<glm::vec<3, T>> moved;
-    if (coast) {
+    if (has_surf) {
         moved.resize(kStride);
         results.set(Product::Displacement, {moved.data()});
     }
@@ -687,10 +687,10 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
     // a crest and the trough lose up to half of it.)
     const double lasting = sea_->foam_left_per_s() * foam_.weight(0.0, foam_.window_s).foam_s,
                  source = 1.0 / std::max(lasting, 1.0);
-    for (std::size_t i = 0; i < kNodes && coast; ++i) {
+    for (std::size_t i = 0; i < kNodes && has_surf; ++i) {
         const double foam =
-            source * coast_foam(*coast, origin_m + glm::dvec2(level.rest_m[i]),
-                                static_cast<double>(moved[i].z), level.cell_m, sea_->plan().filter);
+            source * level.frame.sea().surf_foam(origin_m + glm::dvec2(level.rest_m[i]),
+                                                 static_cast<double>(moved[i].z), level.cell_m);
         deviates(n)[i] = std::max(deviates(n)[i], static_cast<float>(quick_deviate(foam)));
     }
     // In a calm J is 1 throughout, as far from breaking as can be.

@@ -155,6 +155,7 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
                                              : "\": ask for it when the plan is made"));
     has_trains_ = plan.trains && !query.only_cascade;
     has_coast_ = has_trains_ && frame.sea().coast();
+    has_surf_ = frame.sea().has_surf() && !query.only_cascade;
     has_random_tiling_ = !query.only_cascade &&
                          std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                      [](const CascadePlan& cascade) { return cascade.has_random_tiling; });
@@ -204,6 +205,7 @@ void PreparedQuery<T>::refresh() {
                             : statistics_->whole));
     FieldSet needed = fields_of(wanted_) & ~plan.dropped;
     if (breaks_) needed |= displacement_gradient_fields();
+    if (breaks_ && has_surf_) needed |= fields(Field::Height);
     if (has_random_tiling_ || has_masks_) needed |= gradient_fields(needed) & ~plan.dropped;
     for (LevelGrids& of : levels_) {
         of.grids.clear();
@@ -265,7 +267,7 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
     const ProductSet given = results.given();
     const bool many_pixels = planned_->pixel_levels.size() > 1;
     FieldSet needed = fields_of(given & ~breaking_products());
-    if (has_coast_ && given[index(Product::Breaking)]) needed |= fields(Field::Height);
+    if (has_surf_ && given[index(Product::Breaking)]) needed |= fields(Field::Height);
     return {
         .points = points,
         .results = results,
@@ -416,14 +418,13 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     const auto unresolved = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && unresolved)
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
-    if (const auto breaking = call.results.numbers(Product::Breaking); breaking && has_coast_) {
-        const Coast<T>& coast = *frame_->sea().coast();
+    if (const auto breaking = call.results.numbers(Product::Breaking); breaking && has_surf_) {
         for (std::size_t i = 0; i < chunk.count; ++i) {
             const double cell_m = call.points.cell_m ? static_cast<double>(call.points.cell_m[first + i])
                                                      : planned_->query.cell_m.front();
             const double more =
-                coast_foam(coast, call.place.origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]),
-                           static_cast<double>(chunk.sums[index(Field::Height)][i]), cell_m, plan.filter);
+                frame_->sea().surf_foam(call.place.origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]),
+                                        static_cast<double>(chunk.sums[index(Field::Height)][i]), cell_m);
             breaking[first + i] += (T(1) - breaking[first + i]) * static_cast<T>(more);
         }
     }

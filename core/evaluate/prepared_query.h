@@ -122,8 +122,8 @@ class PreparedQuery {
     std::vector<T> whole_m_;           // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
-    bool has_trains_ = false, has_coast_ = false, has_random_tiling_ = false, breaks_ = false,
-         has_masks_ = false;
+    bool has_trains_ = false, has_coast_ = false, has_surf_ = false, has_random_tiling_ = false,
+         breaks_ = false, has_masks_ = false;
     const Whitecaps* given_whitecaps_;  // null: the sea's
     const Whitecaps* whitecaps_;
     const Gusts* gusts_ = nullptr;       // none, or nothing that they change is wanted

@@ -50,7 +50,7 @@ std::size_t mask_picture_bytes(const Plan& plan) {
 }
 
 std::string about_masks(const Plan& plan) {
-    const MasksPlan& masks = *plan.masks;
+    const MasksPlan masks = plan_masks(plan.from->scene).value();
     const MasksPlan::Gains gains = masks.gains_in(glm::dvec2(-limits::kCameraCoordinate_m.high),
                                                   glm::dvec2(limits::kCameraCoordinate_m.high));
     std::string about = std::to_string(masks.masks.size()) + (masks.masks.size() == 1 ? " mask" : " masks");
@@ -63,6 +63,15 @@ std::string about_masks(const Plan& plan) {
     if (masks.calms_ripples) about += "; slicks, of waves below 50 cm";
     if (masks.calms_foam) about += "; less foam";
     return about + "; pairs of waves (second order) change as the waves do, not as their square";
+}
+
+std::string about_coast(const Plan& plan) {
+    if (!plan.masks || !plan.masks->surf) return "there are no waves";
+    const MasksPlan::Mask& coast = plan.masks->masks.back();
+    return "waves " + rough_text(coast.strongest) + " … " + rough_text(std::max(coast.other_way, 1.0)) +
+           " times as high over " + std::to_string(plan.masks->surf->count.x) + " x " +
+           std::to_string(plan.masks->surf->count.y) + " cells, " + bytes_text(plan.masks->coast_bytes()) +
+           "; nine reads a point, and heights and displacements in the derivatives' footprints as well";
 }
 
 std::string about_wakes(const Plan& plan) {
@@ -201,6 +210,20 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .state = {"pictures of calm and rough places", mask_picture_bytes,
                "take smaller pictures in waves.masks, or wider edges"},
      .about = about_masks},
+    {.effect = Effect::Coast,
+     .name = "tiles on a coast",
+     .is_asked_for =
+         [](const Scene& scene) { return scene.waves.coast && scene.waves.model == WaveModel::Fft; },
+     .why_not = "waves.coast is false, or wave trains feel it",
+     .turn_off =
+         [](Scene& scene) {
+             scene.waves.coast = false;
+             scene.waves.coast_depths.reset();
+         },
+     .state = {"a coast's gains and its surf",
+               [](const Plan& plan) { return plan.masks ? plan.masks->coast_bytes() : 0; },
+               "take smaller depths in sea.depth_file"},
+     .about = about_coast},
     {.effect = Effect::Wakes,
      .name = "wakes",
      .is_asked_for = [](const Scene& scene) { return !scene.waves.vessels.empty(); },

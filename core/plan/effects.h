@@ -25,6 +25,7 @@ enum class Effect {
     Spray,
     Gusts,
     Masks,
+    Coast,
     Wakes
 };
 

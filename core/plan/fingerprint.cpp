@@ -53,6 +53,9 @@ std::string plan_text(const Plan& plan, int query_index) {
         text += "coast 1, " + std::to_string(plan.trains->coast_trains) + " of " +
                 std::to_string(plan.trains->coast_cells.x) + " x " +
                 std::to_string(plan.trains->coast_cells.y) + '\n';
+    if (plan.masks && plan.masks->surf && !query.only_cascade)
+        text += "coast of tiles 1, " + std::to_string(plan.masks->surf->count.x) + " x " +
+                std::to_string(plan.masks->surf->count.y) + '\n';
     if (query.lattice)
         text += "lattice " + number_text(query.lattice->first_m) + ' ' +
                 number_text(query.lattice->spacing_m) + " points " + std::to_string(query.points) + '\n';

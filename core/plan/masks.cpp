@@ -65,14 +65,20 @@ std::optional<MasksPlan> plan_masks(const Scene& scene) {
     return plan;
 }
 
+std::optional<MasksPlan> plan_masks(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    std::optional<MasksPlan> plan = plan_masks(scene);
+    add_coast_mask(plan, scene, spectrum);
+    return plan;
+}
+
 MasksPlan::Gains MasksPlan::gains_in(glm::dvec2 min_m, glm::dvec2 max_m) const {
     Gains gains;
     for (const Mask& mask : masks) {
         const glm::dvec2 low = min_m - mask.middle_m, high = max_m - mask.middle_m;
         const double away = std::max({low.x, low.y, -high.x, -high.y});
         if (away > mask.reach_m) continue;
-        gains.least *= std::min(mask.strongest, 1.0);
-        gains.largest *= std::max(mask.strongest, 1.0);
+        gains.least *= std::min({mask.strongest, mask.other_way, 1.0});
+        gains.largest *= std::max({mask.strongest, mask.other_way, 1.0});
     }
     return gains;
 }
@@ -80,11 +86,11 @@ MasksPlan::Gains MasksPlan::gains_in(glm::dvec2 min_m, glm::dvec2 max_m) const {
 double MasksPlan::largest() const {
     double largest = 1.0;
     for (const Mask& mask : masks) {  // with all that may overlap it
-        double together = std::max(mask.strongest, 1.0);
+        double together = std::max({mask.strongest, mask.other_way, 1.0});
         for (const Mask& other : masks)
             if (&other != &mask &&
                 glm::distance(other.middle_m, mask.middle_m) < other.reach_m + mask.reach_m)
-                together *= std::max(other.strongest, 1.0);
+                together *= std::max({other.strongest, other.other_way, 1.0});
         largest = std::max(largest, together);
     }
     return largest;
@@ -113,8 +119,14 @@ MaskGains<double> MasksPlan::at(glm::dvec2 place_m) const {
 std::size_t MasksPlan::picture_texels() const {
     std::size_t texels = 0;
     for (const Mask& mask : masks)
-        if (mask.cells) texels += mask.cells->shares.size();
+        if (mask.cells && !is_coast(mask)) texels += mask.cells->shares.size();
     return texels;
+}
+
+std::size_t MasksPlan::coast_bytes() const {
+    if (!surf) return 0;
+    return sizeof(float) * masks.back().cells->shares.size() +
+           sizeof(double) * (surf->broken.size() + surf->deviation_m.size());
 }
 
 HeroMask hero_mask(const Scene& scene, const HeroWave& hero) {

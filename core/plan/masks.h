@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "core/base/number.h"
+#include "core/plan/coast.h"
 #include "core/plan/filter.h"
 #include "core/spectrum/spectral_moments.h"
 #include "pelagic/scene.h"
@@ -44,10 +45,13 @@ struct MasksPlan {
         double whole = 1.0;    // how much of a picture smaller than its edge is left where it holds whole
         double reach_m = 0.0;  // from the middle: beyond it there is none
         double waves = 1.0, ripples = 1.0, foam = 1.0;
-        double strongest = 1.0;       // the gain of waves where it holds most,
+        double strongest = 1.0;  // the gain of waves where it holds most,
+        double other_way =
+            1.0;  // and where it changes them the other way, as a coast does on which waves rise before they break
         glm::dvec2 strongest_m{0.0};  // about here
     };
-    std::vector<Mask> masks;  // those that change something
+    std::vector<Mask> masks;  // those that change something, and last the coast, if tiles feel one
+    std::shared_ptr<const CoastSurf<double>> surf{};  // of that coast
     bool changes_waves = false, calms_ripples = false, calms_foam = false;
     bool has_strips = false;  // of vessels, which calm ripples as well (core/plan/wake_strip.h)
 
@@ -59,6 +63,8 @@ struct MasksPlan {
     double largest() const;
     MaskGains<double> at(glm::dvec2 place_m) const;
     std::size_t picture_texels() const;  // in the cells of pictures
+    std::size_t coast_bytes() const;
+    bool is_coast(const Mask& mask) const { return surf && &mask == &masks.back(); }
 };
 
 // A picture's share at u, v [m] from its middle, along its width and its height.
@@ -102,8 +108,9 @@ MaskShare<T> picture_share(const MaskCells& cells, T u, T v, T per_m_u, T per_m_
     return at;
 }
 
-// None where no mask changes anything.
+// None where no mask changes anything. With a spectrum, of the scene: also how its tiles feel a coast (core/plan/coast.h).
 std::optional<MasksPlan> plan_masks(const Scene& scene);
+std::optional<MasksPlan> plan_masks(const Scene& scene, const DirectionalSpectrum& spectrum);
 
 // How much higher than it is shown a hero stands in the sea without masks, at most kMostHeroRaise; and how the gain of waves changes there
 // over itself [1/m]: m η is level where η is not.

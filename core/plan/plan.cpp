@@ -108,6 +108,14 @@ bool shows_one_tile(const Lattice& lattice, double size_m) {
     return std::max(-lattice.first_m, lattice.last_m) < kPlainHalf * size_m;
 }
 
+// Fields of a query's points, but for those of the waves that break. Foam of what breaks on a coast's floor lies on crests.
+FieldSet fields_of_points(const Plan& plan, const Query& query) {
+    FieldSet needed = fields_of(query.products & ~breaking_products());
+    if (plan.masks && plan.masks->surf && !query.only_cascade && (query.products & breaking_products()).any())
+        needed |= fields(Field::Height);
+    return needed & ~plan.dropped;
+}
+
 // Fields that this cascade's grids of this level must hold for all queries together.
 FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool blends) {
     FieldSet wanted;
@@ -120,7 +128,7 @@ FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool
         const auto uses = [&](const std::vector<int>& levels) {
             return std::find(levels.begin(), levels.end(), level) != levels.end();
         };
-        const FieldSet needed = fields_of(planned.query.products & ~breaking_products()) & ~plan.dropped;
+        const FieldSet needed = fields_of_points(plan, planned.query);
         if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
         if (uses(planned.pixel_levels)) wanted |= derivatives(needed & ~cell_fields());
         if (uses(planned.breaking_levels)) wanted |= derivatives(displacement_gradient_fields());
@@ -403,7 +411,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.breaking = breaking_of(scene, plan.filter);
-    plan.masks = plan_masks(scene);  // before the queries: a slick is one of their levels
+    plan.masks = plan_masks(scene, prepared.spectrum);  // before the queries: a slick is one of their levels
     // In pictures the edge of what breaks is as wide as a breaker's roller is thick, and the foam's pattern tears it: to a pixel it would be cut.
     // Two thirds of the height are by eye; a mean over footprints stays.
     constexpr double kRollerOverHeight = 2.0 / 3.0;
@@ -560,7 +568,7 @@ Plan plan_bake(const Scene& scene) {
 }
 
 std::vector<int> summed_levels(const Plan& plan, const PlannedQuery& planned) {
-    const FieldSet needed = fields_of(planned.query.products & ~breaking_products()) & ~plan.dropped;
+    const FieldSet needed = fields_of_points(plan, planned.query);
     std::vector<int> levels;
     const auto add = [&](const std::vector<int>& more, const FieldSet& of) {
         if ((needed & of).any()) levels.insert(levels.end(), more.begin(), more.end());

@@ -48,12 +48,14 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
         extent.height_m = std::hypot(extent.height_m, hero_m);
         extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);
     }
-    if (const std::optional<MasksPlan> masks = plan_masks(scene)) {
+    // Depths that nobody has read yet are refused by whoever plans.
+    const bool is_read = !scene.waves.coast || scene.waves.coast_depths;
+    if (const std::optional<MasksPlan> masks = is_read ? plan_masks(scene, spectrum) : plan_masks(scene)) {
         extent.height_m *= masks->largest();
         extent.reach_m *= masks->largest();
         for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();
     }
-    if (scene.waves.coast && spectrum.m0() > 0.0) {
+    if (scene.waves.coast && scene.waves.model == WaveModel::Trochoid && spectrum.m0() > 0.0) {
         // On a coast waves rise to kMostCoastEnergy at most. So high, σ, they go farthest to the side where they have broken down to 0.28 d, half
         // of kMostCoastHeight: σ coth(kd) ≤ σ √(g/d)/ω.
         const double rise = std::sqrt(kMostCoastEnergy), deviation_m = rise * std::sqrt(spectrum.m0()),

@@ -84,22 +84,13 @@ std::size_t TrainsPlan::coast_bytes(bool double_precision) const {
            (2 * stride + 3) * scalar;
 }
 
-// No finer than trains that feel the floor need.
-double coast_cell_m(glm::dvec2 size_m) {
-    constexpr double kCellsASide = 256.0, kFinest_m = 0.25;
-    return std::max(std::max(size_m.x, size_m.y) / kCellsASide, kFinest_m);
-}
-
 namespace {
 
-// Cells as square as can be.
 void plan_coast(TrainsPlan& plan, const Waves& waves) {
     constexpr double kShortest_m = 2.0;
     if (!waves.coast_depths)
         throw std::invalid_argument("the depths of sea.depth_file weren't read, and waves.coast needs them");
-    const glm::dvec2 size_m = waves.coast_depths->size_m();
-    const double cell_m = coast_cell_m(size_m);
-    plan.coast_cells = glm::max(glm::ivec2(glm::round(size_m / cell_m)), 4);
+    plan.coast_cells = coast_cells(waves.coast_depths->size_m());
     plan.coast_trains = static_cast<int>(
         std::ranges::count_if(plan.wavelengths_m, [](double length_m) { return length_m > kShortest_m; }));
 }

@@ -29,11 +29,8 @@ struct HeroEnds {
     double height = 0.0, level = 0.0;
 };
 
-// On a coast (core/waves/coast.h): a train's energy over what came in, and the height of one over the depth.
-inline constexpr double kMostCoastEnergy = 3.0, kMostCoastHeight = 0.78;
-
-// How wide a coast's cells are over a map of this size.
-double coast_cell_m(glm::dvec2 size_m);
+// On a coast (core/waves/coast.h): the height of a train over the depth.
+inline constexpr double kMostCoastHeight = 0.78;
 
 struct TrainsPlan {
     int count = 0;

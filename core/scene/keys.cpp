@@ -487,10 +487,10 @@ void add_waves(Built& out) {
         with_data(row<&Waves::coast>(
             {.name = "coast",
              .help =
-                 "with trochoid: whether the trains feel the floor of sea.depth_file. They come from sea.depth_m, turn, shorten and rise "
-                 "over shallow water, lose height where they break, and end at the shore; lees fill without the pattern of "
-                 "diffraction, and beyond the map waves are those of depth_m again. There is no reflection and no run-up, and no "
-                 "crest overturns",
+                 "whether waves feel the floor of sea.depth_file. They come from sea.depth_m, lose height where they break, and end at the "
+                 "shore. With trochoid they also turn, shorten and rise, and lees fill without the pattern of diffraction; tiles (fft) are "
+                 "lower where it is shallow, and neither turn nor shorten. Beyond the map waves are those of depth_m again. There is "
+                 "no reflection and no run-up, and no crest overturns",
              .key_parts = kWaves,
              .of_picture = "sea.depth_file"})));
 }

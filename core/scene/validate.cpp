@@ -769,22 +769,23 @@ void check_objects(SceneChecker& check, const Scene& scene) {
                       "at most " + std::to_string(limits::kObjectTriangles) + " of all files together"});
 }
 
-// What waves that feel the floor need, and can't do yet.
+// What waves that feel the floor need, and can't do yet. Tiles do as masks do (core/plan/coast.h).
 void check_coast(SceneChecker& check, const Scene& scene) {
     const Waves& waves = scene.waves;
     if (!waves.coast) return;
     const auto refuse = [&](const std::string& problem, const std::string& accepted) {
         check.refuse({std::string(kCoastKey), "true", problem, accepted + ", or false"});
     };
-    if (waves.model != WaveModel::Trochoid)
-        refuse("turns wave trains, and waves.model = " + choice_text(waves.model) +
-                   " makes tiles, which are alike everywhere",
-               "waves.model = \"trochoid\"");
-    if (!waves.cascades.empty())
-        refuse("turns wave trains, and waves.cascades are tiles, which are alike everywhere",
-               "no waves.cascades");
+    const bool has_trains = waves.model == WaveModel::Trochoid;
+    if (has_trains && !waves.cascades.empty())
+        refuse("turns wave trains, and waves.cascades beside them are tiles, which are alike everywhere",
+               "no waves.cascades, or waves.model = \"fft\", whose tiles are lowered by the floor");
+    if (!has_trains && scene.output.cascade_tiles)
+        check.refuse({"output.cascade_tiles", "true",
+                      "asks for tiles, which are alike everywhere, and waves.coast makes places differ",
+                      "false, or waves.coast = false"});
     if (!waves.heroes.empty()) refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
-    if (std::ranges::any_of(scene.objects, [](const SceneObject& object) {
+    if (has_trains && std::ranges::any_of(scene.objects, [](const SceneObject& object) {
             return object.floats && object.buoyancy == Buoyancy::Response;
         }))
         refuse("turns waves, and objects[].buoyancy = \"response\" answers each as it comes from sea.depth_m",

@@ -11,6 +11,13 @@
 
 namespace pelagic {
 
+// φ at ωh: 0 … 1.
+inline double kitaigorodskii(double h) {
+    if (h <= 1.0) return 0.5 * h * h;
+    if (h < 2.0) return 1.0 - 0.5 * (2.0 - h) * (2.0 - h);
+    return 1.0;
+}
+
 struct Tma {
     JonswapShape jonswap;
     double sqrt_depth_over_g;  // s
@@ -19,12 +26,7 @@ struct Tma {
         : jonswap(deep), sqrt_depth_over_g(std::sqrt(depth_m / kGravity)) {}
 
     // φ at ω [rad/s]: 0 … 1.
-    double depth_factor(double omega) const {
-        const double h = omega * sqrt_depth_over_g;
-        if (h <= 1.0) return 0.5 * h * h;
-        if (h < 2.0) return 1.0 - 0.5 * (2.0 - h) * (2.0 - h);
-        return 1.0;
-    }
+    double depth_factor(double omega) const { return kitaigorodskii(omega * sqrt_depth_over_g); }
 
     // S [m² s] at ω > 0 [rad/s].
     double density(double omega) const { return jonswap.density(omega) * depth_factor(omega); }

@@ -80,6 +80,7 @@ class WaveSystem {
 
     // D's shape at this wavenumber, about direction() [rad], before directionality() is applied (directed.h).
     AngularShape shape(const WavePoint& point) const;
+    bool is_swell() const { return std::holds_alternative<SwellEnergy>(energy_); }
     double direction() const { return direction_; }
     double directionality() const { return directionality_; }
 

@@ -272,17 +272,6 @@ CoastRange range_of_cells(const Coast<T>& coast, std::size_t train, glm::ivec2 f
 
 }  // namespace
 
-CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count) {
-    CoastDepths depths{
-        .count = count, .from_m = map.from_m(), .cell_m = map.size_m() / glm::dvec2(count), .depth_m = {}};
-    for (int y = 0; y < count.y; ++y)
-        for (int x = 0; x < count.x; ++x) {
-            const glm::dvec2 from = depths.from_m + glm::dvec2(x, y) * depths.cell_m;
-            depths.depth_m.push_back(map.mean_m(from, from + depths.cell_m));
-        }
-    return depths;
-}
-
 bool coast_goes_along_y(const CoastDepths& of, glm::dvec2 direction) {
     constexpr double kDeepest_m = 40.0, kClearly = 1.5, kLeastFall = 0.05, kLeastAlong = 0.35;
     const auto felt_m = [&](int x, int y) { return std::clamp(of.depth_m[of.at(x, y)], 0.0, kDeepest_m); };
@@ -339,8 +328,8 @@ CoastWave march_coast(const CoastDepths& depths, double depth_m, double omega, g
 
 CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> m0,
                              std::span<const glm::dvec2> flux, glm::dvec2 towards, double peak_hz) {
-    constexpr double kGamma = 0.42, kMostTurn = 1.0 / kSteepestRay;
-    const double scale = 3.0 * std::sqrt(kPi) / 16.0 * peak_hz / std::pow(kGamma, 4.0);
+    constexpr double kMostTurn = 1.0 / kSteepestRay;
+    const double scale = 3.0 * std::sqrt(kPi) / 16.0 * peak_hz / std::pow(kSurfGamma, 4.0);
     const March march(depths, towards);
     CoastBreaking breaking;
     breaking.left.assign(m0.size(), 1.0);
@@ -377,8 +366,7 @@ CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> 
                 left = std::pow(std::pow(before, -2.5) + 2.5 * loss * step / along, -0.4);
             }
             breaking.left[cell] = left;
-            const double height_m = std::sqrt(8.0 * m0[cell] * left);
-            breaking.broken[cell] = std::min(std::pow(height_m / (kGamma * depth_m), 4.0), 1.0);
+            breaking.broken[cell] = surf_share(std::sqrt(8.0 * m0[cell] * left), depth_m);
         }
     return breaking;
 }
@@ -473,10 +461,9 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
         if (!broken.broken.empty()) coast.broken[cell] = static_cast<T>(broken.broken[cell]);
         coast.deviation_m[cell] = static_cast<T>(left * std::sqrt(m0[cell]));
     });
-    // Beyond the map, C¹. Its side over eight is some of its waves' lengths.
-    constexpr double kFade = 1.0 / 8.0, kSteepestFade = 1.5;
-    const glm::dvec2 size_m = glm::dvec2(coast.count) * coast.cell_m;
-    coast.fade_m = kFade * std::max(size_m.x, size_m.y);
+    // Beyond the map, C¹.
+    constexpr double kSteepestFade = 1.5;
+    coast.fade_m = coast_fade_m(glm::dvec2(coast.count) * coast.cell_m);
     coast.phase_fade_per_m.assign(coast.feeling + kVector, T(0));
     tbb::parallel_for(std::size_t(0), coast.feeling, [&](std::size_t i) {
         double most_phase = 0.0;
@@ -524,7 +511,7 @@ double quick_deviate(double share) {
 }
 
 template <class T>
-double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
+double coast_foam(const CoastSurf<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
                   const FootprintFilter& filter) {
     // Linear between cells' middles: foam has no slope.
     const glm::dvec2 at = glm::clamp((place_m - coast.from_m) / coast.cell_m - 0.5, glm::dvec2(0.0),
@@ -546,8 +533,8 @@ double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, do
     return shown * crest + (1.0 - shown) * share;
 }
 
-template double coast_foam(const Coast<float>&, glm::dvec2, double, double, const FootprintFilter&);
-template double coast_foam(const Coast<double>&, glm::dvec2, double, double, const FootprintFilter&);
+template double coast_foam(const CoastSurf<float>&, glm::dvec2, double, double, const FootprintFilter&);
+template double coast_foam(const CoastSurf<double>&, glm::dvec2, double, double, const FootprintFilter&);
 
 double CoastRange::most_wavenumber() const {
     return glm::length(glm::max(glm::abs(k_lo), glm::abs(k_hi)));

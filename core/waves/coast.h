@@ -24,26 +24,12 @@
 #include <span>
 #include <vector>
 
+#include "core/plan/coast.h"
 #include "core/plan/trains.h"
 #include "core/waves/trains.h"
 #include "pelagic/depth_map.h"
 
 namespace pelagic {
-
-inline constexpr double kCoastShore_m = 0.05;
-
-// The depths of a map's cells [m], columns fastest, rows from the south.
-struct CoastDepths {
-    glm::ivec2 count{0};
-    glm::dvec2 from_m{0.0}, cell_m{1.0};
-    std::vector<double> depth_m;
-
-    std::size_t at(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);
-    }
-};
-// Their means over a grid of so many cells.
-CoastDepths coast_depths(const DepthMap& map, glm::ivec2 count);
 
 // Whether a train that goes this way is marched along y: of the floor's mean slope over the map, as deep as waves feel it, the larger part
 // says so, if it is larger by far and the train goes that way at all; else the train does.
@@ -69,50 +55,25 @@ CoastBreaking break_on_coast(const CoastDepths& depths, std::span<const double> 
 // All of a sea's trains on its coast. Between cells' middles phases and amplitudes are quadratic B-splines, as pictures of masks are
 // (core/plan/masks.h): the surface is C¹, beyond the map's edge too, where they fade.
 template <class T>
-struct Coast {
-    glm::ivec2 count{0};
-    glm::dvec2 from_m{0.0}, cell_m{1.0};
+struct Coast : CoastSurf<T> {
+    using CoastSurf<T>::count, CoastSurf<T>::fade_m;
     // Of each cell side by side, the trains that feel the floor, longest first: `stride` numbers, a multiple of 64 bytes.
     std::size_t feeling = 0, stride = 0;
     std::vector<T> phase;   // (S − k₀·x)/2π [cycles]
     std::vector<T> gain;    // of amplitudes
     std::vector<T> others;  // that of all trains too short to feel it, a number a cell
-    // A number a cell: the share of waves that break, and the heights' standard deviation [m].
-    std::vector<T> broken, deviation_m;
-    double peak_per_m = 0.0;  // the wavenumber of the highest train where it comes from
     // Of each train of the sea, with zeros for a vector that begins at the last: its wavevector where it comes from [rad/m], its height [m], its
     // angular frequency, how far it moves water to the side over height times wavenumber [m], for its displacement and for that of the waves that
     // break, and how much of these is resolved at best.
     std::vector<T> kx, ky, height_m, omega, sideways_m, breaking_sideways_m, breaking;
     std::vector<T>
         longest_m;  // no deeper water makes it longer, nor the way back to plain trains beyond the map
-    // How far beyond the map gains and foam are 1 and none again [m]; of each train that feels the floor, one over how far its phase needs.
-    double fade_m = 1.0;
+    // Of each train that feels the floor, one over how far beyond the map its phase fades [1/m].
     std::vector<T> phase_fade_per_m;
 
     // The largest gain of each train that feels the floor, and of the others; the largest of gain times wavenumber [rad/m] of the former.
     std::vector<double> most_gain, most_sideways;
-
-    // From the map's nearest place to this one.
-    glm::dvec2 beyond_m(glm::dvec2 place_m) const {
-        return place_m - glm::clamp(place_m, from_m, from_m + glm::dvec2(count) * cell_m);
-    }
-    std::size_t cells() const {
-        return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y);
-    }
-    std::size_t cell(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);
-    }
 };
-
-// What is left of a map's part at so many times the distance over which it fades: 1 … 0, with its derivative.
-struct CoastFade {
-    double left, rate;
-};
-inline CoastFade coast_fade(double t) {
-    if (t >= 1.0) return {0.0, 0.0};
-    return {1.0 - t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t)};
-}
 
 // Of make_trains()'s. The scene must have waves.coast, and its depths.
 template <class T>
@@ -123,7 +84,7 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
 // crests, over kRoller of the share of waves that break; cells too wide for crests have that much throughout.
 inline constexpr double kRoller = 0.25;  // of a breaking wave's length: by eye
 template <class T>
-double coast_foam(const Coast<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
+double coast_foam(const CoastSurf<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
                   const FootprintFilter& filter);
 // The standard normal deviate below which a share lies, within 0.01 of the share, −7 … 7 (Bowling et al. 2009).
 double quick_deviate(double share);

@@ -73,7 +73,7 @@ std::vector<std::string> map_warning(const PreparedScene& prepared) {
     if (prepared.scene.waves.coast) return {};
     return {
         "waves don't feel the depths of sea.depth_file: the floor is seen there, and waves are those of " +
-        number_text(prepared.scene.sea.depth_m) + " m (sea.depth_m); waves.coast lets wave trains feel it"};
+        number_text(prepared.scene.sea.depth_m) + " m (sea.depth_m); waves.coast lets them feel it"};
 }
 
 // Waves come over a map's edge as they are in sea.depth_m, and over cells that hold them.
@@ -81,7 +81,9 @@ std::vector<std::string> coast_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.1, kSurf_m = 2.0;
     const Scene& scene = prepared.scene;
     const DirectionalSpectrum& spectrum = prepared.spectrum;
-    if (!scene.waves.coast || !scene.waves.coast_depths || !(spectrum.m0() > 0.0)) return {};
+    if (!scene.waves.coast || scene.waves.model != WaveModel::Trochoid || !scene.waves.coast_depths ||
+        !(spectrum.m0() > 0.0))
+        return {};
     const DepthMap& map = *scene.waves.coast_depths;
     std::vector<std::string> warnings;
     // Where the peak goes.

@@ -92,6 +92,12 @@ class Sea {
     const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
     // How the trains go where they feel the floor; null where they don't.
     const std::shared_ptr<const Coast<T>>& coast() const { return coast_; }
+    // Whether waves break on a coast's floor, of trains or of tiles; coast_foam() of it.
+    bool has_surf() const { return coast_ || (plan_.masks && plan_.masks->surf); }
+    double surf_foam(glm::dvec2 place_m, double height_m, double cell_m) const {
+        return coast_ ? coast_foam(*coast_, place_m, height_m, cell_m, plan_.filter)
+                      : coast_foam(*plan_.masks->surf, place_m, height_m, cell_m, plan_.filter);
+    }
     double loop_s() const { return loop_s_; }
     // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
     const SpectralMoments& total() const { return total_; }

@@ -525,18 +525,20 @@ class Drawing {
         });
     }
 
+    // Without what it refuses.
+    void fit_coast(std::initializer_list<const char*> refused) {
+        if (!is("waves.coast", true)) return;
+        if (!is("sea.depth_file", std::string(kFoamName))) return leave_out("waves.coast");
+        for (const char* path : refused) leave_out(path);
+    }
+
     void fit_trains() {
         if (!is("waves.model", std::string("trochoid"))) {
-            for (const char* path : {"waves.trains", "waves.shortest_m", "waves.longest_m", "waves.coast"})
-                leave_out(path);
+            fit_coast({"waves.heroes", "output.cascade_tiles"});
+            for (const char* path : {"waves.trains", "waves.shortest_m", "waves.longest_m"}) leave_out(path);
             return;
         }
-        if (is("waves.coast", true)) {
-            if (is("sea.depth_file", std::string(kFoamName)))
-                for (const char* path : {"waves.cascades", "waves.heroes"}) leave_out(path);
-            else
-                leave_out("waves.coast");
-        }
+        fit_coast({"waves.cascades", "waves.heroes"});
         const auto* cascades = list<std::vector<KeyEntry>>("waves.cascades");
         if (cascades && !cascades->empty() && made_.value("waves.shortest_m")) {
             const auto& first = cascades->front().values;
@@ -709,6 +711,7 @@ bool is_affordable(const RandomScene& random) {
         scene->surface.size_m / scene->output.voxel_m > 1.001 * cap(kVoxelsASide).high)
         return false;
     if (!scene->waves.cascades.empty() || scene->waves.model == WaveModel::Trochoid) return true;
+    scene->waves.coast = false;  // its depths aren't read, and cost next to nothing
     scene = settle(*scene, Purpose::Mesh, with_rates(recorded_rates())).scene;
     const int frame = scene->shot.first_frame;
     const std::size_t bytes =

@@ -943,7 +943,11 @@ TEST(FoamHistory, InSurfNoMoreIsLeftThanBreaks) {
     std::vector<glm::vec2> rest;
     for (const float x : {295.0f, 325.0f})
         for (int y = 0; y < 20; ++y) rest.emplace_back(x, 150.0f + 5.0f * static_cast<float>(y));
-    for (const double decay_s : {1.5, 4.0}) {
+    for (const auto& [model, decay_s] :
+         {std::pair(WaveModel::Trochoid, 1.5), std::pair(WaveModel::Trochoid, 4.0),
+          std::pair(WaveModel::Fft, 4.0)}) {
+        scene.waves.model = model;
+        scene.waves.trains = model == WaveModel::Fft ? Waves{}.trains : 60;
         scene.effects.foam_decay_s = decay_s;
         Shown shown(sea_of(scene, 0.5));
         double active[2] = {}, total[2] = {};

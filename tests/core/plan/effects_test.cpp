@@ -20,6 +20,11 @@ Scene with_all() {
     scene.effects.spray = true;
     scene.waves.masks = {{.waves = 0.5}};
     scene.waves.vessels = {{}};
+    scene.sea.depth_m = 20.0;
+    scene.sea.depth_file = "bay.exr";
+    scene.waves.coast = true;
+    scene.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.0f},
+                                                                glm::dvec2(), glm::dvec2(40.0, 20.0));
     return scene;
 }
 

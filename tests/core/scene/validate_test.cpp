@@ -268,7 +268,7 @@ TEST(Validate, FramesSeedAndLoop) {
     expect_refused([](Scene& s) { s.effects.foam_pattern_m = 4.0; },
                    {"effects.foam_pattern_m", "4", "10, or effects.foam_pattern = \"PATH.exr\""});
     expect_good([](Scene& s) { s.sea.depth_file = "reef.obj"; });
-    // Waves that feel the floor: of a picture, in a sea of trains alone that stays what it is.
+    // Waves that feel the floor: of a picture, of trains or tiles alone, in a sea that stays what it is.
     const auto coast = [](auto&& change) {
         return [=](Scene& s) {
             s.waves.model = WaveModel::Trochoid;
@@ -282,12 +282,34 @@ TEST(Validate, FramesSeedAndLoop) {
                    {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
     expect_refused(coast([](Scene& s) { s.sea.depth_file = "reef.obj"; }),
                    {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
-    expect_refused(coast([](Scene& s) { s.waves.model = WaveModel::Fft; }),
-                   {"waves.coast", "true", "waves.model = \"trochoid\", or false"});
+    const auto tiles = [&](auto&& change) {
+        return coast([=](Scene& s) {
+            s.waves.model = WaveModel::Fft;
+            s.waves.cascades = {{60.0, 128}};
+            change(s);
+        });
+    };
+    expect_good(tiles([](Scene&) {}));
+    expect_good(tiles([](Scene& s) {
+        s.objects = test::scene_with_body().objects;
+        s.objects[0].floats = true;
+        s.objects[0].buoyancy = Buoyancy::Response;
+    }));
+    expect_refused(tiles([](Scene& s) {
+                       s.output.cascade_tiles = true;
+                       s.output.maps = {MapKind::Normal};
+                   }),
+                   {"output.cascade_tiles", "true", "false, or waves.coast = false"});
+    expect_refused(tiles([](Scene& s) { s.waves.heroes = {{}}; }),
+                   {"waves.coast", "true", "no waves.heroes, or false"});
+    expect_refused(tiles([](Scene& s) {
+                       s.keyed = {{"sea.wind_speed_mps", {.keys = {{1, 5.0}, {40, 9.0}}}}};
+                   }),
+                   {"waves.coast", "true", "a sea without keys, or false"});
     expect_refused(coast([](Scene& s) {
                        s.waves.cascades = {{60.0, 128}};
                    }),
-                   {"waves.coast", "true", "no waves.cascades, or false"});
+                   {"waves.coast", "true", "no waves.cascades, or waves.model = \"fft\""});
     expect_refused(coast([](Scene& s) { s.waves.heroes = {{}}; }),
                    {"waves.coast", "true", "no waves.heroes, or false"});
     expect_refused(coast([](Scene& s) {

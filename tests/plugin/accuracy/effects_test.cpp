@@ -32,6 +32,7 @@ Scene without_effects() {
     scene.effects.whitecaps = false;
     scene.effects.foam_decay_s = 0.0;
     scene.effects.foam_structure = 0.0;
+    scene.sea.depth_file = "bay.exr";  // the floor that a coast feels is no part of it
     return scene;
 }
 
@@ -59,6 +60,12 @@ constexpr auto kSwitches = std::to_array<Switch>({
     {"wakes", [](Scene& scene) { scene.waves.vessels = {{}}; }},
     {"calm and rough places",
      [](Scene& scene) { scene.waves.masks = {{.waves = 0.5, .ripples = 0.0, .foam = 0.5}}; }},
+    {"tiles on a coast",
+     [](Scene& scene) {
+         scene.waves.coast = true;
+         scene.waves.coast_depths = std::make_shared<const DepthMap>(
+             glm::ivec2(2, 1), std::vector{3.0f, 4.0f}, glm::dvec2(), glm::dvec2(40.0, 20.0));
+     }},
 });
 
 Scene with_all_but(const std::string& name) {

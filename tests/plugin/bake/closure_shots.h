@@ -112,6 +112,16 @@ inline BaseShot coast_shot() {
     return base;
 }
 
+// The same beach under tiles.
+inline BaseShot coast_tiles_shot() {
+    BaseShot base = coast_shot();
+    base.name = "tiles on a beach";
+    base.scene.waves.model = WaveModel::Fft;
+    base.scene.waves.trains = Waves{}.trains;
+    base.scene.waves.cascades = small_shot().waves.cascades;
+    return base;
+}
+
 // The nearer the sea, the finer the grid's cells.
 inline void descend(Scene& scene) {
     scene.shot.first_frame = 2;

@@ -382,6 +382,9 @@ TEST_F(Closure, OfAProjectedGridOverAutomaticCascades) {
 TEST_F(Closure, OfTrainsOnABeach) {
     expect_closed(coast_shot());
 }
+TEST_F(Closure, OfTilesOnABeach) {
+    expect_closed(coast_tiles_shot());
+}
 TEST_F(Closure, OfAMeshFromNearToFar) {
     expect_closed(near_far_shot());
 }
@@ -436,7 +439,7 @@ TEST_F(Closure, PicturesCountByTheirContent) {
 TEST(ClosureEdits, ChangeEveryKeyThatHasAnotherValue) {
     std::set<std::string> changed;
     for (const BaseShot& base :
-         {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), coast_shot(), grid_shot(),
+         {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), coast_shot(), coast_tiles_shot(), grid_shot(),
           near_far_shot(), automatic_shot(), buoy_shot(), cage_shot(), adaptive_cage_shot(), daylight_shot(),
           sky_shot({"one.exr", "two.exr"}, {"three.exr", "four.exr"})})
         for (const Edit& edit : edits_of(base)) changed.insert(edit.key);

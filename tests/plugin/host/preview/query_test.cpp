@@ -411,17 +411,20 @@ TEST(SeaTables, OfSizesChosenForTheSceneFitEverywhere) {
 // A sea that is shown wrong is worse than one that isn't.
 TEST(SeaLayout, RefusesWavesThatFeelTheFloor) {
     Scene scene;
-    scene.waves.model = WaveModel::Trochoid;
     scene.sea.depth_file = "bay.exr";
     scene.waves.coast = true;
     scene.waves.coast_depths = std::make_shared<const DepthMap>(glm::ivec2(2, 1), std::vector{3.0f, 4.0f},
                                                                 glm::dvec2(0.0), glm::dvec2(20.0, 10.0));
-    const auto prepared = prepare(scene);
-    try {
-        SeaLayout::planes_of(make_plan(prepared, {view_query(*prepared)}), 0);
-        FAIL();
-    } catch (const std::invalid_argument& error) {
-        EXPECT_NE(std::string(error.what()).find("waves.coast = true: no graphics card"), std::string::npos);
+    for (const WaveModel model : {WaveModel::Trochoid, WaveModel::Fft}) {
+        scene.waves.model = model;
+        const auto prepared = prepare(scene);
+        try {
+            SeaLayout::planes_of(make_plan(prepared, {view_query(*prepared)}), 0);
+            FAIL();
+        } catch (const std::invalid_argument& error) {
+            EXPECT_NE(std::string(error.what()).find("waves.coast = true: no graphics card"),
+                      std::string::npos);
+        }
     }
 }
 

@@ -92,7 +92,7 @@ def split(text):
 
 def type_of(text, is_result):
     text = text.replace("pelagic.", "").replace("os.PathLike", "Path" if is_result else "str | PathLike[str]")
-    text = re.sub(r"List\[(\w+)\[\d+\]\]", r"List[\1]", text)  # an array of a fixed number
+    text = re.sub(r"(?<=[\w\]])\[\d+\]", "", text)  # an array of a fixed number
     text = text.replace("Tuple[", "tuple[")
     text = text.replace("List[", "list[" if is_result else "Sequence[")
     text = re.sub(r"numpy\.ndarray\[numpy\.(\w+)\]", r"NDArray[np.\1]", text)

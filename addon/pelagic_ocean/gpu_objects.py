@@ -8,6 +8,7 @@ Only a draw handler may call seen(): it needs the view's OpenGL context.
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+import bpy
 import gpu
 import numpy as np
 from mathutils import Euler, Matrix, Quaternion, Vector
@@ -20,6 +21,8 @@ _dirty = set()  # names of objects whose shape has changed since it was read
 def changed(depsgraph):
     """Takes notice of an update of the scene's."""
     _dirty.update(update.id.name for update in depsgraph.updates if update.is_updated_geometry and hasattr(update.id, "type"))
+    if any(isinstance(update.id, bpy.types.Image) for update in depsgraph.updates):
+        bodies.forget_pictures()
 
 
 @contextmanager
@@ -68,7 +71,7 @@ class Shape:
 
     def materials(self, slots):
         """The texture object_materials of its slots' materials."""
-        told = tuple(bodies.material_of(slot.material, {})[1:] for slot in slots) or (bodies.GREY[1:],)
+        told = tuple(bodies.material_of(slot.material, {}, {})[1:] for slot in slots) or (bodies.GREY[1:],)
         if told != self._told:
             texels = np.array([(*colour, roughness, *glow, 0.0) for colour, roughness, glow in told], np.float32)
             self._materials = gpu.types.GPUTexture((2, len(told)), format="RGBA32F", data=gpu.types.Buffer("FLOAT", texels.size, texels.ravel()))
@@ -133,7 +136,7 @@ class Objects:
                 evaluated = part.evaluated_get(depsgraph)
                 if part.name not in self._shapes:
                     read = bodies.triangles_of(evaluated)
-                    self._shapes[part.name] = Shape(*read) if read else None
+                    self._shapes[part.name] = Shape(*read[:4]) if read else None
                 shape = self._shapes[part.name]
                 if shape is not None:
                     body.parts.append(Part(part.name, shape, np.array(sea_from_world @ evaluated.matrix_world, float),

@@ -92,8 +92,10 @@ def put(context, sea, scene, folder):
         normals = shape.normals @ np.linalg.inv(linear)
         shape.normals = normals / np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-12)
         if np.linalg.det(linear) < 0.0:
-            shape.corners, shape.normals = shape.corners[:, ::-1], shape.normals[:, ::-1]
+            shape.corners, shape.normals, shape.places = shape.corners[:, ::-1], shape.normals[:, ::-1], shape.places[:, ::-1]
         if obj.pelagic_in_light.proxy < 100:
+            if shape.pictures:
+                remarks.append(f"{obj.name}: a proxy has the mean colours of its pictures")
             shape = bodies.proxy(context, shape, obj.pelagic_in_light.proxy)
         file = folder / f"{_free(ocean.clean_name(obj.name), files)}.obj"
         light = bodies.write(shape, file)

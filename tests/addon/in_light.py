@@ -252,6 +252,50 @@ with checking("said in a sentence: what rises, turns on the spot, changes its sh
     shot = exported("said")
     assert {each.name for each in shot.objects} == {turning.name, lift.name, soft.name}
 
+with checking("an image as base colour comes along, with its UV coordinates, and back again"):
+    sea = empty_sea()
+    block, bare, odd = cube(location=(0, 5, 0)), cube(location=(0, 9, 0)), cube(location=(0, 13, 0))
+    image = bpy.data.images.new("Chart", width=4, height=2)
+    # Rows from the bottom, of whole steps of eight bits.
+    pixels = np.ones((2, 4, 4), np.float32)
+    pixels[..., :3] = np.random.default_rng(1).integers(0, 256, (2, 4, 3)) / 255.0
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+    linear = np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4)[..., :3]
+
+    def painted(name, of, extension="REPEAT"):
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        tree = material.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image, texture.extension = of, extension
+        tree.links.new(texture.outputs["Color"], next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED").inputs["Base Color"])
+        return material
+
+    chart = painted("Chart paint", image)
+    for obj in (block, bare):
+        obj.data.materials.append(chart)
+    odd.data.materials.append(painted("Odd paint", image, "CLIP"))
+    bare.data.uv_layers.remove(bare.data.uv_layers[0])
+    block.data.calc_loop_triangles()
+    uv = np.array([[block.data.uv_layers.active.data[loop].uv[:] for loop in each.loops] for each in block.data.loop_triangles])
+    shot = exported("chart")
+    assert "Odd paint" in "\n".join(remarks()) and "Chart paint" not in "\n".join(remarks())
+    index = {each.name: number for number, each in enumerate(shot.objects)}
+    first = block.name
+    told = shot.object_mesh(index[first])
+    assert len(told["images"]) == 1 and np.allclose(told["images"][0], linear, rtol=2e-3, atol=1e-6), (told["images"], linear)
+    assert np.allclose(told["materials"][0]["colour"], linear.mean((0, 1)), atol=2e-3) and told["materials"][0]["image"] == 0
+    assert np.allclose(np.sort(told["image_at"].reshape(-1, 6), 0), np.sort(uv.reshape(-1, 6), 0), atol=1e-6)
+    told = shot.object_mesh(index[bare.name])
+    assert told["materials"][-1]["image"] == -1 and np.allclose(told["materials"][-1]["colour"], linear.mean((0, 1)), atol=2e-3)
+    assert not shot.object_mesh(index[odd.name])["images"]
+    fresh_file()
+    assert bpy.ops.pelagic.import_shot(filepath=str(FOLDER / "chart.toml")) == {"FINISHED"}
+    again = exported("chart-again")
+    one, other = (each.object_mesh([of.name for of in each.objects].index(first)) for each in (shot, again))
+    assert np.array_equal(one["images"][0], other["images"][0]) and np.allclose(one["image_at"], other["image_at"], atol=1e-6)
+
 with checking("a holdout, names for mattes, fewer triangles, and a list to take them out of"):
     sea = empty_sea()
     buoy = cube(location=(0, 5, 0))

@@ -117,11 +117,14 @@ std::string unpacked_bytes(LayerCursor& section, std::uint64_t most) {
     return out;
 }
 
+// Of a layer's tables: a small file may promise many, which take memory before they are read.
+constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 22;
+
 // Differences: two bits each say whether one is the commonest, or of 1, 2 or 4 bytes.
-std::vector<std::uint32_t> unpacked_numbers(LayerCursor& section, std::uint64_t count) {
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
+std::vector<std::uint32_t> unpacked_numbers(LayerCursor& section, std::uint64_t count,
+                                            std::uint64_t most = kMostEntries) {
     if (count == 0) return {};
-    if (count > kMost) refuse_layer();
+    if (count > most) refuse_layer();
     const std::string bytes = unpacked_bytes(section, 4 + (2 * count + 7) / 8 + 4 * count);
     LayerCursor in(bytes);
     const auto common = in.number<std::uint32_t>();
@@ -399,7 +402,7 @@ std::optional<std::vector<std::int32_t>> CrateLayer::integers(Node node, std::st
     std::uint64_t count = 0;
     LayerCursor in = elements(bytes_, *value, most, count);
     if ((*value & kIsPacked) == 0 || count < kLeastPacked) return in.numbers<std::int32_t>(count);
-    const auto read = unpacked_numbers(in, count);
+    const auto read = unpacked_numbers(in, count, most);
     return std::vector<std::int32_t>(read.begin(), read.end());
 }
 

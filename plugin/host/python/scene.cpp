@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/packing.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -302,9 +303,21 @@ py::dict mesh_of(const Scene& scene, py::ssize_t index) {
         each["colour"] = colour(material.colour);
         each["roughness"] = material.roughness;
         each["glow"] = colour(material.glow);
+        each["image"] = material.image;
         materials.append(each);
     }
     out["materials"] = materials;
+    py::list images;
+    for (const auto& image : data.images) {
+        const ObjectImage::Level& whole = image->levels().front();
+        py::array_t<float> pixels({py::ssize_t{whole.height}, py::ssize_t{whole.width}, py::ssize_t{3}});
+        std::transform(whole.rgb.begin(), whole.rgb.end(), pixels.mutable_data(),
+                       [](std::uint16_t half) { return glm::unpackHalf1x16(half); });
+        images.append(pixels);
+    }
+    out["images"] = images;
+    out["image_at"] = py::array_t<float>({static_cast<py::ssize_t>(data.image_at.size()), py::ssize_t{2}},
+                                         data.image_at.empty() ? nullptr : &data.image_at.data()->x);
     return out;
 }
 
@@ -387,7 +400,8 @@ void add_scene(py::module_& module) {
             "object_mesh", &mesh_of, py::arg("index"),
             "The mesh of a body of objects: points_m, float32 (n, 3); triangles, uint32 (m, 3), counter-clockwise seen from outside; "
             "normals of their corners, float32 (3 m, 3); material of each, uint16 (m,), into materials, a list of dictionaries of name, "
-            "colour (linear Rec. 709), roughness and glow (times glow_cd_m2). Empty of a body without a mesh. IndexError for one that "
+            "colour (linear Rec. 709), roughness, glow (times glow_cd_m2) and image, into images, -1 without one: float32 (height, width, 3) each, "
+            "linear Rec. 709, rows from the bottom; image_at of the corners, float32 (3 m, 2), empty without images. Empty of a body without a mesh. IndexError for one that "
             "isn't there.")
         .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "core/plan/effects.h"
 #include "core/plan/masks.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/gauss.h"
@@ -108,7 +109,7 @@ double TilesOverDepth::amplitude(double depth_m) const {
 
 void add_coast_mask(std::optional<MasksPlan>& masks, const Scene& scene,
                     const DirectionalSpectrum& spectrum) {
-    if (!scene.waves.coast || scene.waves.model != WaveModel::Fft || !(spectrum.m0() > 0.0)) return;
+    if (!is_on(Effect::Coast, scene) || !(spectrum.m0() > 0.0)) return;
     if (!scene.waves.coast_depths)
         throw std::invalid_argument("the depths of sea.depth_file weren't read, and waves.coast needs them");
     const DepthMap& map = *scene.waves.coast_depths;

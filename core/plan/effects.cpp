@@ -213,7 +213,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
     {.effect = Effect::Coast,
      .name = "tiles on a coast",
      .is_asked_for =
-         [](const Scene& scene) { return scene.waves.coast && scene.waves.model == WaveModel::Fft; },
+         [](const Scene& scene) { return scene.waves.model == WaveModel::Fft && scene.waves.coast; },
      .why_not = "waves.coast is false, or wave trains feel it",
      .turn_off =
          [](Scene& scene) {

@@ -207,6 +207,10 @@ TEST(CoastTiles, EndAshoreAndAreFiniteEverywhere) {
     const std::vector<Query> queries{unfiltered(kAllOfTiles)};
     const auto with = frame_of<double>(tiles(bed_of(plane_beach)), queries, kTilesTime_s),
                plain = frame_of<double>(tiles_alone(tiles(nullptr)), queries, kTilesTime_s);
+    // Halfway out of the map, half of it; its side over eight is the whole way.
+    const auto gain = [&](double y) { return with.sea().plan().masks->at({60.0, y}).waves; };
+    EXPECT_LT(gain(190.0), 0.9);
+    EXPECT_NEAR(gain(225.0), 0.5 * (1.0 + gain(190.0)), 2e-3);
     const std::vector<glm::dvec2> far{{2e4, 30.0}, {-3e3, 7.0}, {0.0, 253.0}};
     for (std::size_t i = 0; i < far.size(); ++i)
         EXPECT_EQ(sample(with, 0, far).vectors(Position)[i], sample(plain, 0, far).vectors(Position)[i]);

@@ -439,9 +439,9 @@ TEST_F(Closure, PicturesCountByTheirContent) {
 TEST(ClosureEdits, ChangeEveryKeyThatHasAnotherValue) {
     std::set<std::string> changed;
     for (const BaseShot& base :
-         {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), coast_shot(), coast_tiles_shot(), grid_shot(),
-          near_far_shot(), automatic_shot(), buoy_shot(), cage_shot(), adaptive_cage_shot(), daylight_shot(),
-          sky_shot({"one.exr", "two.exr"}, {"three.exr", "four.exr"})})
+         {patch_shot(), volumes_shot(), foam_shot(), trains_shot(), coast_shot(), coast_tiles_shot(),
+          grid_shot(), near_far_shot(), automatic_shot(), buoy_shot(), cage_shot(), adaptive_cage_shot(),
+          daylight_shot(), sky_shot({"one.exr", "two.exr"}, {"three.exr", "four.exr"})})
         for (const Edit& edit : edits_of(base)) changed.insert(edit.key);
     for (const Key& key : keys()) {
         const bool has_one_value = key.type == KeyType::Word && key.choices.size() < 2;

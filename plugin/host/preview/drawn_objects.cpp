@@ -426,7 +426,7 @@ void DrawnObjects::draw_all(const ShaderProgram& program, const glm::dmat4& clip
 
 void DrawnObjects::draw_into(const Seen& seen, const ShaderProgram& program, int first_unit) const {
     glBindFramebuffer(GL_FRAMEBUFFER, seen.framebuffer.name());
-    glViewport(0, 0, seen.size.x, seen.size.y);
+    glViewport(0, 0, seen.from.size.x, seen.from.size.y);
     glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     draw_all(program, seen.from.clip_from_grid, seen.from.eye_m, first_unit);

@@ -70,7 +70,6 @@ def triangles_of(evaluated, layers=tuple):
 def shape_of(parts, depsgraph, into):
     """The Shape of some objects, with their modifiers and the collections that they stand for, as evaluated; into: a matrix from the world
     to the shape's coordinates. And sentences about what of their materials it leaves out."""
-    forget_pictures()
     made, materials, remarks, pictures = [], {}, {}, {}
     for part in parts:
         if part.type in SHAPES:
@@ -86,7 +85,8 @@ def shape_of(parts, depsgraph, into):
     starts = np.cumsum([0] + [len(arrays[0]) for arrays in made[:-1]])
     points, corners, normals, material, places = ([arrays[i] for arrays in made] for i in range(5))
     return Shape(np.concatenate(points), np.concatenate([each + start for each, start in zip(corners, starts)]), np.concatenate(normals),
-                 np.concatenate(material), list(materials), np.concatenate(places), {name: image for name, (image, _) in pictures.items()}), [f"{what}: {', '.join(sorted(names))}" for what, names in remarks.items()]
+                 np.concatenate(material), list(materials), np.concatenate(places),
+                 {name: image for name, (image, _) in pictures.items()}), [f"{what}: {', '.join(sorted(names))}" for what, names in remarks.items()]
 
 
 def _arrays(evaluated, matrix, materials, remarks, pictures):
@@ -144,8 +144,9 @@ def _encoded(linear):
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0) ** (1.0 / 2.4) - 0.055)
 
 
-def _display(image):
-    """The picture's pixels as sRGB, 0 … 1, (height, width, 4) from the bottom; None of one that has none, or of a colour space that isn't known."""
+def _display(image, most=1 << 30):
+    """The picture's pixels as sRGB, 0 … 1, (height, width, 4) from the bottom, every n-th where a side has more than that; None of one that has none,
+    or of a colour space that isn't known."""
     if image.source not in {"FILE", "GENERATED"} or not all(image.size) or image.channels < 3:
         return None
     space = image.colorspace_settings.name
@@ -154,6 +155,8 @@ def _display(image):
         return None
     pixels = np.empty((image.size[1], image.size[0], image.channels), np.float32)
     image.pixels.foreach_get(pixels.ravel())
+    step = -(-max(image.size) // most)
+    pixels = pixels[::step, ::step]
     out = np.ones((*pixels.shape[:2], 4), np.float32)
     out[..., :3] = np.clip(np.nan_to_num(_encoded(pixels[..., :3]) if is_linear else pixels[..., :3]), 0.0, 1.0)
     return out
@@ -179,8 +182,8 @@ def mean_colour(image):
     """Linear; None of a picture that doesn't come along. Kept until forget_pictures(): the viewport asks at every redraw."""
     key = image.as_pointer(), image.name_full, image.filepath, tuple(image.size), image.colorspace_settings.name
     if key not in _means:
-        pixels = _display(image)
-        _means[key] = None if pixels is None else tuple(_decoded(pixels[..., :3].astype(float)).mean((0, 1)).tolist())
+        pixels = _display(image, 2048)
+        _means[key] = None if pixels is None else tuple(_decoded(pixels[..., :3]).mean((0, 1), dtype=float).tolist())
     return _means[key]
 
 
@@ -292,7 +295,7 @@ def write(shape, file):
     places = shape.places[order] if shape.pictures else np.empty((0, 3, 2))
     if len(places):
         is_there = np.isfinite(places).all((1, 2))
-        at, which_at = np.unique(np.nan_to_num(places).reshape(-1, 2), axis=0, return_inverse=True)
+        at, which_at = np.unique(np.where(is_there[:, None, None], places, 0.0).reshape(-1, 2), axis=0, return_inverse=True)
         out.append(_rows("vt", at, 7))
         which_at = which_at.reshape(-1, 3) + 1
     if len(shape.normals):
@@ -326,8 +329,10 @@ def _save(image, file):
     try:
         made.colorspace_settings.name = "sRGB"
         made.pixels.foreach_set(pixels.ravel())
-        made.filepath_raw, made.file_format = str(file), "PNG"
+        beside = file.with_name(file.name + ".part")
+        made.filepath_raw, made.file_format = str(beside), "PNG"
         made.save()
+        beside.replace(file)
     finally:
         bpy.data.images.remove(made)
 

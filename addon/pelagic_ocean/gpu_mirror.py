@@ -55,7 +55,7 @@ class Mirror:
                 for part in body.parts:
                     matrix = to_grid @ part.matrix
                     shader.bind()
-                    put(shader, {**uniforms, "object_holdout": int(body.holdout), "object_water_m": body.water_m,
+                    put(shader, {**uniforms, "object_water_m": body.water_m,
                                  "clip_from_object": Matrix((clip @ matrix).tolist()), "grid_from_object": Matrix(matrix.tolist())},
                         {**textures, "object_materials": part.materials})
                     part.shape.batch.draw(shader)

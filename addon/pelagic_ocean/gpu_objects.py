@@ -92,7 +92,6 @@ class Body:
     matrix: np.ndarray  # from the body's own axes to the sea's coordinates (4, 4)
     water_m: float  # height of the water at it, in the sea's coordinates
     floats: bool
-    holdout: bool
     per_s: np.ndarray  # how the matrix changes in a second of the sea, but for the waves (4, 4)
     parts: list = field(default_factory=list)
 
@@ -126,10 +125,13 @@ class Objects:
             return []
         depsgraph, found = context.evaluated_depsgraph_get(), []
         for obj in chosen:
-            matrix = np.array(sea_from_world @ obj.evaluated_get(depsgraph).matrix_world, float)
+            world = obj.evaluated_get(depsgraph).matrix_world
+            matrix = np.array(sea_from_world @ world, float)
+            # As exported: what a scale does to the shape is the parts'.
+            stiff = np.array(sea_from_world @ Matrix.LocRotScale(world.to_translation(), world.to_quaternion(), None), float)
             calm = np.array(sea_from_world @ floating.calm_matrix(obj, depsgraph), float)
             change = np.array(sea_from_world @ _change(obj, context.scene.frame_current_final) @ sea_from_world.inverted_safe(), float)
-            body = Body(matrix, _water_m(matrix, calm), floating.is_afloat(obj), obj.is_holdout, change @ matrix / frame_s if frame_s else np.zeros((4, 4)))
+            body = Body(stiff, _water_m(matrix, calm), floating.is_afloat(obj), change @ stiff / frame_s if frame_s else np.zeros((4, 4)))
             for part in bodies.members(obj, in_light.is_body):
                 if part.type not in bodies.SHAPES or not part.visible_get():
                     continue
@@ -152,7 +154,7 @@ def _water_m(matrix, calm):
 
 
 def _change(obj, frame):
-    """How an object's matrix in calm water changes a frame, times its inverse, by the keyframes of its own and of what it is parented to: what
+    """How an object's matrix in calm water changes each frame, times its inverse, by the keyframes of its own and of what it is parented to: what
     constraints and drivers do at another frame isn't known while a view is drawn."""
     chain = [obj]
     while chain[-1].parent is not None and chain[-1].parent_type == "OBJECT":

@@ -64,6 +64,7 @@ def put(context, sea, scene, folder):
     chosen = [obj for obj in of_scene(bpy_scene) if not obj.hide_render]
     if not chosen:
         return remarks
+    bodies.forget_pictures()
     ways, shapes = {obj: {} for obj in chosen}, {obj: [] for obj in chosen}
     looked_at = {bpy_scene.frame_start, (bpy_scene.frame_start + bpy_scene.frame_end) // 2, bpy_scene.frame_end}
     for frame, depsgraph in camera.frames(context, False):

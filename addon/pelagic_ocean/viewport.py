@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, gpu_objects, handlers, keyed, light, ocean, play
+from . import bodies, compat, gpu_objects, handlers, keyed, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -35,6 +35,7 @@ class Preview:
     def __init__(self, obj):
         self.name = obj.name_full
         self._obj = obj
+        bodies.forget_pictures()  # nobody saw whether they changed while there was no preview
         self.drawing, self.objects = Drawing(), gpu_objects.Objects()
         self.hidden_in = {}  # (names of scene and view layer): whether it was selected there
         self.problem = ""

@@ -68,10 +68,12 @@ void check_values(const ObjectMeshData& mesh) {
             !kShare.holds(material.roughness))
             refuse("the material " + quoted_text(material.name) + " has a number outside the range",
                    text_of(kShare));
+    for (const auto& image : mesh.images)
+        if (!image) refuse("a picture is missing", "one for each of images");
     for (const ObjectMaterial& material : mesh.materials)
         if (material.image != -1 &&
             (material.image < 0 || static_cast<std::size_t>(material.image) >= mesh.images.size() ||
-             !mesh.images[static_cast<std::size_t>(material.image)] || mesh.image_at.empty()))
+             mesh.image_at.empty()))
             refuse("the material " + quoted_text(material.name) + " has the picture " +
                        std::to_string(material.image),
                    "-1 for none, or one of images, with places in it (image_at)");
@@ -150,7 +152,7 @@ ObjectMesh::ObjectMesh(ObjectMeshData data, std::vector<std::string> notes)
 
 std::size_t ObjectMesh::bytes() const {
     std::size_t pictures = bytes_of(data_.images) + bytes_of(data_.image_at);
-    for (const auto& image : data_.images) pictures += image ? image->bytes() : 0;
+    for (const auto& image : data_.images) pictures += image->bytes();
     return sizeof *this + bytes_of(data_.points_m) + bytes_of(data_.triangles) + bytes_of(data_.normals) +
            bytes_of(data_.material) + bytes_of(data_.materials) + pictures;
 }

@@ -37,6 +37,7 @@ Lamps::Lamps(const Scene& scene) : scene_(scene), lamp_of_(scene.objects.size())
     for (std::size_t body = 0; body < scene.objects.size(); ++body) {
         if (!has_some(scene.objects[body])) continue;
         const ObjectMeshData& mesh = scene.objects[body].mesh->data();
+        parts_.reserve(parts_.size() + mesh.material.size());
         Group group{.body = body, .first = parts_.size(), .last = 0, .lamp = {}};
         for (std::uint32_t triangle = 0; triangle < mesh.material.size(); ++triangle)
             if (power_of(body, triangle) > 0.0f) parts_.push_back({triangle, 0.0f});
@@ -49,7 +50,7 @@ Lamps::Lamps(const Scene& scene) : scene_(scene), lamp_of_(scene.objects.size())
     while (groups_.size() < kMostLamps && split_widest()) {
     }
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        // Round the lamp, so that even numbers are even over the sides that a place sees and those that it doesn't.
+        // In order of azimuth, so that even numbers spread over all sides.
         const auto side_of = [&](const Part& part) {
             const auto [a, b, c] = corners_of(groups_[g].body, part.triangle);
             const glm::vec3 normal = glm::cross(b - a, c - a);
@@ -103,7 +104,7 @@ void Lamps::find_bounds(Group& group) const {
                   .power = static_cast<float>(power)};
 }
 
-// Lamps that stand apart are lamps of their own: the widest group first, where what shines of it is little beside its round.
+// Lamps that stand apart are lamps of their own: the widest group first, while its area is small beside its sphere.
 bool Lamps::split_widest() {
     std::size_t widest = groups_.size();
     for (std::size_t g = 0; g < groups_.size(); ++g) {

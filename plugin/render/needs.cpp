@@ -232,7 +232,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     std::set<const ObjectMesh*> counted;  // bodies of one file share its mesh
     for (const SceneObject& object : scene.objects)
         if (counted.insert(object.mesh.get()).second) meshes += object.mesh->bytes();
-    if (meshes > 0) need.add("the objects' meshes", meshes, "give coarser ones");
+    if (meshes > 0) need.add("the objects' meshes", meshes, "give coarser ones, or smaller pictures on them");
     const bool has_objects = !scene.objects.empty();
     if (has_objects) {
         const auto rows = static_cast<std::size_t>(std::min(

@@ -552,8 +552,9 @@ bool LitObjects::shows(const glm::vec3& place, const Lamps::Light& light) const 
     const glm::vec3 there = place + light.distance_m * light.towards;
     if (there.z < bodies_[light.body].water_m) return false;  // for rays, too, the water ends the air
     const float short_of_m = off_surface_m(there) + 1e-5f * light.distance_m;
-    return !is_blocked(
-        {.from = place, .towards = light.towards, .farthest_m = light.distance_m - short_of_m});
+    return !is_blocked({.from = place,
+                        .towards = light.towards,
+                        .farthest_m = std::max(light.distance_m - short_of_m, 0.0f)});
 }
 
 glm::vec3 LitObjects::light_of(const LampsOver& lamps, const auto& part, const auto& number) const {
@@ -568,7 +569,7 @@ glm::vec3 LitObjects::light_of(const LampsOver& lamps, const auto& part, const a
         const float density = static_cast<float>(lamps.count) * lamps.choice.chance(lamp) * light.density +
                               static_cast<float>(lamps.rays) * of.density;
         float share = of.weight / density;
-        // Much nearer than a lamp is large one of its places alone may say any much. All round there is no more than π.
+        // Much nearer than a lamp is large one place alone may count far too much. The whole hemisphere has no more than π.
         if (lamps.rays == 0) share = std::min(share, kMostOfPlace * kPi_f / static_cast<float>(lamps.count));
         sum += share * light.radiance;
     }

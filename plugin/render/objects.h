@@ -91,7 +91,7 @@ class LitObjects {
     bool has_lamps() const { return !lamps_.all().empty(); }
     // What facets of the sea at a place mirror of lamps, by places on these beside rays of the facets. Each counts by its part of how
     // densely both look there (the balance heuristic, Veach and Guibas 1995): small lamps are found by their places, and mirrors of lamps by
-    // rays. Of a lamp counts what it is brighter than the sky behind it, the rest is for rays alone.
+    // rays. A lamp counts by how much it is brighter than the sky behind it; rays alone have the rest.
     struct LampsInSea {
         std::optional<SeaFacets> facets{};
         glm::vec3 place{0.0f};              // where rays begin

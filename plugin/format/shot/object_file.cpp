@@ -32,7 +32,7 @@ std::shared_ptr<const ObjectMesh> from_usd(std::string_view bytes) {
         body = usd::read_body(bytes, 3 * limits::kObjectTriangles);
     } catch (const usd::ReadError& error) {
         throw ObjError(
-            std::string("the mesh ") + error.what(),
+            "the mesh " + line_text(error.what()),
             "a crate (.usdc) with meshes of its own: usdcat --flatten -o NAME.usdc, or export it as OBJ");
     }
     const auto refuse = [](const std::string& problem, const std::string& accepted) {
@@ -85,6 +85,7 @@ std::shared_ptr<const ObjectMesh> from_usd(std::string_view bytes) {
         refuse("has too many triangles or points", "at most " + std::to_string(limits::kObjectTriangles));
     ObjectMeshData made = polygons.triangles(std::move(materials), {});
     if (made.triangles.empty()) refuse("has no face with an area", "at least one with an area");
+    for (std::string& note : body.notes) note = line_text(note);  // names in a crate may be anything
     return std::make_shared<const ObjectMesh>(std::move(made), std::move(body.notes));
 }
 
@@ -93,7 +94,8 @@ std::shared_ptr<const ObjectMesh> from_usd(std::string_view bytes) {
 std::shared_ptr<const ObjectMesh> load_object(const std::filesystem::path& file) {
     constexpr const char* kAccepted = "a Wavefront OBJ or a USD crate of at most 1 GiB";
     const std::string name = file.filename().string();
-    const bool is_usd = has_ending(name, ".usdc") || has_ending(name, ".usd") || has_ending(name, ".usda");
+    const bool is_usd = has_ending(name, ".usdc") || has_ending(name, ".usd") || has_ending(name, ".usda") ||
+                        has_ending(name, ".usdz");
     if (!is_usd && !has_ending(name, ".obj"))
         throw ObjError("is neither Wavefront OBJ nor USD",
                        "a mesh exported as .obj, z up and in metres, or as .usdc");

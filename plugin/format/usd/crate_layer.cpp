@@ -186,9 +186,12 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
 
     LayerCursor tokens = section("TOKENS");
     const auto token_count = tokens.number<std::uint64_t>(), token_size = tokens.number<std::uint64_t>();
+    if (token_count > kMostEntries) refuse_layer();
     token_bytes_ = unpacked_bytes(tokens, std::min(token_size, kMostTokenBytes));
     std::string_view text = token_bytes_;
-    for (std::size_t end = 0; (end = text.find('\0')) != std::string_view::npos; text.remove_prefix(end + 1))
+    for (std::size_t end = 0;
+         tokens_.size() <= token_count && (end = text.find('\0')) != std::string_view::npos;
+         text.remove_prefix(end + 1))
         tokens_.push_back(text.substr(0, end));
     if (token_bytes_.size() != token_size || tokens_.size() != token_count) refuse_layer();
 

@@ -517,7 +517,7 @@ class GpuSea {
         return dict_of(water_);
     }
 
-    // The same holds of it.
+    // As water(): kept while scene and light are the same.
     py::dict surroundings(const Scene& scene, const std::shared_ptr<const GpuLight>& light) const {
         std::string from = canonical(scene);
         if (const auto tables = now(); light != surroundings_of_ || from != surroundings_from_) {
@@ -857,7 +857,7 @@ void add_viewport(py::module_& module) {
             "four, at (width, 0) and its own size more. That shader's attributes are place_in and normal_in (three each, the object's own) and "
             "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0. Its uniforms besides "
             "GpuLight's, surroundings() and those of shadows: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
-            "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), bool object_holdout, object_water_m (height of the water), "
+            "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), object_water_m (height of the water), "
             "shadow_texel_m (how far off its own surface a place asks for its shadow).")
         .def_property_readonly(
             "uniforms", &GpuSea::uniforms,
@@ -877,7 +877,7 @@ void add_viewport(py::module_& module) {
             "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea and this GpuLight serve has it, "
             "for a grid's origin [m].")
         .def(
-            "surroundings", &GpuSea::surroundings, py::arg("scene"), py::arg("light"),
+            "surroundings", &GpuSea::surroundings, py::arg("scene"), py::arg("light").none(false),
             "Uniforms of the shader \"object\" by name: the light of sky and sea round bodies, of a scene that this sea and this GpuLight serve.")
         .def("water", &GpuSea::water, py::arg("scene"),
              "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")

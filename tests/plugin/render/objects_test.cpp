@@ -1236,6 +1236,26 @@ TEST(Lamps, LightBodiesAndTheSea) {
     EXPECT_GT(expected, 1.0);
     EXPECT_NEAR(shown, expected, 0.02 * expected);
 
+    // Foam, by the slopes that are resolved.
+    Scene windy = scene;
+    windy.sea.wind_speed_mps = 16.0;
+    windy.objects[0].mesh = coarse_sphere(kRadius, glm::vec3(centre), 32, kGlows);
+    const Picture foam_by_lamp = picture_of(windy, options_of(windy), dark_sky());
+    windy.objects.clear();
+    const Picture foam_by_sky = picture_of(windy, options_of(windy), uniform_sky());
+    shown = expected = 0.0;
+    for (std::size_t i = 0; i < foam_by_lamp.layers.size(); ++i) {
+        if (!foam_by_lamp.sea[i]) continue;
+        const glm::dvec3 place(vector_of(foam_by_lamp, PictureLayer::Position, i)),
+            normal(vector_of(foam_by_lamp, PictureLayer::Normal, i));
+        shown += static_cast<double>(foam_by_lamp.layers[i].foam.y);
+        expected += static_cast<double>(foam_by_sky.layers[i].foam.y) * beam(place) *
+                    std::max(glm::dot(normal, glm::normalize(centre - place)), 0.0) /
+                    (kPi * static_cast<double>(kSkyRadiance));
+    }
+    EXPECT_GT(expected, 0.1);
+    EXPECT_NEAR(shown, expected, 0.05 * expected);
+
     const ObjectMaterial plaster{.name = "plaster", .colour = glm::vec3(0.6f), .roughness = 1.0f};
     scene.objects.push_back(object(box({-20, -12, -1}, {20, 20, 0.5f}, plaster), "floor"));
     const Picture on_floor = picture_of(scene, options_of(scene), dark_sky());

@@ -603,8 +603,8 @@ TEST(PreviewsObjects, AreCountedInTheMemory) {
     gpu::need_context();
     const Scene bare = object_scene(8.0, 35.0);
     Scene with = with_box(bare);
-    with.objects.front().foam = 0.0;  // which would ask the sea for more
-    EXPECT_GT(DrawnObjects::bytes(with), std::size_t{16} << 20);
+    with.objects.front().foam = 0.0;                              // which would ask the sea for more
+    EXPECT_GT(DrawnObjects::bytes(with), std::size_t{80} << 20);  // two pictures and the shadow
     EXPECT_EQ(DrawnObjects::bytes(bare), 0u);
     EXPECT_EQ(offscreen_memory(plan_offscreen(with, 1), 2).bytes(),
               offscreen_memory(plan_offscreen(bare, 1), 2).bytes() + DrawnObjects::bytes(with));

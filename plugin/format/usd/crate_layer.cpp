@@ -10,6 +10,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "plugin/format/usd/crate_cursor.h"
+
 namespace pelagic::usd {
 namespace {
 
@@ -37,49 +39,13 @@ enum class LayerType : std::uint32_t {
 constexpr std::uint64_t kIsArray = std::uint64_t{1} << 63, kIsInlined = std::uint64_t{1} << 62,
                         kIsPacked = std::uint64_t{1} << 61, kPayload = (std::uint64_t{1} << 48) - 1;
 
-[[noreturn]] void refuse_layer() {
-    throw ReadError("is cut short or damaged");
-}
-
 LayerType type_of(std::uint64_t value) {
     return static_cast<LayerType>(value >> 48 & 0xff);
 }
 
-class LayerCursor {
-  public:
-    explicit LayerCursor(std::string_view bytes, std::uint64_t begin = 0) : bytes_(bytes) {
-        if (begin > bytes_.size()) refuse_layer();
-        bytes_.remove_prefix(begin);
-    }
-    std::string_view take(std::uint64_t count) {
-        if (count > bytes_.size()) refuse_layer();
-        const std::string_view taken = bytes_.substr(0, count);
-        bytes_.remove_prefix(count);
-        return taken;
-    }
-    template <class T>
-    T number() {
-        T value;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
-    template <class T>
-    std::vector<T> numbers(std::uint64_t count) {
-        if (count > bytes_.size() / sizeof(T)) refuse_layer();
-        std::vector<T> values(count);
-        const std::string_view taken = take(count * sizeof(T));
-        if (count > 0) std::memcpy(values.data(), taken.data(), taken.size());
-        return values;
-    }
-    std::size_t left() const { return bytes_.size(); }
-
-  private:
-    std::string_view bytes_;
-};
-
 // A block of LZ4, onto `out`, which becomes at most so long.
 void unpack_lz4(std::string_view block, std::size_t most, std::string& out) {
-    LayerCursor in(block);
+    CrateCursor in(block);
     const auto length_of = [&](std::size_t length) {
         if (length < 15) return length;
         for (std::uint8_t more = 255; more == 255; length += more) more = in.number<std::uint8_t>();
@@ -89,18 +55,18 @@ void unpack_lz4(std::string_view block, std::size_t most, std::string& out) {
     while (in.left() > 0) {
         const auto token = in.number<std::uint8_t>();
         const std::string_view literals = in.take(length_of(token >> 4));
-        if (literals.size() > most - out.size()) refuse_layer();
+        if (literals.size() > most - out.size()) refuse_cut();
         out += literals;
         if (in.left() == 0) break;  // the last sequence has no match
         const std::size_t offset = in.number<std::uint16_t>(), length = length_of(token & 15) + 4;
-        if (offset == 0 || offset > out.size() - begin || length > most - out.size()) refuse_layer();
+        if (offset == 0 || offset > out.size() - begin || length > most - out.size()) refuse_cut();
         for (std::size_t i = 0; i < length; ++i) out += out[out.size() - offset];  // may repeat itself
     }
 }
 
 // Its size, and one block, or several with their number and sizes.
-std::string unpacked_bytes(LayerCursor& section, std::uint64_t most) {
-    LayerCursor packed(section.take(section.number<std::uint64_t>()));
+std::string unpacked_bytes(CrateCursor& section, std::uint64_t most) {
+    CrateCursor packed(section.take(section.number<std::uint64_t>()));
     // LZ4 packs no more than 255 bytes in one.
     if (most / 256 > packed.left() + 16) most = 256 * (packed.left() + 16);
     std::string out;
@@ -110,7 +76,7 @@ std::string unpacked_bytes(LayerCursor& section, std::uint64_t most) {
     } else {
         for (std::uint8_t i = 0; i < chunks; ++i) {
             const auto size = packed.number<std::int32_t>();
-            if (size < 0) refuse_layer();
+            if (size < 0) refuse_cut();
             unpack_lz4(packed.take(static_cast<std::uint64_t>(size)), most, out);
         }
     }
@@ -121,12 +87,12 @@ std::string unpacked_bytes(LayerCursor& section, std::uint64_t most) {
 constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 22;
 
 // Differences: two bits each say whether one is the commonest, or of 1, 2 or 4 bytes.
-std::vector<std::uint32_t> unpacked_numbers(LayerCursor& section, std::uint64_t count,
+std::vector<std::uint32_t> unpacked_numbers(CrateCursor& section, std::uint64_t count,
                                             std::uint64_t most = kMostEntries) {
     if (count == 0) return {};
-    if (count > most) refuse_layer();
+    if (count > most) refuse_cut();
     const std::string bytes = unpacked_bytes(section, 4 + (2 * count + 7) / 8 + 4 * count);
-    LayerCursor in(bytes);
+    CrateCursor in(bytes);
     const auto common = in.number<std::uint32_t>();
     const std::string_view codes = in.take((2 * count + 7) / 8);
     std::vector<std::uint32_t> numbers(count);
@@ -151,11 +117,11 @@ std::vector<std::uint32_t> unpacked_numbers(LayerCursor& section, std::uint64_t 
 }
 
 // An array's elements begin after their number.
-LayerCursor elements(std::string_view file, std::uint64_t value, std::size_t most, std::uint64_t& count) {
+CrateCursor elements(std::string_view file, std::uint64_t value, std::size_t most, std::uint64_t& count) {
     const std::uint64_t place = value & kPayload;
     count = 0;
-    if (place == 0) return LayerCursor({});
-    LayerCursor in(file, place);
+    if (place == 0) return CrateCursor({});
+    CrateCursor in(file, place);
     count = in.number<std::uint64_t>();
     if (count > most)
         throw ReadError("has an array of " + std::to_string(count) + " elements, more than a body may have");
@@ -167,47 +133,47 @@ LayerCursor elements(std::string_view file, std::uint64_t value, std::size_t mos
 CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
     constexpr std::size_t kVersionPlace = 8, kContentsPlace = 16, kNameBytes = 16;
     constexpr std::uint64_t kMostTokenBytes = std::uint64_t{1} << 30;
-    const std::string_view version = LayerCursor(bytes, kVersionPlace).take(2);
+    const std::string_view version = CrateCursor(bytes, kVersionPlace).take(2);
     if (version[0] != 0 || version[1] < 7)
         throw ReadError("is a crate of version " + std::to_string(version[0]) + '.' +
                         std::to_string(version[1]) + ", which isn't read");
-    LayerCursor contents(bytes, LayerCursor(bytes, kContentsPlace).number<std::uint64_t>());
+    CrateCursor contents(bytes, CrateCursor(bytes, kContentsPlace).number<std::uint64_t>());
     const auto sections = contents.number<std::uint64_t>();
     const auto section = [&](std::string_view wanted) {
-        LayerCursor list = contents;
+        CrateCursor list = contents;
         for (std::uint64_t i = 0; i < sections; ++i) {
             const std::string_view padded = list.take(kNameBytes);
             const auto place = list.number<std::uint64_t>(), size = list.number<std::uint64_t>();
             if (padded.substr(0, padded.find('\0')) == wanted)
-                return LayerCursor(LayerCursor(bytes, place).take(size));
+                return CrateCursor(CrateCursor(bytes, place).take(size));
         }
-        refuse_layer();
+        refuse_cut();
     };
 
-    LayerCursor tokens = section("TOKENS");
+    CrateCursor tokens = section("TOKENS");
     const auto token_count = tokens.number<std::uint64_t>(), token_size = tokens.number<std::uint64_t>();
-    if (token_count > kMostEntries) refuse_layer();
+    if (token_count > kMostEntries) refuse_cut();
     token_bytes_ = unpacked_bytes(tokens, std::min(token_size, kMostTokenBytes));
     std::string_view text = token_bytes_;
     for (std::size_t end = 0;
          tokens_.size() <= token_count && (end = text.find('\0')) != std::string_view::npos;
          text.remove_prefix(end + 1))
         tokens_.push_back(text.substr(0, end));
-    if (token_bytes_.size() != token_size || tokens_.size() != token_count) refuse_layer();
+    if (token_bytes_.size() != token_size || tokens_.size() != token_count) refuse_cut();
 
-    LayerCursor fields = section("FIELDS");
+    CrateCursor fields = section("FIELDS");
     const auto field_count = fields.number<std::uint64_t>();
     field_tokens_ = unpacked_numbers(fields, field_count);
     const std::string values = unpacked_bytes(fields, sizeof(std::uint64_t) * field_count);
-    field_values_ = LayerCursor(values).numbers<std::uint64_t>(field_count);
-    LayerCursor sets = section("FIELDSETS");
+    field_values_ = CrateCursor(values).numbers<std::uint64_t>(field_count);
+    CrateCursor sets = section("FIELDSETS");
     field_sets_ = unpacked_numbers(sets, sets.number<std::uint64_t>());
 
-    LayerCursor paths = section("PATHS");
+    CrateCursor paths = section("PATHS");
     const auto path_count = paths.number<std::uint64_t>(), encoded = paths.number<std::uint64_t>();
     const auto places = unpacked_numbers(paths, encoded), names = unpacked_numbers(paths, encoded),
                jumps = unpacked_numbers(paths, encoded);
-    if (path_count > encoded || encoded == 0) refuse_layer();
+    if (path_count > encoded || encoded == 0) refuse_cut();
     // The first is the layer; then each is followed by its first child, and says how far away its next sibling is.
     nodes_.resize(path_count);
     constexpr Node kNobody = ~Node{0};
@@ -219,7 +185,7 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
         auto [at, parent] = later.back();
         later.pop_back();
         for (;;) {
-            if (at >= encoded || places[at] >= path_count || numbered[places[at]] != kNobody) refuse_layer();
+            if (at >= encoded || places[at] >= path_count || numbered[places[at]] != kNobody) refuse_cut();
             const Node node = numbered[places[at]] = count++;
             const auto name = static_cast<std::int32_t>(names[at]);
             Item& item = nodes_[node];
@@ -227,7 +193,7 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
             item.token = parent == kNobody
                              ? 0
                              : static_cast<std::uint32_t>(item.is_property ? -std::int64_t{name} : name);
-            if (item.token >= tokens_.size()) refuse_layer();
+            if (item.token >= tokens_.size()) refuse_cut();
             if (parent != kNobody) nodes_[parent].children.push_back(node);
             const auto jump = static_cast<std::int32_t>(jumps[at]);
             const bool has_child = jump > 0 || jump == -1, has_sibling = jump >= 0;
@@ -238,14 +204,14 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
         }
     }
 
-    LayerCursor specs = section("SPECS");
+    CrateCursor specs = section("SPECS");
     const auto spec_count = specs.number<std::uint64_t>();
     const auto spec_paths = unpacked_numbers(specs, spec_count),
                spec_sets = unpacked_numbers(specs, spec_count);
     for (std::uint64_t i = 0; i < spec_count; ++i) {
         if (spec_paths[i] >= path_count || numbered[spec_paths[i]] == kNobody ||
             spec_sets[i] >= field_sets_.size())
-            refuse_layer();
+            refuse_cut();
         Item& item = nodes_[numbered[spec_paths[i]]];
         item.is_there = true;
         item.field_set = spec_sets[i];
@@ -253,7 +219,7 @@ CrateLayer::CrateLayer(std::string_view bytes) : bytes_(bytes) {
 }
 
 std::string_view CrateLayer::token_text(std::uint64_t index) const {
-    if (index >= tokens_.size()) refuse_layer();
+    if (index >= tokens_.size()) refuse_cut();
     return tokens_[index];
 }
 
@@ -262,7 +228,7 @@ std::optional<std::uint64_t> CrateLayer::field(Node node, std::string_view name)
     for (std::uint64_t at = nodes_[node].field_set; at < field_sets_.size() && field_sets_[at] != kEnd;
          ++at) {
         const std::uint32_t number = field_sets_[at];
-        if (number >= field_tokens_.size()) refuse_layer();
+        if (number >= field_tokens_.size()) refuse_cut();
         if (token_text(field_tokens_[number]) == name) return field_values_[number];
     }
     return std::nullopt;
@@ -320,7 +286,7 @@ std::optional<double> CrateLayer::number(Node node, std::string_view name) const
         case LayerType::Float:
             return as_float();
         case LayerType::Double:
-            return (*value & kIsInlined) != 0 ? as_float() : LayerCursor(bytes_, payload).number<double>();
+            return (*value & kIsInlined) != 0 ? as_float() : CrateCursor(bytes_, payload).number<double>();
         default:
             return std::nullopt;
     }
@@ -333,7 +299,7 @@ std::optional<glm::dvec3> CrateLayer::vector(Node node, std::string_view name) c
     const LayerType type = type_of(*value);
     if (type != LayerType::Vec3d && type != LayerType::Vec3f && type != LayerType::Vec3h) return std::nullopt;
     glm::dvec3 read(0.0);
-    LayerCursor in(bytes_, (*value & kIsInlined) != 0 ? 0 : *value & kPayload);
+    CrateCursor in(bytes_, (*value & kIsInlined) != 0 ? 0 : *value & kPayload);
     for (int i = 0; i < 3; ++i) {
         if ((*value & kIsInlined) != 0)
             read[i] = static_cast<double>(static_cast<std::int8_t>(*value >> 8 * i & 0xff));
@@ -356,7 +322,7 @@ std::optional<glm::dmat4> CrateLayer::matrix(Node node, std::string_view name) c
             read[i][i] = static_cast<double>(static_cast<std::int8_t>(*value >> 8 * i & 0xff));
         return read;
     }
-    LayerCursor in(bytes_, *value & kPayload);
+    CrateCursor in(bytes_, *value & kPayload);
     for (int row = 0; row < 4; ++row)
         for (int i = 0; i < 4; ++i) read[row][i] = in.number<double>();
     return read;
@@ -365,7 +331,7 @@ std::optional<glm::dmat4> CrateLayer::matrix(Node node, std::string_view name) c
 std::optional<std::vector<double>> CrateLayer::quaternion(Node node, std::string_view name) const {
     const auto value = field(node, name);
     if (!value || (*value & (kIsArray | kIsInlined)) != 0) return std::nullopt;
-    LayerCursor in(bytes_, *value & kPayload);
+    CrateCursor in(bytes_, *value & kPayload);
     std::vector<double> read;
     for (int i = 0; i < 4; ++i) {
         switch (type_of(*value)) {
@@ -391,7 +357,7 @@ std::optional<std::vector<std::string_view>> CrateLayer::tokens(Node node, std::
     const bool is_array = (*value & kIsArray) != 0 && type_of(*value) == LayerType::Token;
     if (!is_array && type_of(*value) != LayerType::TokenVector) return std::nullopt;
     std::uint64_t count = 0;
-    LayerCursor in = elements(bytes_, *value, std::numeric_limits<std::uint32_t>::max(), count);
+    CrateCursor in = elements(bytes_, *value, std::numeric_limits<std::uint32_t>::max(), count);
     std::vector<std::string_view> read;
     for (const std::uint32_t index : in.numbers<std::uint32_t>(count)) read.push_back(token_text(index));
     return read;
@@ -403,7 +369,7 @@ std::optional<std::vector<std::int32_t>> CrateLayer::integers(Node node, std::st
     if (!value || (*value & kIsArray) == 0 || type_of(*value) != LayerType::Int) return std::nullopt;
     constexpr std::uint64_t kLeastPacked = 16;
     std::uint64_t count = 0;
-    LayerCursor in = elements(bytes_, *value, most, count);
+    CrateCursor in = elements(bytes_, *value, most, count);
     if ((*value & kIsPacked) == 0 || count < kLeastPacked) return in.numbers<std::int32_t>(count);
     const auto read = unpacked_numbers(in, count, most);
     return std::vector<std::int32_t>(read.begin(), read.end());
@@ -417,7 +383,7 @@ std::optional<std::vector<glm::vec3>> CrateLayer::vectors(Node node, std::string
     if (type != LayerType::Vec3f && type != LayerType::Vec3d && type != LayerType::Vec3h) return std::nullopt;
     if ((*value & kIsPacked) != 0) throw ReadError("has vectors that are packed in a way that isn't read");
     std::uint64_t count = 0;
-    LayerCursor in = elements(bytes_, *value, most, count);
+    CrateCursor in = elements(bytes_, *value, most, count);
     std::vector<glm::vec3> read;
     const auto take = [&](const auto& numbers, const auto& of) {
         for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "plugin/format/usd/crate_cursor.h"
 #include "plugin/format/usd/crate_file.h"
 #include "plugin/format/usd/read_mesh.h"
 
@@ -10,47 +11,10 @@ namespace pelagic::usd {
 
 namespace {
 
-[[noreturn]] void refuse_cut() {
-    throw ReadError("is cut short or damaged");
-}
 // Well-formed, perhaps, but packed as Pelagic doesn't pack.
 [[noreturn]] void refuse_foreign() {
     throw ReadError("is not a mesh that Pelagic wrote, or it is damaged");
 }
-
-// Reads from a range of bytes, one value after another.
-class Cursor {
-  public:
-    explicit Cursor(std::string_view bytes, std::uint64_t begin = 0) : bytes_(bytes) {
-        if (begin > bytes_.size()) refuse_cut();
-        bytes_.remove_prefix(begin);
-    }
-
-    std::string_view take(std::uint64_t count) {
-        if (count > bytes_.size()) refuse_cut();
-        const std::string_view taken = bytes_.substr(0, count);
-        bytes_.remove_prefix(count);
-        return taken;
-    }
-    template <class T>
-    T number() {
-        T value;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
-    template <class T>
-    std::vector<T> numbers(std::uint64_t count) {
-        if (count > bytes_.size() / sizeof(T)) refuse_cut();
-        std::vector<T> values(count);
-        const std::string_view taken = take(count * sizeof(T));
-        if (!values.empty()) std::memcpy(values.data(), taken.data(), taken.size());
-        return values;
-    }
-    std::size_t left() const { return bytes_.size(); }
-
-  private:
-    std::string_view bytes_;
-};
 
 template <class T>
 const T& element(const std::vector<T>& values, std::uint64_t index) {
@@ -59,8 +23,8 @@ const T& element(const std::vector<T>& values, std::uint64_t index) {
 }
 
 // A size and an LZ4 block of literals only.
-std::string_view unpacked(Cursor& section) {
-    Cursor block(section.take(section.number<std::uint64_t>()));
+std::string_view unpacked(CrateCursor& section) {
+    CrateCursor block(section.take(section.number<std::uint64_t>()));
     constexpr unsigned kInToken = 15, kInByte = 255;
     if (block.number<std::uint8_t>() != 0) refuse_foreign();
     const auto token = block.number<std::uint8_t>();
@@ -78,8 +42,8 @@ std::string_view unpacked(Cursor& section) {
 }
 
 // Differences of four bytes each, behind the codes that say so.
-std::vector<std::uint32_t> unpacked_integers(Cursor& section, std::uint64_t count) {
-    Cursor bytes(unpacked(section));
+std::vector<std::uint32_t> unpacked_integers(CrateCursor& section, std::uint64_t count) {
+    CrateCursor bytes(unpacked(section));
     if (count > bytes.left()) refuse_cut();
     if (bytes.number<std::uint32_t>() != 0) refuse_foreign();
     for (const char codes : bytes.take((2 * count + 7) / 8))
@@ -98,7 +62,7 @@ struct Tables {
     std::vector<std::uint32_t> spec_paths, spec_field_sets, spec_types;
 };
 
-std::vector<std::string_view> read_tokens(Cursor section) {
+std::vector<std::string_view> read_tokens(CrateCursor section) {
     const auto count = section.number<std::uint64_t>();
     const auto size = section.number<std::uint64_t>();
     std::string_view text = unpacked(section);
@@ -110,7 +74,7 @@ std::vector<std::string_view> read_tokens(Cursor section) {
     return tokens;
 }
 
-std::vector<std::uint32_t> read_paths(Cursor section) {
+std::vector<std::uint32_t> read_paths(CrateCursor section) {
     const auto count = section.number<std::uint64_t>();
     if (section.number<std::uint64_t>() != count) refuse_cut();
     const auto indices = unpacked_integers(section, count);
@@ -126,30 +90,31 @@ std::vector<std::uint32_t> read_paths(Cursor section) {
 Tables read_tables(std::string_view file) {
     constexpr std::size_t kContentsPlace = 16, kNameBytes = 16;
     // The version of the format, major, minor and patch, is that of crate_file.h.
-    if (Cursor(file, kCrateMagic.size()).take(3) != std::string_view("\0\10\0", 3)) refuse_foreign();
-    Cursor contents(file, Cursor(file, kContentsPlace).number<std::uint64_t>());
+    if (CrateCursor(file, kCrateMagic.size()).take(3) != std::string_view("\0\10\0", 3)) refuse_foreign();
+    CrateCursor contents(file, CrateCursor(file, kContentsPlace).number<std::uint64_t>());
     const auto sections = contents.number<std::uint64_t>();
     const auto section = [&](std::string_view wanted) {
-        Cursor list = contents;
+        CrateCursor list = contents;
         for (std::uint64_t i = 0; i < sections; ++i) {
             const std::string_view padded = list.take(kNameBytes);
             const auto place = list.number<std::uint64_t>();
             const auto size = list.number<std::uint64_t>();
-            if (padded.substr(0, padded.find('\0')) == wanted) return Cursor(Cursor(file, place).take(size));
+            if (padded.substr(0, padded.find('\0')) == wanted)
+                return CrateCursor(CrateCursor(file, place).take(size));
         }
         refuse_cut();
     };
     Tables tables;
     tables.tokens = read_tokens(section("TOKENS"));
-    Cursor fields = section("FIELDS");
+    CrateCursor fields = section("FIELDS");
     const auto field_count = fields.number<std::uint64_t>();
     tables.field_tokens = unpacked_integers(fields, field_count);
-    tables.field_values = Cursor(unpacked(fields)).numbers<CrateValue>(field_count);
-    Cursor field_sets = section("FIELDSETS");
+    tables.field_values = CrateCursor(unpacked(fields)).numbers<CrateValue>(field_count);
+    CrateCursor field_sets = section("FIELDSETS");
     const auto set_count = field_sets.number<std::uint64_t>();
     tables.field_sets = unpacked_integers(field_sets, set_count);
     tables.paths = read_paths(section("PATHS"));
-    Cursor specs = section("SPECS");
+    CrateCursor specs = section("SPECS");
     const auto spec_count = specs.number<std::uint64_t>();
     tables.spec_paths = unpacked_integers(specs, spec_count);
     tables.spec_field_sets = unpacked_integers(specs, spec_count);
@@ -175,7 +140,7 @@ MeshArray read_array(std::string_view file, const VaryingAttribute& attribute, C
                      : components == 2 ? ValueType::Vec2f
                                        : ValueType::Vec3f;
     if (is_integer(attribute)) type = ValueType::Int;
-    Cursor from(file, place_of(value, kind_of(type, true)));
+    CrateCursor from(file, place_of(value, kind_of(type, true)));
     const auto count = from.number<std::uint64_t>();
     if (count > file.size()) refuse_cut();
     if (is_integer(attribute))
@@ -186,7 +151,7 @@ MeshArray read_array(std::string_view file, const VaryingAttribute& attribute, C
 }
 
 glm::dvec3 read_origin(std::string_view file, CrateValue value) {
-    Cursor from(file, place_of(value, kind_of(ValueType::Vec3d)));
+    CrateCursor from(file, place_of(value, kind_of(ValueType::Vec3d)));
     return from.number<glm::dvec3>();
 }
 
@@ -197,9 +162,9 @@ struct Sample {
 
 // The only sample of an attribute that varies.
 Sample read_sample(std::string_view file, CrateValue samples) {
-    Cursor from(file, place_of(samples, kind_of(ValueType::TimeSamples)));
+    CrateCursor from(file, place_of(samples, kind_of(ValueType::TimeSamples)));
     if (from.number<std::int64_t>() != sizeof(std::int64_t)) refuse_foreign();
-    Cursor times(file, place_of(from.number<CrateValue>(), kind_of(ValueType::DoubleVector)));
+    CrateCursor times(file, place_of(from.number<CrateValue>(), kind_of(ValueType::DoubleVector)));
     if (from.number<std::int64_t>() != sizeof(std::int64_t)) refuse_foreign();
     if (times.number<std::uint64_t>() != 1 || from.number<std::uint64_t>() != 1) refuse_foreign();
     const auto time = times.number<double>();

@@ -198,7 +198,7 @@ TEST(CoastTiles, ABuoysSwellRisesAsASwellDoes) {
     MeasuredSpectrum hour;
     for (double hz = 0.04; hz < 0.2; hz += 0.005) {
         const double from_peak = (hz - 1.0 / 12.0) / 0.008;
-        hour.bins.push_back({hz, 0.5 * std::exp(-0.5 * from_peak * from_peak), 0.9, 0.0, 0.7, 0.0, true});
+        hour.bins.push_back({hz, 5.0 * std::exp(-0.5 * from_peak * from_peak), 0.9, 0.0, 0.7, 0.0, true});
     }
     scene.sea.swell.clear();
     scene.sea.spectrum = SpectrumKind::File;

@@ -198,7 +198,7 @@ TEST(CoastTiles, ABuoysSwellRisesAsASwellDoes) {
     MeasuredSpectrum hour;
     for (double hz = 0.04; hz < 0.2; hz += 0.005) {
         const double from_peak = (hz - 1.0 / 12.0) / 0.008;
-        hour.bins.push_back({hz, 5.0 * std::exp(-0.5 * from_peak * from_peak), 0.9, 0.0, 0.7, 0.0, true});
+        hour.bins.push_back({hz, 25.0 * std::exp(-0.5 * from_peak * from_peak), 0.9, 0.0, 0.7, 0.0, true});
     }
     scene.sea.swell.clear();
     scene.sea.spectrum = SpectrumKind::File;
@@ -354,19 +354,19 @@ TEST(CoastTiles, FoamIsSafeFromWhatIsNoNumber) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     for (const glm::dvec2 at : {glm::dvec2(none, 0.0), glm::dvec2(120.0, none), glm::dvec2(none)})
         EXPECT_EQ(coast_foam(surf, at, 0.1, 1.0, FootprintFilter{}), 0.0);
-    const std::vector<glm::vec2> rest{
-        {kNone, 0.0f}, {120.0f, 0.0f}, {120.0f, kNone}, {120.0f, 10.0f}, {125.0f, -40.0f}};
+    std::vector<glm::vec2> rest{{kNone, 0.0f}, {120.0f, kNone}};
+    for (int y = 0; y < 60; ++y) rest.emplace_back(125.0f, -150.0f + 5.0f * static_cast<float>(y));
     const auto with = sample(frame, 0, rest),
-               of_none =
-                   sample(frame, 0, rest, {.origin_m = {}, .cell_m = std::vector(5, kNone), .pixel_m = {}});
+               of_none = sample(frame, 0, rest,
+                                {.origin_m = {}, .cell_m = std::vector(rest.size(), kNone), .pixel_m = {}});
     double most = 0.0;
-    for (const std::size_t i : {1u, 3u, 4u}) {
+    for (std::size_t i = 2; i < rest.size(); ++i) {
         const float share = with.numbers(Product::Breaking)[i];
         EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << i;
         EXPECT_EQ(share, of_none.numbers(Product::Breaking)[i]);
         most = std::max(most, static_cast<double>(share));
     }
-    EXPECT_GT(most, 0.0);
+    EXPECT_GT(most, 0.1);
 }
 
 TEST(CoastTiles, AreTheSameOnOneThreadAndTwoAndAloneAsInARun) {

@@ -420,8 +420,10 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
         for (std::size_t i = 0; i < chunk.count; ++i) unresolved[first + i] *= work.gusts.factor[i];
     if (const auto breaking = call.results.numbers(Product::Breaking); breaking && has_surf_) {
         for (std::size_t i = 0; i < chunk.count; ++i) {
-            const double cell_m = call.points.cell_m ? static_cast<double>(call.points.cell_m[first + i])
-                                                     : planned_->query.cell_m.front();
+            const double finest_m = planned_->query.cell_m.front(),
+                         given_m = call.points.cell_m ? static_cast<double>(call.points.cell_m[first + i])
+                                                      : finest_m,
+                         cell_m = given_m > finest_m ? given_m : finest_m;  // also for one that is no number
             const double more =
                 frame_->sea().surf_foam(call.place.origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]),
                                         static_cast<double>(chunk.sums[index(Field::Height)][i]), cell_m);

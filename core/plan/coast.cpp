@@ -63,7 +63,7 @@ TilesOverDepth::TilesOverDepth(const DirectionalSpectrum& spectrum, double deepe
             const WavePoint point = wave_point(from, middle + half * rule.node[node]);
             Waves waves{point.omega, point.domega_dk, 0.0, 0.0};
             for (const WaveSystem& system : spectrum.systems())
-                (system.is_swell() ? waves.swell : waves.sea) +=
+                (system.may_be_swell() ? waves.swell : waves.sea) +=
                     half * rule.weight[node] * system.energy(point);
             if (!(waves.sea + waves.swell > kLeast * spectrum.m0())) continue;
             sum += waves.sea + waves.swell;

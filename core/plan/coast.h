@@ -4,7 +4,8 @@
 // (core/plan/masks.h). Of the energy that comes from sea.depth_m,
 //
 //   the wind sea's waves have φ(ω, d)/φ(ω, sea.depth_m), 1 at most (Kitaigorodskii's φ, Bouws et al. 1985: core/spectrum/tma.h);
-//   a swell's are no sea of that depth but rise as they slow down, c_g(ω, sea.depth_m)/c_g(ω, d), kMostCoastEnergy at most.
+//   a swell's are no sea of that depth but rise as they slow down, c_g(ω, sea.depth_m)/c_g(ω, d), kMostCoastEnergy at most; a buoy's as well,
+//   since swell is among them.
 //
 // The mean of both over the spectrum, by energy, is that of all waves. Breaking then holds them by H⁻⁵ = H_all⁻⁵ + (γ d)⁻⁵ with γ = kSurfGamma:
 // what Thornton and Guza's dissipation (1983; core/waves/coast.h) takes on its way adds up in H⁻⁵, and of its balance on plane beaches,
@@ -80,9 +81,6 @@ struct CoastSurf {
     // From the map's nearest place to this one.
     glm::dvec2 beyond_m(glm::dvec2 place_m) const {
         return place_m - glm::clamp(place_m, from_m, from_m + glm::dvec2(count) * cell_m);
-    }
-    std::size_t cells() const {
-        return static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y);
     }
     std::size_t cell(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x);

@@ -65,12 +65,20 @@ std::string about_masks(const Plan& plan) {
     return about + "; pairs of waves (second order) change as the waves do, not as their square";
 }
 
+// With the file's own depths, which the scene keeps.
+std::size_t coast_bytes(const Plan& plan) {
+    if (!plan.masks || !plan.masks->surf) return 0;
+    const glm::ivec2 texels = plan.from->scene.waves.coast_depths->columns_rows();
+    return plan.masks->coast_bytes() +
+           sizeof(float) * static_cast<std::size_t>(texels.x) * static_cast<std::size_t>(texels.y);
+}
+
 std::string about_coast(const Plan& plan) {
     if (!plan.masks || !plan.masks->surf) return "there are no waves";
     const MasksPlan::Mask& coast = plan.masks->masks.back();
     return "waves " + rough_text(coast.strongest) + " … " + rough_text(std::max(coast.other_way, 1.0)) +
            " times as high over " + std::to_string(plan.masks->surf->count.x) + " x " +
-           std::to_string(plan.masks->surf->count.y) + " cells, " + bytes_text(plan.masks->coast_bytes()) +
+           std::to_string(plan.masks->surf->count.y) + " cells, " + bytes_text(coast_bytes(plan)) +
            "; nine reads a point, and heights and displacements in the derivatives' footprints as well";
 }
 
@@ -220,9 +228,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
              scene.waves.coast = false;
              scene.waves.coast_depths.reset();
          },
-     .state = {"a coast's gains and its surf",
-               [](const Plan& plan) { return plan.masks ? plan.masks->coast_bytes() : 0; },
-               "take smaller depths in sea.depth_file"},
+     .state = {"a coast's depths, gains and surf", coast_bytes, "take smaller depths in sea.depth_file"},
      .about = about_coast},
     {.effect = Effect::Wakes,
      .name = "wakes",

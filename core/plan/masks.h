@@ -45,10 +45,10 @@ struct MasksPlan {
         double whole = 1.0;    // how much of a picture smaller than its edge is left where it holds whole
         double reach_m = 0.0;  // from the middle: beyond it there is none
         double waves = 1.0, ripples = 1.0, foam = 1.0;
-        double strongest = 1.0;  // the gain of waves where it holds most,
-        double other_way =
-            1.0;  // and where it changes them the other way, as a coast does on which waves rise before they break
-        glm::dvec2 strongest_m{0.0};  // about here
+        // The gain of waves where it holds most, about strongest_m, which may be the least or the largest. A coast is on both sides of 1:
+        // strongest is then its least, and other_way its largest, of waves that rise before they break.
+        double strongest = 1.0, other_way = 1.0;
+        glm::dvec2 strongest_m{0.0};
     };
     std::vector<Mask> masks;  // those that change something, and last the coast, if tiles feel one
     std::shared_ptr<const CoastSurf<double>> surf{};  // of that coast

@@ -489,7 +489,7 @@ void add_waves(Built& out) {
              .help =
                  "whether waves feel the floor of sea.depth_file. They come from sea.depth_m, lose height where they break, and end at the "
                  "shore. With trochoid they also turn, shorten and rise, and lees fill without the pattern of diffraction; tiles (fft) are "
-                 "lower where it is shallow, and neither turn nor shorten. Beyond the map waves are those of depth_m again. There is "
+                 "as high as the depth lets them be, and neither turn nor shorten. Beyond the map waves are those of depth_m again. There is "
                  "no reflection and no run-up, and no crest overturns",
              .key_parts = kWaves,
              .of_picture = "sea.depth_file"})));

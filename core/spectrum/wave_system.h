@@ -80,7 +80,11 @@ class WaveSystem {
 
     // D's shape at this wavenumber, about direction() [rad], before directionality() is applied (directed.h).
     AngularShape shape(const WavePoint& point) const;
-    bool is_swell() const { return std::holds_alternative<SwellEnergy>(energy_); }
+    // A swell, or a buoy's waves, of which nobody says where they come from.
+    bool may_be_swell() const {
+        return std::holds_alternative<SwellEnergy>(energy_) ||
+               std::holds_alternative<MeasuredEnergy>(energy_);
+    }
     double direction() const { return direction_; }
     double directionality() const { return directionality_; }
 

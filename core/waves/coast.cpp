@@ -513,10 +513,11 @@ double quick_deviate(double share) {
 template <class T>
 double coast_foam(const CoastSurf<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
                   const FootprintFilter& filter) {
+    const double left = coast_fade(glm::length(coast.beyond_m(place_m)) / coast.fade_m).left;
+    if (!(left > 0.0)) return 0.0;  // also at a place that is no number
     // Linear between cells' middles: foam has no slope.
     const glm::dvec2 at = glm::clamp((place_m - coast.from_m) / coast.cell_m - 0.5, glm::dvec2(0.0),
                                      glm::dvec2(coast.count - 1));
-    const double left = coast_fade(glm::length(coast.beyond_m(place_m)) / coast.fade_m).left;
     const glm::ivec2 low(at), high = glm::min(low + 1, coast.count - 1);
     const glm::dvec2 t = at - glm::dvec2(low);
     const auto between = [&](const std::vector<T>& of) {

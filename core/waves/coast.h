@@ -27,7 +27,6 @@
 #include "core/plan/coast.h"
 #include "core/plan/trains.h"
 #include "core/waves/trains.h"
-#include "pelagic/depth_map.h"
 
 namespace pelagic {
 

@@ -42,7 +42,7 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Le
         throw std::invalid_argument("query \"" + planned.query.name +
                                     "\" is of a lattice or of one cascade: "
                                     "a picture needs one of points anywhere in the whole sea");
-    if (plan.from->scene.waves.coast)
+    if ((plan.trains && plan.trains->coast_cells.x > 0) || (plan.masks && plan.masks->surf))
         throw std::invalid_argument(
             "waves.coast = true: no graphics card draws waves that feel the floor yet; accepted: false, or pelagic render and pelagic bake, which do");
     const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -235,6 +236,16 @@ TEST(Coast, FoamsWhereItBreaks) {
         }
     }
     EXPECT_LT(foam[0] / (60.0 * times), 0.01);
+}
+
+TEST(Coast, APlaceThatIsNoNumberHasNoFoam) {
+    const auto frame = frame_of<float>(coast(floor_of(beach)), {unfiltered(kAll)});
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    for (const glm::dvec2 at : {glm::dvec2(none, 0.0), glm::dvec2(120.0, none), glm::dvec2(none)})
+        EXPECT_EQ(frame.sea().surf_foam(at, 0.1, 1.0), 0.0);
+    const std::vector<glm::vec2> rest{{std::numeric_limits<float>::quiet_NaN(), 0.0f}, {120.0f, 0.0f}};
+    const float share = sample(frame, 0, rest).numbers(Product::Breaking)[1];
+    EXPECT_EQ(share, sample(frame, 0, {rest[1], rest[1]}).numbers(Product::Breaking)[1]);
 }
 
 // At an island waves bend round, and everything is finite.

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "core/evaluate/bounds.h"
+#include "core/plan/effects.h"
 #include "core/spectrum/gauss.h"
 #include "core/waves/coast.h"
 #include "tests/core/waves/samples.h"
@@ -126,6 +127,40 @@ TEST(CoastTiles, HaveTheEnergyOfTheirDepthAcrossABeach) {
     EXPECT_LT(before, 0.7);  // the test is of something
 }
 
+// North is no east: on a map twice as wide as it is long, over a bed that falls along neither.
+TEST(CoastTiles, AreAsHighAsTheDepthAtThePlaceOnAnObliqueBed) {
+    const glm::dvec2 size_m(kTilesSide_m, 0.5 * kTilesSide_m);
+    const auto depth_at = [](glm::dvec2 at) { return 4.0 - 0.007 * at.x + 0.02 * at.y; };
+    const glm::ivec2 texels(200, 100);
+    std::vector<float> depths;
+    for (int y = 0; y < texels.y; ++y)
+        for (int x = 0; x < texels.x; ++x)
+            depths.push_back(static_cast<float>(
+                depth_at((glm::dvec2(x, y) + 0.5) / glm::dvec2(texels) * size_m - 0.5 * size_m)));
+    Scene scene = tiles(std::make_shared<const DepthMap>(texels, std::move(depths), -0.5 * size_m, size_m));
+    scene.waves.choppiness = 0.0;
+    const std::vector<Query> queries{unfiltered(products(Position))};
+    const auto frame = frame_of<double>(scene, queries, kTilesTime_s),
+               plain = frame_of<double>(tiles_alone(scene), queries, kTilesTime_s);
+    const TilesOverDepth over(frame.sea().plan().from->spectrum, 12.0);
+    std::vector<glm::dvec2> rest = random_points<double>(0.95, 1000);
+    for (glm::dvec2& at : rest) at *= size_m;
+    const auto here = sample(frame, 0, rest).vectors(Position),
+               deep = sample(plain, 0, rest).vectors(Position);
+    int seen = 0;
+    double least = 1.0, most = 0.0;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const double amplitude = over.amplitude(depth_at(rest[i]));
+        ASSERT_NEAR(here[i].z, amplitude * deep[i].z, 0.005 * std::abs(deep[i].z) + 1e-6) << i;
+        if (std::abs(deep[i].z) < 0.05) continue;
+        ++seen;
+        least = std::min(least, amplitude);
+        most = std::max(most, amplitude);
+    }
+    EXPECT_GT(seen, 500);
+    EXPECT_GT(most - least, 0.15);  // the test is of something
+}
+
 // The sheet's figures, as wave trains have them: 1.5 m (rms) and 10 s on 1:50 from the deep.
 TEST(CoastTiles, ASwellBreaksAsTrainsDo) {
     const auto depths = bed_of([](glm::dvec2 at) { return (180.0 - at.x) / 50.0; });
@@ -134,6 +169,9 @@ TEST(CoastTiles, ASwellBreaksAsTrainsDo) {
     const TilesOverDepth over(spectrum, 40.0);
     for (const auto& [depth_m, expected] : {std::pair(5.0, 0.32), std::pair(3.0, 0.38), std::pair(1.0, 0.44)})
         EXPECT_NEAR(over.rms_height_m(depth_m) / depth_m / expected, 1.0, 0.1) << depth_m;
+    // Those of its own law.
+    for (const auto& [depth_m, own] : {std::pair(5.0, 0.316), std::pair(3.0, 0.409), std::pair(1.0, 0.420)})
+        EXPECT_NEAR(over.rms_height_m(depth_m) / depth_m / own, 1.0, 0.01) << depth_m;
     for (double depth_m = 0.06; depth_m < 30.0; depth_m *= 1.1)
         EXPECT_LT(over.rms_height_m(depth_m), kSurfGamma * depth_m);
     EXPECT_GT(over.energy(2.0), 1.2);  // it rises before
@@ -150,6 +188,27 @@ TEST(CoastTiles, ASwellBreaksAsTrainsDo) {
         for (const glm::vec3& at : sample(frame, 0, rest).vectors(Position)) sum += at.z * at.z;
     }
     EXPECT_NEAR(std::sqrt(8.0 * sum / (400.0 * times)) / 3.0 / 0.38, 1.0, 0.12);
+}
+
+// By the law of wind seas a peak at 12 s would keep 0.07 of its energy in 5 m.
+TEST(CoastTiles, ABuoysSwellRisesAsASwellDoes) {
+    Scene scene = swell(nullptr, 0.4, std::numeric_limits<double>::infinity());
+    scene.sea.swell = {{.height_m = 0.4, .period_s = 12.0, .direction_deg = 0.0}};
+    const TilesOverDepth swells(DirectionalSpectrum(scene.sea), 40.0);
+    MeasuredSpectrum hour;
+    for (double hz = 0.04; hz < 0.2; hz += 0.005) {
+        const double from_peak = (hz - 1.0 / 12.0) / 0.008;
+        hour.bins.push_back({hz, 25.0 * std::exp(-0.5 * from_peak * from_peak), 0.9, 0.0, 0.7, 0.0, true});
+    }
+    scene.sea.swell.clear();
+    scene.sea.spectrum = SpectrumKind::File;
+    scene.sea.measured = hour;
+    for (const double wind_mps : {0.0, 6.0}) {  // with the wind's short waves as well
+        scene.sea.wind_speed_mps = wind_mps;
+        const TilesOverDepth buoys(DirectionalSpectrum(scene.sea), 40.0);
+        EXPECT_NEAR(buoys.energy(5.0) / swells.energy(5.0), 1.0, 0.08) << wind_mps;
+    }
+    EXPECT_GT(swells.energy(5.0), 1.2);
 }
 
 TEST(CoastTiles, ChangeNothingWhereItIsDeep) {
@@ -286,6 +345,30 @@ TEST(CoastTiles, FoamWhereTheyBreak) {
                   sample(frame, 0, rest).numbers(Product::Breaking)[i]);
 }
 
+// What is no number has no foam and harms no other; a footprint that is none is the query's.
+TEST(CoastTiles, FoamIsSafeFromWhatIsNoNumber) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    const Scene scene = swell(bed_of(plane_beach), 1.3, 12.0);
+    const auto frame = frame_of<float>(scene, {filtered(products(Position, Product::Breaking), 2.0)});
+    const CoastSurf<double>& surf = *frame.sea().plan().masks->surf;
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    for (const glm::dvec2 at : {glm::dvec2(none, 0.0), glm::dvec2(120.0, none), glm::dvec2(none)})
+        EXPECT_EQ(coast_foam(surf, at, 0.1, 1.0, FootprintFilter{}), 0.0);
+    std::vector<glm::vec2> rest{{kNone, 0.0f}, {120.0f, kNone}};
+    for (int y = 0; y < 60; ++y) rest.emplace_back(125.0f, -150.0f + 5.0f * static_cast<float>(y));
+    const auto with = sample(frame, 0, rest),
+               of_none = sample(frame, 0, rest,
+                                {.origin_m = {}, .cell_m = std::vector(rest.size(), kNone), .pixel_m = {}});
+    double most = 0.0;
+    for (std::size_t i = 2; i < rest.size(); ++i) {
+        const float share = with.numbers(Product::Breaking)[i];
+        EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << i;
+        EXPECT_EQ(share, of_none.numbers(Product::Breaking)[i]);
+        most = std::max(most, static_cast<double>(share));
+    }
+    EXPECT_GT(most, 0.1);
+}
+
 TEST(CoastTiles, AreTheSameOnOneThreadAndTwoAndAloneAsInARun) {
     const Scene scene = tiles(bed_of(plane_beach));
     const auto rest = random_points<float>(700.0, 1500);
@@ -347,7 +430,8 @@ TEST(CoastTiles, SayTheirBytesAndLeaveOthersAlone) {
     EXPECT_FALSE(plain.masks);
     const CoastSurf<double>& surf = *plan.masks->surf;
     EXPECT_EQ(plan.masks->coast_bytes(),
-              16 * surf.cells() + 4 * plan.masks->masks.back().cells->shares.size());
+              16 * surf.broken.size() + 4 * plan.masks->masks.back().cells->shares.size());
+    EXPECT_EQ(row_of(Effect::Coast).state.bytes(plan), plan.masks->coast_bytes() + 4 * 100 * 100);
     EXPECT_EQ(plan.masks->picture_texels(), 0u);
     Scene unread = scene;
     unread.waves.coast_depths.reset();

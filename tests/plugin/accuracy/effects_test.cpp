@@ -149,10 +149,10 @@ TEST(AccuracyEffects, WhatIsOnCostsSomething) {
         std::vector<std::size_t> falls;
     };
     const std::vector<std::int64_t> all = costs_of(with_all_but(""));
-    for (const Case& each :
-         {Case{"horizontal displacement", {kBakeTransforms, kPictureTransforms}},
-          Case{"whitecaps", {kBakeOutput, kBakeHistory, kPictureHistory}},
-          Case{"living foam", {kBakeHistory, kPictureHistory}}, Case{"spray", {kPictureMemory}}}) {
+    for (const Case& each : {Case{"horizontal displacement", {kBakeTransforms, kPictureTransforms}},
+                             Case{"whitecaps", {kBakeOutput, kBakeHistory, kPictureHistory}},
+                             Case{"living foam", {kBakeHistory, kPictureHistory}},
+                             Case{"spray", {kPictureMemory}}, Case{"tiles on a coast", {kPictureMemory}}}) {
         const std::vector<std::int64_t> without = costs_of(with_all_but(each.name));
         for (const std::size_t i : each.falls) EXPECT_LT(without[i], all[i]) << each.name << ", " << i;
     }

@@ -426,6 +426,10 @@ TEST(SeaLayout, RefusesWavesThatFeelTheFloor) {
                       std::string::npos);
         }
     }
+    // Tiles of a calm feel nothing.
+    scene.sea.wind_speed_mps = 0.0;
+    const auto calm = prepare(scene);
+    EXPECT_NO_THROW(SeaLayout::planes_of(make_plan(calm, {view_query(*calm)}), 0));
 }
 
 TEST(SeaLayout, LeavesLittleOfItsTexturesEmpty) {

@@ -222,7 +222,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .name = "tiles on a coast",
      .is_asked_for =
          [](const Scene& scene) { return scene.waves.model == WaveModel::Fft && scene.waves.coast; },
-     .why_not = "waves.coast is false, or wave trains feel it",
+     .why_not = "waves.coast is false, or waves.model is trochoid",
      .turn_off =
          [](Scene& scene) {
              scene.waves.coast = false;

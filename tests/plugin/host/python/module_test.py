@@ -208,7 +208,7 @@ class Scene(unittest.TestCase):
         self.assertEqual((mesh["points_m"].shape[1], mesh["triangles"].shape[1], mesh["normals"].shape), (3, 3, (mesh["triangles"].size, 3)))
         self.assertEqual(len(mesh["material"]), len(mesh["triangles"]))
         self.assertLess(mesh["triangles"].max(), len(mesh["points_m"]))
-        self.assertTrue(all(set(each) == {"name", "colour", "roughness", "glow"} for each in mesh["materials"]))
+        self.assertTrue(all(set(each) == {"name", "colour", "roughness", "glow", "image"} for each in mesh["materials"]))
         self.assertEqual(scene.object_mesh(1), {})
         for call in (lambda: scene.object_pose(2, 1.0), lambda: scene.object_mesh(-1)):
             self.assertRaises(IndexError, call)

@@ -157,8 +157,9 @@ class Drawing:
         return min((self.sea.finest_for(grid.key[0]) for grid in self._grids.values()), default=None)
 
     def knows_hulls(self):
-        """Whether the sea has the footprints that the hulls want that were drawn last."""
-        return set(self.hulls.footprints_m) <= set(self.sea.hull_footprints_m)
+        """Whether the sea has the footprints that the hulls want that were drawn last, and none if there are no hulls."""
+        wanted, known = self.hulls.footprints_m, self.sea.hull_footprints_m
+        return set(wanted) <= set(known) and bool(wanted) == bool(known)
 
     def is_coarse(self):
         """Whether a view's last picture was of its coarse grid."""

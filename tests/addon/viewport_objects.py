@@ -65,7 +65,9 @@ def steps():
         mine, program = (a[part].mean(2) / b[part].mean(2) < 0.97 for a, b in ((with_shadow, plain), (theirs_with, theirs)))
         print(f"    {mine.sum()} pixels here, {program.sum()} by the program, {(mine & program).sum()} in both")
         assert mine.sum() > 30 and (mine & program).sum() > 0.7 * (mine | program).sum()
-        assert (change_of(with_shadow, plain)[:, :column // 2] < 2 / 255).all()
+        aside = change_of(with_shadow, plain)[:, :column // 2]
+        # The sea is built anew for hulls, as fine as the view wants it by now: single pixels far away glitter otherwise.
+        assert aside.max() < 6 / 255 and (aside >= 2 / 255).mean() < 1e-3
         block.location.x += 200.0
         bpy.context.view_layer.update()
         assert (change_of(picture(), plain)[part] < 2 / 255).all(), "it goes along"
@@ -167,10 +169,10 @@ def steps():
         assert len(off) > 50 and both[1].max() > 0.1 and np.median(off) < 0.15 and abs(both[0].sum() / both[1].sum() - 1.0) < 0.1
         assert elsewhere.max() < 0.02
 
-    with checking("a scene without objects has shaders without all that"):
+    with checking("a scene without objects has a sea and shaders without all that"):
         tub.pelagic_in_light.enabled = False
         picture()
-        assert "object" not in drawing._shaders
+        assert not drawing.sea.hull_footprints_m and "object" not in drawing._shaders
         assert not any("hull_maps" in text or "mirrored_objects" in text or "sun_blockers" in text
                        for text in drawing.sea.shaders(drawing.light)["sea"])
 

@@ -82,7 +82,7 @@ def steps():
         block.data.materials.append(painted("white", (0.9, 0.9, 0.9)))
         block.data.polygons[2].material_index = 1
         look(-14.0, 14.0, 34.0)
-        for wind_mps in (1.0, 11.0):
+        for wind_mps in (1.0, 11.0) if at_night() else (11.0,):
             change(obj, sea__wind_speed_mps=wind_mps)
             here = seen_from_here(obj)
             meter_alike(obj, here)

@@ -104,7 +104,7 @@ void with_a_ship() {
     scene.quality.level = QualityLevel::Preview;
     scene.camera.position_m = {0.0, -40.0, 6.0};
     scene.camera.look_at_m = {0.0, 0.0, 2.0};
-    scene.camera.resolution = {1280, 720};
+    scene.camera.resolution = {640, 360};
     Drawn without(scene);
     SceneObject ship;
     ship.name = "trawler";
@@ -113,7 +113,7 @@ void with_a_ship() {
     scene.objects = {ship};
     Drawn with(scene);
     std::vector<Timed> timed{{"without", [&] { without.draw(); }}, {"with", [&] { with.draw(); }}};
-    interleave(timed, 7);
+    interleave(timed, with.device().find("llvmpipe") != std::string::npos ? 3 : 50);
     const double ratio = timed[1].median() / timed[0].median();
     std::printf("The default sea with a ship of %zu triangles over it without: %.2f, target 1.4: %s   %s\n",
                 ship.mesh->data().triangles.size() / 3, ratio, verdict(ratio <= 1.4), with.device().c_str());
@@ -124,6 +124,6 @@ void with_a_ship() {
 
 int main() {
     const pelagic::OffscreenContext context;
-    pelagic::bench::frame_times();
     pelagic::bench::with_a_ship();
+    pelagic::bench::frame_times();
 }

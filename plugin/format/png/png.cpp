@@ -23,7 +23,8 @@ struct Sink {
     std::exception_ptr error;
 };
 
-extern "C" void pelagic_png_write(png_structp file, png_bytep bytes, std::size_t count) {
+extern "C" {  // static: libpelagic shows its own functions alone
+static void png_write_bytes(png_structp file, png_bytep bytes, std::size_t count) {
     auto& sink = *static_cast<Sink*>(png_get_io_ptr(file));
     try {
         sink.bytes.append(reinterpret_cast<const char*>(bytes), count);
@@ -34,19 +35,20 @@ extern "C" void pelagic_png_write(png_structp file, png_bytep bytes, std::size_t
     png_error(file, "no memory");
 }
 
-extern "C" void pelagic_png_flush(png_structp) {}
+static void png_flush_bytes(png_structp) {}
 
-extern "C" void pelagic_png_read(png_structp file, png_bytep bytes, std::size_t count) {
+static void png_read_bytes(png_structp file, png_bytep bytes, std::size_t count) {
     auto& left = *static_cast<std::string_view*>(png_get_io_ptr(file));
     if (left.size() < count) png_error(file, "the file ends too early");
     std::memcpy(bytes, left.data(), count);
     left.remove_prefix(count);
 }
+}  // extern "C"
 
 // Unpacks the bytes that are `left`, row after row into `row`. As write().
 bool read(png_structp file, png_infop info, std::string_view& left, png_bytep row) {
     if (setjmp(png_jmpbuf(file)) != 0) return false;
-    png_set_read_fn(file, &left, pelagic_png_read);
+    png_set_read_fn(file, &left, png_read_bytes);
     png_set_user_limits(file, kLargest, kLargest);
     png_set_crc_action(file, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_benign_errors(file, 0);
@@ -60,7 +62,7 @@ bool read(png_structp file, png_infop info, std::string_view& left, png_bytep ro
 // Up to the pixels, and the pixels, whatever they are, as three bytes each. As write().
 bool read_header(png_structp file, png_infop info, std::string_view& left) {
     if (setjmp(png_jmpbuf(file)) != 0) return false;
-    png_set_read_fn(file, &left, pelagic_png_read);
+    png_set_read_fn(file, &left, png_read_bytes);
     png_set_user_limits(file, kLargest, kLargest);
     png_set_crc_action(file, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
     png_read_info(file, info);
@@ -125,7 +127,7 @@ std::string encode(const Image& image) {
     png_infop info = file == nullptr ? nullptr : png_create_info_struct(file);
     bool whole = false;
     if (info != nullptr) {
-        png_set_write_fn(file, &sink, pelagic_png_write, pelagic_png_flush);
+        png_set_write_fn(file, &sink, png_write_bytes, png_flush_bytes);
         whole = write(file, info, image);
     }
     png_destroy_write_struct(&file, &info);

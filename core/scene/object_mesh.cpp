@@ -120,7 +120,6 @@ std::string content_of(const ObjectMeshData& mesh) {
     // A body without pictures keeps the content that it had before there were any.
     if (!images.empty() || !image_at.empty()) {
         add_list(images, [&](const std::shared_ptr<const ObjectImage>& of) {
-            if (!of) return;
             const ObjectImage::Level& whole = of->levels().front();
             add_bits(static_cast<std::uint32_t>(whole.width));
             add_list(whole.rgb, add_bits);

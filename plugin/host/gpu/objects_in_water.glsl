@@ -6,8 +6,10 @@ uniform sampler2D objects_in_water_depth;
 uniform mat4 in_water_from_grid;
 uniform vec3 in_water_ahead;     // .z over (.x + .y × depth) is how far ahead a texel's place is; .z = 0: none is in the water
 
+// By eye: what is thinner along the ray than a twelfth of its way through the boxes may be missed; then its place is found to a sixteenth of a step.
 const int kStepsInWater = 12;
 const int kFinerSteps = 4;
+const float kLeastCosine = 0.02;  // of a view along the surface, as pelagic render has it
 
 // Through how much of the objects' boxes a ray goes: from .x to .y.
 vec2 way_in_boxes(vec3 from, vec3 towards) {
@@ -39,7 +41,7 @@ float behind_in_water(vec3 place) {
 // The light of the sea's water with the objects in it, from `sea`; clear: the part of the pixel that isn't foam.
 vec3 see_into_water(vec3 sea, vec3 place, vec3 to_eye, vec3 normal, float clear, WaterLook look) {
     float cosine = dot(normal, to_eye);
-    if (!(in_water_ahead.z > 0.0) || !look.has_body || !(cosine > 0.02)) return sea;
+    if (!(in_water_ahead.z > 0.0) || !look.has_body || !(cosine > kLeastCosine)) return sea;
     vec3 towards = refract(-to_eye, normal, 1.0 / kWaterIndex);
     vec2 way = way_in_boxes(place, towards);
     if (!(way.y > way.x)) return sea;

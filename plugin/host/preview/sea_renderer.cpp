@@ -109,6 +109,7 @@ struct SeaRenderer::Implementation {
     GlTexture sky_map, dither_tile;
     int sky_map_size = 0;
     std::vector<Uniform> light, water;
+    bool water_has_body = false;
     glm::dvec3 to_sun{0.0, 0.0, 1.0};
     double sun_angular_radius = 0.0;  // 0: it doesn't shine
     std::optional<DrawnObjects> objects;
@@ -465,7 +466,7 @@ void SeaRenderer::Implementation::draw_object_maps(const View& view, const SeaMe
     place_objects(view, mesh, options.lighting.sun);
     objects->draw_shadow(program_of(ShaderVariant::of_object_shadow()));
     objects->draw_mirrored(use_object_program(view, options, ObjectPicture::Mirrored), kObjectUnits);
-    if (objects->any_in_water() && options.lighting.water)
+    if (objects->any_in_water() && options.lighting.water && water_has_body)
         objects->draw_in_water(use_object_program(view, options, ObjectPicture::InWater), kObjectUnits);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glViewport(0, 0, picture_size.x, picture_size.y);
@@ -582,6 +583,7 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
 
 void SeaRenderer::set_water(const WaterBody& water) {
     implementation_->water = water_uniforms(water);
+    implementation_->water_has_body = water.has_body;
 }
 
 void SeaRenderer::set_floor(std::shared_ptr<const Floor> floor) {

@@ -213,6 +213,16 @@ void add_sea(Built& out) {
                                      .range = limits::kGustSize_m,
                                      .soft = SoftRange{10.0, 3000.0, true},
                                      .key_parts = key_parts(KeyPart::Gusts)}),
+        row<&SeaState::rain_mm_per_h>(
+            {.name = "rain_mm_per_h",
+             .help =
+                 "on the sea: rings of its drops, which dull what the water mirrors, and a wind sea with less of its waves "
+                 "below a few metres: 2, drizzle; 10, steady rain; 50, a cloudburst. What falls through the air isn't drawn",
+             .unit = "mm/h",
+             .range = limits::kRain_mm_per_h,
+             .soft = SoftRange{0.0, 50.0},
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         entries<&SeaState::swell>(
             {.name = "swell",
              .help = "waves of far storms, each a narrow spectrum of its own",

@@ -18,6 +18,11 @@ DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const Ba
         if (swell.height_m > 0.0)
             systems_.push_back(WaveSystem::swell(swell, dispersion_).directed(sea.directionality));
     }
+    if (sea.rain_mm_per_h > 0.0) {
+        const RainDamping rain(sea.rain_mm_per_h, sea.wind_speed_mps);
+        for (WaveSystem& system : systems_) system = system.rained_on(rain, dispersion_);
+        systems_.push_back(WaveSystem::rings(sea.rain_mm_per_h, dispersion_));
+    }
     if (!gains.empty())
         for (WaveSystem& system : systems_) system = system.gained(BandGains(gains), dispersion_);
     add_up();

@@ -133,6 +133,7 @@ EnergyLaw aged(const EnergyLaw& law, double ratio) {
         EnergyLaw operator()(Phillips law) const { return law.length_m /= ratio * ratio, law; }
         EnergyLaw operator()(const SwellEnergy& law) const { return law; }
         EnergyLaw operator()(const MeasuredEnergy& law) const { return law; }
+        EnergyLaw operator()(const RainRings& law) const { return law; }
     };
     return std::visit(Aged{ratio}, law);
 }
@@ -154,6 +155,10 @@ double peak_wavenumber(const EnergyLaw& law, const Dispersion& dispersion) {
 WaveSystem WaveSystem::swell(const Swell& swell, const Dispersion& dispersion) {
     const SwellEnergy energy(swell);
     return {energy, SwellSpreading{energy.omega_p}, swell.direction_deg * kRadiansPerDegree, dispersion};
+}
+
+WaveSystem WaveSystem::rings(double rain_mm_per_h, const Dispersion& dispersion) {
+    return {RainRings(rain_mm_per_h), IsotropicSpreading{}, 0.0, dispersion};
 }
 
 std::vector<WaveSystem> WaveSystem::with_short_waves(const SeaState& sea, const EnergyLaw& energy,
@@ -269,6 +274,14 @@ WaveSystem WaveSystem::gained(const BandGains& gains, const Dispersion& dispersi
     return out;
 }
 
+WaveSystem WaveSystem::rained_on(const RainDamping& rain, const Dispersion& dispersion) const {
+    WaveSystem out = *this;
+    if (may_be_swell()) return out;
+    out.rain_ = rain;
+    out.find_energy(dispersion);
+    return out;
+}
+
 WaveSystem WaveSystem::directed(double directionality) const {
     WaveSystem out = *this;
     out.directionality_ = directionality;
@@ -316,6 +329,7 @@ double WaveSystem::energy(const WavePoint& point) const {
 double WaveSystem::law_energy(const WavePoint& point) const {
     double counted = scale_ * edges_.share(point.k);
     if (!gains_.empty()) counted *= gains_.of_energy(point.k);
+    if (rain_) counted *= rain_->of_energy(point);
     if (!(counted > 0.0)) return 0.0;
     const double undamped = std::visit(
         [&]<class Law>(const Law& law) {

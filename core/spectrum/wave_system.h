@@ -22,6 +22,7 @@
 #include "core/spectrum/omega2.h"
 #include "core/spectrum/phillips.h"
 #include "core/spectrum/pierson_moskowitz.h"
+#include "core/spectrum/rain.h"
 #include "core/spectrum/swell.h"
 #include "core/spectrum/tma.h"
 #include "core/spectrum/wave_point.h"
@@ -31,11 +32,11 @@ namespace pelagic {
 
 // Laws in ω have density(ω) [m² s] and peak_omega(); laws in k have density_k(k) [m³] and peak_wavenumber().
 using EnergyLaw = std::variant<PiersonMoskowitz, JonswapShape, Tma, Elfouhaily, Omega2, Phillips, SwellEnergy,
-                               MeasuredEnergy>;
+                               MeasuredEnergy, RainRings>;
 
 // Laws in ω have at(ω), laws in k at_wavenumber(k); each gives one of the shapes of angular.h.
 using SpreadingLaw = std::variant<HasselmannSpreading, DonelanBannerSpreading, CosineSpreading,
-                                  ElfouhailySpreading, SwellSpreading, MeasuredSpreading>;
+                                  ElfouhailySpreading, SwellSpreading, MeasuredSpreading, IsotropicSpreading>;
 
 // Where a system's energy begins or ends, by wavenumber [rad/m]: a quintic in ln k, twice differentiable at both ends.
 struct Edge {
@@ -54,6 +55,7 @@ struct Edges {
 class WaveSystem {
   public:
     static WaveSystem swell(const Swell& swell, const Dispersion& dispersion);
+    static WaveSystem rings(double rain_mm_per_h, const Dispersion& dispersion);  // core/spectrum/rain.h; rain > 0
     // What SeaState has beside its swells: the wind's waves or the measured ones, and the short ones joined to them. Its
     // height is significant_height_m, or what follows from the law, but at most kMostHeightOverDepth times the depth: higher
     // waves have broken. Its peak is that of the law's sea when it has grown, or has still to grow, to that height (SeaState::growth);
@@ -64,6 +66,8 @@ class WaveSystem {
     static constexpr double kMostHeightOverDepth = 0.6;
 
     WaveSystem scaled(double energy_factor) const;
+    // What rain leaves of it. A swell has only passed through, and a buoy's waves are what rain had left.
+    WaveSystem rained_on(const RainDamping& rain, const Dispersion& dispersion) const;
     // With these gains on top of all else, and with this directionality.
     WaveSystem gained(const BandGains& gains, const Dispersion& dispersion) const;
     WaveSystem directed(double directionality) const;
@@ -113,6 +117,7 @@ class WaveSystem {
     Edges edges_;
     double scale_ = 1.0, directionality_ = 1.0;
     BandGains gains_;
+    std::optional<RainDamping> rain_;
     double peak_wavenumber_ = 0.0;
     double m0_ = 0.0, mss_ = 0.0;
     std::vector<double> panels_;

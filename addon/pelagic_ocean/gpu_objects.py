@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene's bodies in the viewport preview: the shapes of their parts on the GPU, and where they are. Their shadow (gpu_shadow.py), their hulls
-(gpu_hulls.py) and their mirror image (gpu_mirror.py) are drawn from these.
+(gpu_hulls.py), their mirror image and what of them is in the water (gpu_pictures.py) are drawn from these.
 
 Only a draw handler may call seen(): it needs the view's OpenGL context.
 """

@@ -69,7 +69,6 @@ def pixels_of(file):
 
 def picture():
     settle()
-    redraw()
     window, area = view3d()
     with in_view():
         region = bpy.context.region

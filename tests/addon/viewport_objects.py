@@ -1,5 +1,7 @@
-"""Objects in the sea's light in the viewport preview: their shadow, their mirror image and their hulls, beside the program's own picture. Needs a
-display (xvfb-run will do) and PELAGIC_PROGRAM, the program's path."""
+"""Objects in the sea's light in the viewport preview: their shadow, their mirror image, what of them is in the water, their hulls and the foam along
+these, beside the program's own picture. It alone would catch what Blender's gpu module makes of shaders, textures and depths that gpu_test.py knows as
+text and numbers; a map, a picture or a hull that stays where a body was; and what is compiled or drawn of objects where there are none. At night also
+in a calm and in a breeze with whitecaps. Needs a display (xvfb-run will do) and PELAGIC_PROGRAM, the program's path."""
 
 import math
 import os
@@ -185,6 +187,12 @@ def steps():
                   f"{both[0].sum() / both[1].sum():.3f} of the program's; elsewhere {elsewhere.max():.3f}")
             assert len(off) > 50 and both[1].max() > 0.1 and np.median(off) < 0.15 and abs(both[0].sum() / both[1].sum() - 1.0) < 0.1
             assert elsewhere.max() < 0.02
+
+    with checking("opaque water draws no picture of what is in it"):
+        assert "objects_in_water" in drawing.pictures.textures
+        change(obj, water__body=False)
+        settle()
+        assert "objects_in_water" not in drawing.pictures.textures and drawing.pictures.uniforms["in_water_ahead"] == (0.0, 0.0, 0.0)
 
     if at_night():
         with checking("nothing is left of them without them"):

@@ -77,7 +77,8 @@ def picture():
 
 
 def look(pitch_deg, height_m, distance_m=60.0):
-    """From the south, along y."""
+    """From the south, along y; edges as they are, which Blender smooths from redraw to redraw."""
+    bpy.context.preferences.system.viewport_aa = "OFF"
     _, area = view3d()
     region_3d = area.spaces.active.region_3d
     region_3d.view_perspective = "PERSP"

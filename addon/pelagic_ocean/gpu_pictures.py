@@ -91,7 +91,11 @@ class _Picture:
                 put(shader, {**uniforms, "object_water_m": body.water_m,
                              "clip_from_object": Matrix((clip @ matrix).tolist()), "grid_from_object": Matrix(matrix.tolist())},
                     {**textures, "object_materials": part.materials})
-                part.shape.batch.draw(shader)
+                for slot, batch in part.shape.batches:
+                    image = None if slot is None else part.images[slot]
+                    # Asked for each time: Blender makes another where the picture has changed.
+                    put(shader, {"object_has_image": int(image is not None)}, {} if image is None else {"object_image": gpu.texture.from_image(image)})
+                    batch.draw(shader)
         return near_m
 
     def _make(self, size):

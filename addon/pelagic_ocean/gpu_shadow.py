@@ -61,4 +61,5 @@ class Shadow:
             for shape, matrix in placed:
                 self._shader.bind()
                 self._shader.uniform_float("clip_from_object", Matrix((to_clip @ from_grid @ matrix).tolist()))
-                shape.batch.draw(self._shader)
+                for _, batch in shape.batches:
+                    batch.draw(self._shader)

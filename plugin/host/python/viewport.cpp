@@ -408,7 +408,8 @@ class GpuSea {
     }
 
     py::dict shaders(const GpuLight& light, bool objects) const {
-        DrawOptions options{.lighting = lighting_, .has_objects = objects, .for_host = true};
+        DrawOptions options{
+            .lighting = lighting_, .has_objects = objects, .has_images = objects, .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
         options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
@@ -852,7 +853,7 @@ void add_viewport(py::module_& module) {
             "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
             "plane.\n\n"
             "objects: the sea shows the host's own. It draws their depth towards the sun, 0 … 1, into a texture sun_blockers (1 "
-            "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth), vec4 "
+            "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth; zeros: nothing is shadowed), vec4 "
             "shadow_reach (its width, height and depth [m], the tangent of the sun's radius), shadow_off (of depth), and view_height_m as "
             "eye_height_m.\n\n"
             "It draws them by the shader \"object_mirrored\" as GpuGrid.objects() says, linear light and coverage, into a texture mirrored_objects of "
@@ -861,7 +862,8 @@ void add_viewport(py::module_& module) {
             "texels as they are, both clamped to their edges. vec3 in_water_ahead is (1, -1, -.y / 2) of that picture's depth_of_distance; 0 "
             "where nothing is in the water, or water_body_look.x is 0. With the textures of GpuHulls, no sea is drawn in hulls.\n\n"
             "These shaders' attributes are place_in and normal_in (three each, the object's own) and "
-            "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0. Its uniforms besides "
+            "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0; and image_at_in (two), a "
+            "place in the texture object_image, linear colours that repeat and stand for the material's where int object_has_image isn't 0. Their uniforms besides "
             "GpuLight's, surroundings() and those of shadows: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
             "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), object_water_m (height of the water), "
             "shadow_texel_m (how far off its own surface a place asks for its shadow).")

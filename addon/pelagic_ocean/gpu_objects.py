@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene's bodies in the viewport preview: the shapes of their parts on the GPU, and where they are. Their shadow (gpu_shadow.py), their hulls
-(gpu_hulls.py) and their mirror image (gpu_mirror.py) are drawn from these.
+(gpu_hulls.py), their mirror image and what of them is in the water (gpu_pictures.py) are drawn from these.
 
 Only a draw handler may call seen(): it needs the view's OpenGL context.
 """
@@ -53,25 +53,42 @@ def full_triangle():
     return gpu.types.GPUBatch(type="TRIS", buf=vertices)
 
 
-class Shape:
-    """Of a part: points (n, 3), corners (t, 3) into them, and its box's corners (8, 3), in its own coordinates; and the GPU's batch of it."""
+def _looks(slots):
+    """Of each of a part's slots, one at least: colour, roughness and light; its picture, and the UV map's name, or None and None."""
+    found = []
+    for slot in slots:
+        pictures = {}
+        look = bodies.material_of(slot.material, {}, pictures)[1:]
+        found.append((look, *next(iter(pictures.values()), (None, None))))
+    return found or [(bodies.GREY[1:], None, None)]
 
-    def __init__(self, points, corners, normals, slot):
-        self.points, self.corners = points, corners
+
+class Shape:
+    """Of a part: points (n, 3), corners (t, 3) into them, and its box's corners (8, 3), in its own coordinates; and the GPU's batches of it, each
+    with the slot whose picture it has places in, or None."""
+
+    def __init__(self, layers, points, corners, normals, slot, places):
+        """layers: its slots' UV maps, as bodies.triangles_of() has them."""
+        self.points, self.corners, self.layers = points, corners, layers
         box = points.min(0), points.max(0)
         self.corners_of_box = np.array([[box[side >> axis & 1][axis] for axis in range(3)] for side in range(8)], float)
+        has_place = np.isfinite(places).all((1, 2))
+        attributes = (("place_in", points[corners]), ("normal_in", normals), ("material_in", np.repeat(slot, 3).reshape(-1, 3, 1)),
+                      ("image_at_in", np.where(has_place[:, None, None], places, 0.0)))
         form = gpu.types.GPUVertFormat()
-        for name, length in (("place_in", 3), ("normal_in", 3), ("material_in", 1)):
-            form.attr_add(id=name, comp_type="F32", len=length, fetch_mode="FLOAT")
-        vertices = gpu.types.GPUVertBuf(format=form, len=corners.size)
-        for name, values in (("place_in", points[corners]), ("normal_in", normals), ("material_in", np.repeat(slot, 3))):
-            vertices.attr_fill(id=name, data=np.ascontiguousarray(values.reshape(corners.size, -1), np.float32))
-        self.batch = gpu.types.GPUBatch(type="TRIS", buf=vertices)
+        for name, values in attributes:
+            form.attr_add(id=name, comp_type="F32", len=values.shape[2], fetch_mode="FLOAT")
+        picture, self.batches = np.where(has_place, slot, -1), []
+        for which in np.unique(picture):
+            of = picture == which
+            vertices = gpu.types.GPUVertBuf(format=form, len=3 * int(of.sum()))
+            for name, values in attributes:
+                vertices.attr_fill(id=name, data=np.ascontiguousarray(values[of].reshape(-1, values.shape[2]), np.float32))
+            self.batches.append((None if which < 0 else which, gpu.types.GPUBatch(type="TRIS", buf=vertices)))
         self._told = self._materials = None
 
-    def materials(self, slots):
-        """The texture object_materials of its slots' materials."""
-        told = tuple(bodies.material_of(slot.material, {}, {})[1:] for slot in slots) or (bodies.GREY[1:],)
+    def materials(self, told):
+        """The texture object_materials. told: colour, roughness and light of each slot."""
         if told != self._told:
             texels = np.array([(*colour, roughness, *glow, 0.0) for colour, roughness, glow in told], np.float32)
             self._materials = gpu.types.GPUTexture((2, len(told)), format="RGBA32F", data=gpu.types.Buffer("FLOAT", texels.size, texels.ravel()))
@@ -85,6 +102,7 @@ class Part:
     shape: Shape
     matrix: np.ndarray  # from its own coordinates to the sea's (4, 4)
     materials: gpu.types.GPUTexture
+    images: tuple  # of its slots, Blender's, or None
 
 
 @dataclass
@@ -136,13 +154,13 @@ class Objects:
                 if part.type not in bodies.SHAPES or not part.visible_get():
                     continue
                 evaluated = part.evaluated_get(depsgraph)
-                if part.name not in self._shapes:
-                    read = bodies.triangles_of(evaluated)
-                    self._shapes[part.name] = Shape(*read[:4]) if read else None
-                shape = self._shapes[part.name]
+                looks, images, layers = zip(*_looks(evaluated.material_slots))
+                shape = self._shapes.get(part.name)
+                if part.name not in self._shapes or (shape is not None and shape.layers != layers):
+                    read = bodies.triangles_of(evaluated, lambda: layers)
+                    shape = self._shapes[part.name] = Shape(layers, *read) if read else None
                 if shape is not None:
-                    body.parts.append(Part(part.name, shape, np.array(sea_from_world @ evaluated.matrix_world, float),
-                                           shape.materials(evaluated.material_slots)))
+                    body.parts.append(Part(part.name, shape, np.array(sea_from_world @ evaluated.matrix_world, float), shape.materials(looks), images))
             if body.parts:
                 found.append(body)
         return found

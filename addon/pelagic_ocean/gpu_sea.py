@@ -10,8 +10,8 @@ from mathutils import Matrix, Vector
 
 from . import compat
 from .gpu_hulls import Hulls
-from .gpu_mirror import Mirror
 from .gpu_objects import full_triangle
+from .gpu_pictures import Pictures
 from .gpu_shadow import Shadow
 from .module import pelagic
 
@@ -130,13 +130,13 @@ class Drawing:
 
     def __init__(self):
         self.sea = self.light = None
-        self._shaders, self._textures, self._grids = {}, {}, {}
+        self._texts, self._textures, self._grids = {}, {}, {}
         self._compiled = {}  # text → shader: a sea that is a bit different needs no new one
         self._time_s = None
         self._air, self._air_height_m = {}, ()
         self._sky_batch = None
-        self.shadow, self.hulls, self.mirror = Shadow(), Hulls(), Mirror()
-        self._has_shadow = self._has_bodies = False
+        self.shadow, self.hulls, self.pictures = Shadow(), Hulls(), Pictures()
+        self._has_bodies = False
         self._foam_asked = None  # for what, and whether it hasn't come yet
         self.awaits_foam = False
         self.is_under_water = False  # the view that was drawn last, which then stayed empty
@@ -148,7 +148,7 @@ class Drawing:
             self._textures.clear()
             self._time_s = self._foam_asked = None
             self.awaits_foam = False
-        self._shaders.clear()
+        self._texts.clear()
         self._air_height_m = ()
         self.sea, self.light = sea, light
 
@@ -174,10 +174,9 @@ class Drawing:
         is. region: what tells views apart. scene: one that sea and light serve; cells are larger while the view moves. bodies: Objects.seen()."""
         cell_px = scene.surface.cell_px
         self._cell_px = cell_px
-        has_shadow = bool(bodies) and self.light.uniforms["sun_direction"][2] > 0.0
-        if (has_shadow, bool(bodies)) != (self._has_shadow, self._has_bodies):
-            self._has_shadow, self._has_bodies = has_shadow, bool(bodies)
-            self._shaders.clear()
+        if bool(bodies) != self._has_bodies:
+            self._has_bodies = bool(bodies)
+            self._texts.clear()
         if not bodies:
             self.hulls.footprints_m = []
         self._prepare(time_s)
@@ -202,11 +201,8 @@ class Drawing:
             gpu.state.blend_set(blend)
 
     def _prepare(self, time_s):
-        if not self._shaders:
-            for name, text in self.sea.shaders(self.light, self._has_shadow, self._has_bodies, self._has_bodies).items():
-                if text not in self._compiled:
-                    self._compiled[text] = compat.shader(*text)
-                self._shaders[name] = self._compiled[text]
+        if not self._texts:
+            self._texts = self.sea.shaders(self.light, self._has_bodies)
             self._textures["sky_map"] = _texture(self.light.sky_map)
             self._textures["foam_image"] = _texture(self.light.foam_image)
         if time_s != self._time_s:
@@ -215,6 +211,12 @@ class Drawing:
                 if self.sea.changes or name not in ("train_table", "ellipse_table", "mask_cells") or name not in self._textures:
                     self._textures[name] = _texture(pixels)
             self._time_s = time_s
+
+    def _shader(self, name):
+        text = self._texts[name]
+        if text not in self._compiled:
+            self._compiled[text] = compat.shader(*text)
+        return self._compiled[text]
 
     def _see_air(self, camera):
         """The air before the camera's eye, where it has one."""
@@ -248,29 +250,27 @@ class Drawing:
         self.awaits_foam = self.awaits_foam and not is_done
 
     def _draw_sea(self, region, camera, scene, light, bodies):
-        shader = self._shaders["sea"]
+        shader, water = self._shader("sea"), self.sea.water(scene)
         grid, drawn = self._grid(region, camera), {}
-        if self._has_shadow:
+        if bodies:
             self.shadow.draw(bodies, grid.origin_m, light["sun_direction"], light["sun_angular_radius"])
             light = {**light, **self.shadow.uniforms}
-            drawn["sun_blockers"] = self.shadow.texture
-        if bodies:
             self.hulls.draw(bodies, grid.origin_m, self.sea, _texture)
-            self.mirror.draw(bodies, grid.grid, grid.key[0], self._shaders["object"], _put,
-                             {**light, **self.sea.surroundings(scene, self.light)}, {"sky_map": self._textures["sky_map"], **drawn})
-            light = {**light, **self.mirror.uniforms, "view_height_m": light["eye_height_m"]}
-            drawn |= {"hull_maps": self.hulls.map, "hull_places": self.hulls.places, "mirrored_objects": self.mirror.texture}
+            self.pictures.draw(bodies, grid.grid, grid.key[0], self._shader, _put, {**light, **water, **self.sea.surroundings(scene, self.light)},
+                               {"sky_map": self._textures["sky_map"], **self.shadow.textures}, water["water_body_look"][0] > 0.0)
+            light = {**light, **self.pictures.uniforms, "view_height_m": light["eye_height_m"]}
+            drawn = {"hull_maps": self.hulls.map, "hull_places": self.hulls.places, **self.shadow.textures, **self.pictures.textures}
         if self.sea.has_living_foam:
             self._follow_foam()
         tables, cycles = self.sea.at_origin(grid.origin_m)
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()
         shader.uniform_block("SeaTables", tables)
-        _set(shader, {**self.sea.uniforms, **light, **self.sea.water(scene),
+        _set(shader, {**self.sea.uniforms, **light, **water,
                       **self.sea.foam(scene, grid.origin_m, self.light), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
                       "curvature_per_m": grid.curvature_per_m})
         if bodies:
-            self.mirror.put_boxes(shader)
+            self.pictures.put_boxes(shader)
         textures = {**self._textures, **drawn}
         if self.sea.has_living_foam:
             textures["foam_levels"] = _texture(self.sea.foam_levels(grid.origin_m))
@@ -280,7 +280,7 @@ class Drawing:
         grid.batch.draw(shader)
 
     def _draw_sky(self, light):
-        shader = self._shaders["sky"]
+        shader = self._shader("sky")
         if self._sky_batch is None:
             self._sky_batch = full_triangle()
         shader.bind()

@@ -21,10 +21,13 @@ class Shadow:
 
     def __init__(self):
         self._shader = self._map = self._framebuffer = self._drawn = None
-        self.uniforms, self.texture = {}, None
+        self.uniforms, self.textures = {}, {}
 
     def draw(self, bodies, origin_m, to_sun, sun_radius):
         """Brings map and uniforms up. bodies: Objects.seen(); origin_m: of the grid, in the sea's coordinates; to_sun: there, too."""
+        if not to_sun[2] > 0.0:  # everything lies before the map
+            self.uniforms, self.textures = {"shadow_from_grid": Matrix.Diagonal((0.0,) * 4)}, {}
+            return
         to_grid = np.eye(4)
         to_grid[:2, 3] = -np.array(origin_m)
         placed = [(part.shape, to_grid @ part.matrix) for body in bodies for part in body.parts]
@@ -43,7 +46,7 @@ class Shadow:
             self._drawn = wanted
         self.uniforms = {"shadow_from_grid": Matrix(from_grid.tolist()), "shadow_reach": (*reach, float(np.tan(sun_radius))),
                          "shadow_off": float(0.5 * reach[:2].max() / SIDE / reach[2]), "shadow_texel_m": float(1.5 * reach[:2].max() / SIDE)}
-        self.texture = self._map
+        self.textures = {"sun_blockers": self._map}
 
     def _draw(self, placed, from_grid):
         if self._shader is None:
@@ -58,4 +61,5 @@ class Shadow:
             for shape, matrix in placed:
                 self._shader.bind()
                 self._shader.uniform_float("clip_from_object", Matrix((to_clip @ from_grid @ matrix).tolist()))
-                shape.batch.draw(self._shader)
+                for _, batch in shape.batches:
+                    batch.draw(self._shader)

@@ -52,13 +52,13 @@ const char* shape_file(bool is_shaped, const char* shaped) {
 constexpr const char *kShapeOfVertex = "plugin/host/gpu/shape_vertex.glsl",
                      *kShapeOfFragment = "plugin/host/gpu/shape_fragment.glsl";
 constexpr const char* kCrests = "plugin/host/gpu/crests.glsl";
-std::vector<std::string_view> mirror_files(bool has_mirror, bool for_host = false) {
-    if (!has_mirror) return {"plugin/host/gpu/sky_alone.glsl"};
+std::vector<std::string_view> mirror_files(bool has_objects, bool for_host = false) {
+    if (!has_objects) return {"plugin/host/gpu/sky_alone.glsl"};
     return {for_host ? "plugin/host/gpu/mirror_atlas.glsl" : "plugin/host/gpu/mirror_texture.glsl",
             "plugin/host/gpu/sky_with_objects.glsl"};
 }
-std::vector<std::string_view> sun_files(bool has_shadow, bool for_host = false) {
-    if (!has_shadow) return {"plugin/host/gpu/sun_alone.glsl"};
+std::vector<std::string_view> sun_files(bool has_objects, bool for_host = false) {
+    if (!has_objects) return {"plugin/host/gpu/sun_alone.glsl"};
     return {for_host ? "plugin/host/gpu/host_shadow_compare.glsl" : "plugin/host/gpu/shadow_compare.glsl",
             "plugin/host/gpu/sun_shadow.glsl"};
 }
@@ -68,22 +68,18 @@ std::string object_constants(bool has_objects) {
                              "const float kIsObject = " + std::to_string(kIsObject) + ";\n"
                        : std::string();
 }
-std::string hull_constants(bool has_hulls) {
-    return has_hulls
+std::string hull_constants(bool has_objects) {
+    return has_objects
                ? constant("kHullColumns", kHullColumns) + constant("kHullPlaceColumns", kHullPlaceColumns) +
                      constant("kHullTexels", kHullTexels) + constant("kHullLevels", Hull::kLevels) +
                      "const float kHullFull_mps = " + std::to_string(Hulls::kFull_mps) + ";\n"
                : std::string();
 }
 // What the sea's first or only pass leaves out, and the foam along it.
-std::vector<std::string_view> hull_files(bool has_hulls, bool for_host) {
-    if (!has_hulls) return {"plugin/host/gpu/hulls_none.glsl"};
+std::vector<std::string_view> hull_files(bool has_objects, bool for_host) {
+    if (!has_objects) return {"plugin/host/gpu/hulls_none.glsl"};
     return {"plugin/host/gpu/hulls.glsl",
             for_host ? "plugin/host/gpu/hulls_left_out.glsl" : "plugin/host/gpu/hulls_behind.glsl"};
-}
-// A key beside the files, by which programs are told apart.
-std::string constant_of_shadow(const DrawOptions& options) {
-    return options.for_host && options.has_shadow ? constant("kHostShadow", true) : std::string();
 }
 const char* points_file(const DrawOptions& options) {
     return is_lit_afterwards(options) ? "plugin/host/gpu/sea_points_texture.glsl"
@@ -210,12 +206,10 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
-    const bool has_objects = options.has_objects && !options.for_host && !options.from_below;
-    const bool has_hulls = options.for_host ? options.has_hulls : has_objects;
-    const bool has_mirror = options.for_host ? options.has_mirror : has_objects;
+    const bool has_objects = options.has_objects && !options.from_below;
     return {query_constants(layout, coverage, options.is_shaped) +
                 lighting_constants(lighting, sky_map_size, !options.for_host) + picture_constants(options) +
-                object_constants(has_mirror) + hull_constants(has_hulls) + constant_of_shadow(options) +
+                object_constants(has_objects) + hull_constants(has_objects) +
                 (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options)
                 ? std::vector<std::string_view>{"plugin/host/gpu/full_vertex.glsl"}
@@ -224,14 +218,14 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
             joined({query_files(),
                     {lives ? "plugin/host/gpu/foam_history.glsl" : "plugin/host/gpu/foam_breaking.glsl"},
                     {"plugin/host/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
-                    mirror_files(has_mirror, options.for_host),
+                    mirror_files(has_objects, options.for_host),
                     lighting_files(),
                     {"plugin/host/gpu/sea_light.glsl", "plugin/host/gpu/air_table.glsl",
                      "core/lighting/air.glsl"},
                     spray_files(lighting),
                     {"core/lighting/place.glsl"},
-                    sun_files(options.for_host ? options.has_shadow : has_objects, options.for_host),
-                    hull_files(has_hulls, options.for_host),
+                    sun_files(has_objects, options.for_host),
+                    hull_files(has_objects, options.for_host),
                     {has_objects ? "plugin/host/gpu/objects_in_water.glsl"
                                  : "plugin/host/gpu/objects_in_water_none.glsl",
                      "plugin/host/gpu/rays.glsl"},

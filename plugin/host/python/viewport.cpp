@@ -272,10 +272,10 @@ py::array triangles_of(const GpuGrid& grid) {
     return array_of<std::uint32_t>(std::move(indices), {count, 3});
 }
 
-// The uniforms of the objects that the sea mirrors in a view.
-py::dict mirror_of(const GpuGrid& grid, const View& view, const std::vector<Matrix>& grid_from,
-                   const std::vector<std::array<std::array<double, 3>, 2>>& boxes_m,
-                   const std::vector<double>& water_m) {
+// The pictures of the objects that the sea mirrors and shows in its water, in a view, and the uniforms of both.
+py::dict objects_of(const GpuGrid& grid, const View& view, const std::vector<Matrix>& grid_from,
+                    const std::vector<std::array<std::array<double, 3>, 2>>& boxes_m,
+                    const std::vector<double>& water_m) {
     if (grid_from.empty() || boxes_m.size() != grid_from.size() || water_m.size() != grid_from.size())
         throw py::value_error("grid_from: accepted: a matrix, a box and a height of each body, one at least");
     std::vector<ViewedBody> bodies;
@@ -285,20 +285,27 @@ py::dict mirror_of(const GpuGrid& grid, const View& view, const std::vector<Matr
                                         {least[0], least[1], least[2]}, {most[0], most[1], most[2]}),
                           water_m[i]});
     }
-    const ObjectsView made = mirrored_view(bodies, view.position_m - glm::dvec3(grid.grid->origin_m, 0.0),
-                                           view.pixel_tangent(), kObjectsSide);
-    py::array_t<double> clip({4, 4});
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column)
-            clip.mutable_at(row, column) = made.clip_from_grid[column][row];
-    const std::vector<glm::mat4> boxes = object_boxes(bodies, made.eye_m);
+    const glm::dvec3 eye_m = view.position_m - glm::dvec3(grid.grid->origin_m, 0.0);
+    const auto dict_of = [](const ObjectsView& made) {
+        py::array_t<double> clip({4, 4});
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+                clip.mutable_at(row, column) = made.clip_from_grid[column][row];
+        py::dict told;
+        told["size"] = py::make_tuple(made.size.x, made.size.y);
+        told["eye_m"] = py::make_tuple(made.eye_m.x, made.eye_m.y, made.eye_m.z);
+        told["clip_from_grid"] = clip;
+        told["texels"] = made.texels;
+        return told;
+    };
+    const ObjectsView mirrored = mirrored_view(bodies, eye_m, view.pixel_tangent(), kObjectsSide);
+    const ObjectsView in_water = in_water_view(bodies, eye_m, view.pixel_tangent(), kObjectsSide);
+    const std::vector<glm::mat4> boxes = object_boxes(bodies, mirrored.eye_m);
     std::vector<float> numbers(&boxes.front()[0].x, &boxes.front()[0].x + 16 * boxes.size());
     const auto count = static_cast<py::ssize_t>(boxes.size());
     py::dict told;
-    told["size"] = py::make_tuple(made.size.x, made.size.y);
-    told["eye_m"] = py::make_tuple(made.eye_m.x, made.eye_m.y, made.eye_m.z);
-    told["clip_from_grid"] = clip;
-    told["texels"] = made.texels;
+    told["mirrored"] = dict_of(mirrored);
+    if (in_water.size.x > 0) told["in_water"] = dict_of(in_water);
     told["boxes"] = array_of<float>(std::move(numbers), {count, 16});
     return told;
 }
@@ -400,12 +407,9 @@ class GpuSea {
         });
     }
 
-    py::dict shaders(const GpuLight& light, bool shadows, bool hulls, bool mirror) const {
-        DrawOptions options{.lighting = lighting_,
-                            .has_shadow = shadows,
-                            .has_hulls = hulls,
-                            .has_mirror = mirror,
-                            .for_host = true};
+    py::dict shaders(const GpuLight& light, bool objects) const {
+        DrawOptions options{
+            .lighting = lighting_, .has_objects = objects, .has_images = objects, .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
         options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
@@ -415,8 +419,9 @@ class GpuSea {
         py::dict made;
         made["sea"] = pair(ShaderVariant::of_sea(now()->layout(), options, light.map_size));
         made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
-        if (mirror)
-            made["object"] = pair(ShaderVariant::of_object(options, light.map_size, ObjectPicture::Mirrored));
+        for (const auto& [name, picture] : {std::pair{"object_mirrored", ObjectPicture::Mirrored},
+                                            std::pair{"object_in_water", ObjectPicture::InWater}})
+            if (objects) made[name] = pair(ShaderVariant::of_object(options, light.map_size, picture));
         return made;
     }
 
@@ -786,12 +791,13 @@ void add_gpu_grid(py::module_& module) {
             "vertices", &GpuGrid::vertices,
             "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
         .def(
-            "mirror", &mirror_of, py::arg("view"), py::arg("grid_from"), py::arg("boxes_m"),
+            "objects", &objects_of, py::arg("view"), py::arg("grid_from"), py::arg("boxes_m"),
             py::arg("water_m"),
-            "How the objects are drawn that the sea mirrors in a view, one body at least. grid_from: matrices (4, 4) from a body's axes to the "
-            "grid's coordinates; boxes_m: ((x, y, z), (x, y, z)), its least and its most there; water_m: height of the water at it. Returns size "
-            "(width, height) of the picture in texels, eye_m, clip_from_grid float64 (4, 4) (of x, y and w; see depth_of_distance), and the sea's "
-            "uniforms: mirrored_from_grid is clip_from_grid, mirrored_texels is texels, and boxes, float32 (object_count, 16), object_boxes, column by column.")
+            "How the objects are drawn that the sea shows in a view, one body at least. grid_from: matrices (4, 4) from a body's axes to the "
+            "grid's coordinates; boxes_m: ((x, y, z), (x, y, z)), its least and its most there; water_m: height of the water at it. Returns mirrored, and in_water "
+            "if part of one is in the water and the view above it, two pictures: size (width, height) in texels, eye_m, clip_from_grid float64 (4, 4) "
+            "(of x, y and w; see depth_of_distance), and texels. And the sea's uniforms: mirrored_from_grid and in_water_from_grid are their "
+            "clip_from_grid, mirrored_texels is texels of the first, and boxes, float32 (object_count, 16), object_boxes, column by column.")
         .def_property_readonly("triangles", &triangles_of,
                                "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
 }
@@ -836,8 +842,7 @@ void add_viewport(py::module_& module) {
             "The height z [m] of the surface above the view's place, at the time that was set; None for a view "
             "in the air, the only one that can be drawn.")
         .def(
-            "shaders", &GpuSea::shaders, py::arg("light"), py::arg("shadows") = false,
-            py::arg("hulls") = false, py::arg("mirror") = false,
+            "shaders", &GpuSea::shaders, py::arg("light"), py::arg("objects") = false,
             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
             "Equal for seas with as many cascades and footprints.\n\n"
             "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
@@ -847,15 +852,18 @@ void add_viewport(py::module_& module) {
             "pixel covers), vec2 view_centre [px] from the bottom left, view_pixel_tangent. The sky is one "
             "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
             "plane.\n\n"
-            "shadows: the host's own objects shadow the sea. It draws their depth towards the sun, 0 … 1, into a texture sun_blockers (1 "
-            "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth), vec4 "
+            "objects: the sea shows the host's own. It draws their depth towards the sun, 0 … 1, into a texture sun_blockers (1 "
+            "where there is nothing), and sets mat4 shadow_from_grid (from the grid's coordinates to the texture's and that depth; zeros: nothing is shadowed), vec4 "
             "shadow_reach (its width, height and depth [m], the tangent of the sun's radius), shadow_off (of depth), and view_height_m as "
             "eye_height_m.\n\n"
-            "hulls: with the textures of GpuHulls, no sea is drawn in them.\n\n"
-            "mirror: the sea mirrors the host's own objects. It draws them by the shader \"object\" as GpuGrid.mirror() says, linear light and "
-            "coverage, into a texture mirrored_objects of twice that width: there level 0 begins at (0, 0), and level k, each texel the mean of "
-            "four, at (width, 0) and its own size more. That shader's attributes are place_in and normal_in (three each, the object's own) and "
-            "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0. Its uniforms besides "
+            "It draws them by the shader \"object_mirrored\" as GpuGrid.objects() says, linear light and coverage, into a texture mirrored_objects of "
+            "twice that width: there level 0 begins at (0, 0), and level k, each texel the mean of four, at (width, 0) and its own size more; and by "
+            "\"object_in_water\", which has the uniforms of water() besides, into textures objects_in_water, filtered, and objects_in_water_depth, "
+            "texels as they are, both clamped to their edges. vec3 in_water_ahead is (1, -1, -.y / 2) of that picture's depth_of_distance; 0 "
+            "where nothing is in the water, or water_body_look.x is 0. With the textures of GpuHulls, no sea is drawn in hulls.\n\n"
+            "These shaders' attributes are place_in and normal_in (three each, the object's own) and "
+            "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0; and image_at_in (two), a "
+            "place in the texture object_image, linear colours that repeat and stand for the material's where int object_has_image isn't 0. Their uniforms besides "
             "GpuLight's, surroundings() and those of shadows: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
             "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), object_water_m (height of the water), "
             "shadow_texel_m (how far off its own surface a place asks for its shadow).")

@@ -634,7 +634,7 @@ TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {
     host.for_host = true;
     const auto text_of_host = [&] { return ShaderVariant::of_sea(layout, host, 256).fragment().text(); };
     EXPECT_EQ(text_of_host().find("sun_blockers"), std::string::npos);
-    host.has_shadow = true;
+    host.has_objects = true;
     EXPECT_NE(text_of_host().find("sun_blockers"), std::string::npos);
     EXPECT_EQ(text_of_host().find("sampler2DShadow"), std::string::npos);
 }

@@ -71,7 +71,7 @@ class Seas(unittest.TestCase):
         sea, light = self.sea, pelagic.GpuLight(small_scene())
         sea.set(0.0)
         self.assertNotIn("hull_maps", sea.shaders(light)["sea"][1])
-        self.assertIn("hull_maps", sea.shaders(light, hulls=True)["sea"][1])
+        self.assertIn("hull_maps", sea.shaders(light, objects=True)["sea"][1])
 
     def test_foam_along_hulls_is_of_the_water_and_of_their_own_way(self):
         hulls, at, still = pelagic.GpuHulls([a_tub()]), np.eye(4), np.zeros((4, 4))
@@ -120,34 +120,45 @@ class Seas(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "hull_footprints_m"):
             pelagic.GpuSea(small_scene(), 0.125, [0.0])
 
-    def test_the_mirrored_picture_holds_the_bodies(self):
+    def test_the_pictures_hold_the_bodies(self):
         sea, light = self.sea, pelagic.GpuLight(small_scene())
         sea.set(0.0)
-        self.assertNotIn("object", sea.shaders(light))
-        self.assertNotIn("mirrored_objects", sea.shaders(light)["sea"][1])
-        shaders = sea.shaders(light, mirror=True)
-        self.assertIn("mirrored_objects", shaders["sea"][1])
-        self.assertIn("kMirrored = true", shaders["object"][1])
-        self.assertNotIn("host_colour", shaders["object"][1])  # light, not colours
+        bare = sea.shaders(light)
+        self.assertEqual(set(bare), {"sea", "sky"})
+        shaders = sea.shaders(light, objects=True)
+        for word in ("sun_blockers", "mirrored_objects", "objects_in_water_depth"):
+            self.assertNotIn(word, bare["sea"][1])
+            self.assertIn(word, shaders["sea"][1])
+        self.assertIn("kMirrored = true", shaders["object_mirrored"][1])
+        self.assertIn("kInWater = true", shaders["object_in_water"][1])
+        for name in ("object_mirrored", "object_in_water"):
+            self.assertNotIn("host_colour", shaders[name][1])  # light, not colours
         grid, matrix = sea.grid(view()), np.eye(4)
         matrix[:3, 3] = np.array((9.0, 60.0, 1.0)) - (*grid.origin_m, 0.0)
         box = ((-3.0, -2.0, -1.5), (3.0, 2.0, 4.0))
-        told = grid.mirror(view(), [matrix], [box], [0.25])
-        self.assertTrue(all(16 <= side <= 1024 and side & (side - 1) == 0 for side in told["size"]), told["size"])
-        np.testing.assert_allclose(np.add(told["eye_m"], (*grid.origin_m, 0.0)), (7.0, -3.0, 0.5 - 4.0), atol=1e-9)
-        corners = np.array([(*(matrix @ (x, y, z, 1.0))[:2], max(z + 1.0, 0.25), 1.0) for x in (-3, 3) for y in (-2, 2) for z in (-1.5, 4.0)])
-        clip = corners @ told["clip_from_grid"].T
-        np.testing.assert_allclose(clip[:, 3], clip[:, 3].clip(50.0, 75.0))
-        places = clip[:, :2] / clip[:, 3:]
-        self.assertTrue((np.abs(places) < 1.0).all())
-        np.testing.assert_allclose(np.ptp(places, axis=0), 2.0 * (1.0 - 4.0 / (np.array(told["size"]) + 4.0)), atol=0.02)
+        told = grid.objects(view(), [matrix], [box], [0.25])
+        corners = np.array([(*(matrix @ (x, y, z, 1.0))[:2], z + 1.0, 1.0) for x in (-3, 3) for y in (-2, 2) for z in (-1.5, 4.0)])
+        for picture, parted, away_m in ((told["mirrored"], np.maximum, (50.0, 75.0)), (told["in_water"], np.minimum, (50.0, 100.0))):
+            self.assertTrue(all(16 <= side <= 1024 and side & (side - 1) == 0 for side in picture["size"]), picture["size"])
+            part = corners.copy()
+            part[:, 2] = parted(part[:, 2], 0.25)
+            clip = part @ picture["clip_from_grid"].T
+            np.testing.assert_allclose(clip[:, 3], clip[:, 3].clip(*away_m))
+            places = clip[:, :2] / clip[:, 3:]
+            self.assertTrue((np.abs(places) < 1.0).all())
+            np.testing.assert_allclose(np.ptp(places, axis=0), 2.0 * (1.0 - 4.0 / (np.array(picture["size"]) + 4.0)), atol=0.02)
+        np.testing.assert_allclose(np.add(told["mirrored"]["eye_m"], (*grid.origin_m, 0.0)), (7.0, -3.0, 0.5 - 4.0), atol=1e-9)
+        self.assertGreater(told["in_water"]["eye_m"][2], 4.0)  # higher than the eye: refracted rays are steeper
+        matrix[2, 3] += 3.0
+        self.assertNotIn("in_water", grid.objects(view(), [matrix], [box], [0.25]))
+        matrix[2, 3] -= 3.0
         # The box as a cube.
         cube = told["boxes"].reshape(-1, 4, 4)[0].T @ (matrix @ (3.0, -2.0, 4.0, 1.0))
         np.testing.assert_allclose(cube, (1.0, -1.0, 1.0, 1.0), atol=1e-4)
         many = [matrix + np.eye(4, k=3) * 3.0 * i for i in range(20)]
-        self.assertEqual(grid.mirror(view(), many, [box] * 20, [0.0] * 20)["boxes"].shape, (16, 16))
+        self.assertEqual(grid.objects(view(), many, [box] * 20, [0.0] * 20)["boxes"].shape, (16, 16))
         with self.assertRaises(ValueError):
-            grid.mirror(view(), [], [], [])
+            grid.objects(view(), [], [], [])
         round_it = sea.surroundings(small_scene(), light)
         self.assertEqual(round_it, sea.surroundings(small_scene(), light))
         self.assertGreater(min(round_it["object_flat_part"]), 0.0)

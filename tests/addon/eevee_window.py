@@ -14,7 +14,7 @@ from harness import *  # noqa: F403
 SIZE = (160, 90)
 
 
-def picture(samples=16):
+def picture(samples=4):
     from pictures import read_exr
     bpy_scene = bpy.context.scene
     bpy_scene.render.engine = "BLENDER_EEVEE_NEXT" if bpy.app.version[:2] in ((4, 2), (4, 3), (4, 4), (4, 5)) else "BLENDER_EEVEE"
@@ -28,7 +28,7 @@ def picture(samples=16):
 
 
 def run():
-    enable(sky_width=None)
+    enable(sky_width=256)
     import pelagic
     from pictures import shot_in_blender
 
@@ -71,7 +71,7 @@ def run():
                 scene.shot.name, scene.shot.frames = "below", (1, 1)
                 scene.save(Path(folder) / "below.toml")
                 layers = core_layers(Path(folder) / "below.toml", SIZE)
-            mine, core = picture(4), 1.34**2 * sum(layers.values())  # whose camera is in air, behind its glass
+            mine, core = picture(), 1.34**2 * sum(layers.values())  # whose camera is in air, behind its glass
             x, y = np.meshgrid(*((np.arange(count) + 0.5 - 0.5 * count) * 2.0 * math.tan(math.radians(0.5 * fov_deg)) / SIZE[0] for count in SIZE))
             up = (np.stack([x, y, -np.ones_like(x)], axis=-1) / np.sqrt(x * x + y * y + 1.0)[..., None]) @ np.array(camera.matrix_world.to_3x3())[2]
             no_sun = layers["sun"][..., 1] == 0.0

@@ -32,13 +32,13 @@ ocean.make = make_coarse
 @contextmanager
 def unbuilt():
     """No sea is built: each example's takes seconds, and what goes in and comes out are settings. At night they are built, too."""
-    driven = play._driven
+    show = play._show
     if not at_night():
-        play._driven = lambda *_: []
+        play._show = lambda *_, **__: None
     try:
         yield
     finally:
-        play._driven = driven
+        play._show = show
 
 
 def imported(path):
@@ -59,10 +59,10 @@ def written(text, name="shot"):
     return path
 
 
-with checking("every example comes out as it went in"):
+with checking("examples come out as they went in, by day every second, of which settings.py has all settings"):
     examples = sorted((ROOT / "examples").glob("*.toml"))
     assert len(examples) >= 8
-    for path in examples:
+    for path in examples if at_night() else examples[::2]:
         there, back = pelagic.Scene.from_file(path), None
         there.camera.glare = pelagic.Scene().camera.glare  # of the program's camera alone
         with unbuilt():

@@ -27,7 +27,7 @@ LIVE = ("position", "velocity", "slope_variance", "whitecap_coverage", "foam_act
 
 def shot_file(name, more=""):
     path = folder / f"{name}.toml"
-    path.write_text(f'[shot]\nname = "{name}"\nframes = [1, 6]\n[sea]\nwind_speed_mps = 15.0\n{more}', encoding="utf-8")
+    path.write_text(f'[shot]\nname = "{name}"\nframes = [1, 6]\n[sea]\nwind_speed_mps = 15.0\n[effects]\nfoam_decay_s = 1.0\n{more}', encoding="utf-8")
     return path
 
 

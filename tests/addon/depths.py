@@ -9,7 +9,7 @@ from types import SimpleNamespace
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
-enable(sky_width=None)
+enable(sky_width=256)
 import pelagic
 from pelagic_ocean import compat, depths, light, material, nodes, upwelling
 from pictures import cycles_exr

@@ -315,7 +315,7 @@ with checking("a deleted ocean's simulation is freed"):
 
 FRAMES = 100 if at_night() else 40
 with checking(f"{2 * FRAMES} frames of scrubbing, {FRAMES // 2} settings: the resident size stays flat"):
-    obj = add_ocean(surface__resolution=128, effects__foam_decay_s=4.0)
+    obj = add_ocean(surface__resolution=128, effects__foam_decay_s=0.5)
     order = np.random.default_rng(1).integers(1, 250, FRAMES)
 
     def scrub():

@@ -7,6 +7,7 @@
 import ctypes
 import os
 import sys
+import tempfile
 import threading
 import time
 import traceback
@@ -24,10 +25,33 @@ def enable(sky_width=128):
     """The add-on, registered from the sources; the compiled module comes from PYTHONPATH. sky_width: of the sky's picture in pixels,
     which each new light makes anew; None: the add-on's own, for tests of light."""
     import pelagic_ocean
-    from pelagic_ocean import light
+    from pelagic_ocean import light, nodes
     light.SKY_WIDTH = sky_width or light.SKY_WIDTH
+    nodes._shared_group = _keeping_groups(nodes._shared_group, nodes.MARK)
     pelagic_ocean.register()
     return pelagic_ocean
+
+
+def _keeping_groups(shared_group, mark):
+    """shared_group(), which makes each node group once a process: a file that is new gets those of the files before. Of the
+    second that the first ocean of a file takes, they are most."""
+    file, kept = Path(tempfile.mkdtemp()) / "groups.blend", set()
+
+    def marked():
+        return {group for group in bpy.data.node_groups if mark in group}
+
+    def shared(name, build, inputs):
+        if kept and not marked():
+            with bpy.data.libraries.load(str(file)) as (source, target):
+                target.node_groups = list(source.node_groups)
+        before = marked()
+        group = shared_group(name, build, inputs)
+        if group not in before and name not in kept:
+            kept.update(each.name for each in marked())
+            bpy.data.libraries.write(str(file), marked())
+        return group
+
+    return shared
 
 
 def at_night():

@@ -94,6 +94,9 @@ with checking("the world is the core's sky, at its place, and the lamp its sun")
     across = np.array(sky.sun_irradiance) / sky.sun_direction[2]
     assert np.allclose(lamp.data.energy * np.array(lamp.data.color), across, rtol=2e-3)
 
+# A mirror alone shows how fine the sky's picture is, which each light makes anew and each render samples.
+WHOLE_SKY, light.SKY_WIDTH = light.SKY_WIDTH, 256
+
 with checking("rough water and foam are the core's, facing the sun and away from it"):
     for variance, coverage in (((0.03, 0.015, 0.005), 0.0), ((0.02, 0.02, 0.0), 0.5)):
         scene = flat_sea(1.0, slope_variance=variance, whitecap_coverage=coverage)
@@ -287,6 +290,8 @@ with checking("the ripples' clock is the sea's, and loops with it"):
     assert len(curves) == 2 and all(curve.driver.is_simple_expression for curve in curves)  # no scripts, which files may forbid
 
 with checking("the sky is kept in files"):
+    light.SKY_WIDTH = WHOLE_SKY
+    change(obj, light__sun_elevation_deg=40.0)
     with tempfile.TemporaryDirectory() as folder:
         bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "sea.blend"))
         bpy.ops.wm.open_mainfile(filepath=str(Path(folder) / "sea.blend"))

@@ -67,7 +67,7 @@ def steps():
 
     with checking("foam that lives is the program's, too, and how it looks needs no other sea and no other sky"):
         wind_mps, obj.pelagic.sea.wind_speed_mps = obj.pelagic.sea.wind_speed_mps, 18.0
-        obj.pelagic.effects.foam_decay_s = 3.0
+        obj.pelagic.effects.foam_decay_s = 2.0
         living, here = picture(), seen_from_here(obj)
         theirs = programs_picture(here)
         here.effects.foam_decay_s = 0.0

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
-enable(sky_width=None)
+enable(sky_width=256)
 import pelagic
 from mathutils import Matrix
 from pelagic_ocean import depths, diving, ocean, play, query, surfaces, upwelling

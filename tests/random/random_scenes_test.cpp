@@ -1,7 +1,7 @@
 // Random scenes: whatever a shot file asks is baked and pictured to finite, bounded numbers, the same bits on one thread and
 // on two, or it is refused by name. A scene that fails is shrunk to the simplest that still does, and printed.
 //
-//   PELAGIC_SCENES=10000 test_random_scenes    so many, instead of 50
+//   PELAGIC_SCENES=10000 test_random_scenes    so many, instead of 20
 //   PELAGIC_SCENE=123 test_random_scenes       the scene of this seed alone
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBatches = 5, kScenes = 50;  // and ten thousand at night
+constexpr int kBatches = 2, kScenes = 20;  // and ten thousand at night
 
 std::optional<long> number_of_environment(const char* name) {
     const char* value = std::getenv(name);

@@ -365,6 +365,9 @@ TEST_F(Closure, OfAPatch) {
     expect_closed(patch_shot());
 }
 TEST_F(Closure, OfVolumes) {
+    expect_closed(only(volumes_shot(), {"surface", "effects", "output"}));
+}
+TEST_F(Closure, OfVolumesByAllKeys) {
     expect_closed(volumes_shot());
 }
 TEST_F(Closure, OfFoamThatLives) {
@@ -386,12 +389,21 @@ TEST_F(Closure, OfTilesOnABeach) {
     expect_closed(coast_tiles_shot());
 }
 TEST_F(Closure, OfAMeshFromNearToFar) {
+    expect_closed(only(near_far_shot(), {"shot", "surface", "camera"}));
+}
+TEST_F(Closure, OfAMeshFromNearToFarByAllKeys) {
     expect_closed(near_far_shot());
 }
 TEST_F(Closure, OfACage) {
+    expect_closed(only(cage_shot(), {"surface", "output"}));
+}
+TEST_F(Closure, OfACageByAllKeys) {
     expect_closed(cage_shot());
 }
 TEST_F(Closure, OfACageAsACameraSeesIt) {
+    expect_closed(only(adaptive_cage_shot(), {"surface", "camera"}));
+}
+TEST_F(Closure, OfACageAsACameraSeesItByAllKeys) {
     expect_closed(adaptive_cage_shot());
 }
 TEST_F(Closure, OfABuoysSpectrum) {

@@ -116,7 +116,11 @@ TEST_F(FarOut, EverySurfaceInEveryFormatIsAsExactAsAtTheOrigin) {
             Quality near;
             const bool is_planet = kind == word_of(SurfaceKind::Planet),
                        is_cage = kind == word_of(SurfaceKind::Cage);
-            for (const glm::dvec2 place_m : is_planet ? kPlacesOfAPlanet_m : kPlaces_m) {
+            std::vector<glm::dvec2> places_m = is_planet ? kPlacesOfAPlanet_m : kPlaces_m;
+            // How far out a surface is exact is no matter of the format, which must say its origin as exactly there.
+            if (format != word_of(MeshFormat::Usdc))
+                places_m = {places_m.front(), places_m[3], places_m.back()};
+            for (const glm::dvec2 place_m : places_m) {
                 SCOPED_TRACE(kind + " as " + format + ", camera at " + std::to_string(place_m.x) + ", " +
                              std::to_string(place_m.y));
                 Scene scene = scene_at(place_m);

@@ -21,6 +21,8 @@ constexpr int kRowsAtOnce = 64;
 constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
 constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
 constexpr double kLeastRise = 1e-3;  // of mirrored light, over its way
+// Less, over a level sea's, doesn't make it more: waves are before what goes along them.
+constexpr double kLeastRiseOfSun = 0.25;
 
 // The sun as the waves refract or mirror it. `away`: the horizontal direction in which its light goes.
 struct Beam {
@@ -65,25 +67,29 @@ double transmitted(double cosine) {
     return 1.0 - 0.5 * (across * across + along * along);
 }
 
-// Where a facet of that normal (unit) sends the light: the horizontal way per metre of depth or height.
-glm::dvec2 way_from(const Beam& beam, const glm::dvec3& n, double facing) {
+// Where a facet of that normal (unit) sends the light: the horizontal way per metre of depth or height. far: by how much it is no more than
+// that from a level sea's, where the light is mirrored.
+glm::dvec2 way_from(const Beam& beam, const glm::dvec3& n, double facing, double far) {
     if (beam.is_mirrored) {
         const glm::dvec3 ray = 2.0 * facing * n - beam.to_sun;
-        return glm::dvec2(ray) / std::max(ray.z, kLeastRise);
+        const glm::dvec2 level = beam.tangent * beam.away,
+                         aside = glm::dvec2(ray) / std::max(ray.z, kLeastRise) - level;
+        return level + aside * std::min(far / std::max(glm::length(aside), 1e-12), 1.0);
     }
     const double there = std::sqrt(1.0 - (1.0 - facing * facing) / (kIndex * kIndex));
     const glm::dvec3 ray = -beam.to_sun / kIndex - (there - facing / kIndex) * n;
     return glm::dvec2(ray) / std::max(-ray.z, 0.05);
 }
 
-// The part of a beam that a facet sends on, by that of the beam that it stands in; of mirrored light over the level area through which it
-// goes, which makes it light across its way. far: beyond how much of a way other than a level sea's none counts.
+// The part of a beam that a facet sends on, by that of the beam that it stands in; of mirrored light what of it falls on an upright wall that
+// faces it, over the level area through which it goes. None where it goes farther aside.
 double sent_on(const Beam& beam, const glm::dvec3& n, double facing, double far) {
     if (!beam.is_mirrored) return transmitted(facing);
-    const double rise = 2.0 * facing * n.z - beam.to_sun.z;
-    if (!(rise > kLeastRise) || glm::length(way_from(beam, n, facing) - beam.tangent * beam.away) > far)
+    const glm::dvec3 ray = 2.0 * facing * n - beam.to_sun;
+    const double level = glm::length(glm::dvec2(ray));
+    if (!(ray.z > kLeastRise) || glm::length(glm::dvec2(ray) / ray.z - beam.tangent * beam.away) > far)
         return 0.0;
-    return (1.0 - transmitted(facing)) / rise;
+    return (1.0 - transmitted(facing)) * level / std::max(ray.z, kLeastRiseOfSun * beam.to_sun.z);
 }
 
 // Where light falls, in a map's texels, and how much of it, by cells of the sea.
@@ -136,7 +142,7 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
         tbb::parallel_for(Range(0, count, 1024), [&](const Range& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const glm::dvec3 n(normal[i]);
-                const glm::dvec2 along = way_from(beam, n, std::max(glm::dot(n, beam.to_sun), 0.0));
+                const glm::dvec2 along = way_from(beam, n, std::max(glm::dot(n, beam.to_sun), 0.0), far);
                 const glm::dvec2 at = origin + glm::dvec2(position[i]);
                 const double height = static_cast<double>(position[i].z) - on.level_m;
                 // The floor's height hardly changes over the way of the light.
@@ -242,11 +248,11 @@ MeanMirrored mean_mirrored(const Beam& beam, const glm::dmat2& variance, double 
     const double along = std::sqrt(std::max(glm::dot(beam.away, variance * beam.away), 0.0)),
                  both = along > 0.0 ? glm::dot(side, variance * beam.away) / along : 0.0,
                  across = std::sqrt(std::max(glm::dot(side, variance * side) - both * both, 0.0));
-    constexpr int kSteps = 24;
+    constexpr int kAlong = 160, kAcross = 24;  // a low sun's light rises steeply with the slope along it
     double near = 0.0, all = 0.0, weights = 0.0;
-    for (int i = -kSteps; i <= kSteps; ++i)
-        for (int j = -kSteps; j <= kSteps; ++j) {
-            const double u = 4.0 * i / kSteps, v = 4.0 * j / kSteps,
+    for (int i = -kAlong; i <= kAlong; ++i)
+        for (int j = -kAcross; j <= kAcross; ++j) {
+            const double u = 4.0 * i / kAlong, v = 4.0 * j / kAcross,
                          weight = std::exp(-0.5 * (u * u + v * v));
             const glm::dvec2 slope = along * u * beam.away + (both * u + across * v) * side;
             const glm::dvec3 area(-slope, 1.0);
@@ -256,10 +262,7 @@ MeanMirrored mean_mirrored(const Beam& beam, const glm::dmat2& variance, double 
             const glm::dvec3 n = area / size;
             const double cosine = std::min(facing / size, 1.0);
             near += weight * facing * sent_on(beam, n, cosine, far);
-            // What goes along the sea has no bound, but waves before it.
-            const double rise = std::max(2.0 * cosine * n.z - beam.to_sun.z, 0.1 * beam.to_sun.z);
-            if (2.0 * cosine * n.z > beam.to_sun.z)
-                all += weight * facing * (1.0 - transmitted(cosine)) / rise;
+            all += weight * facing * sent_on(beam, n, cosine, std::numeric_limits<double>::infinity());
         }
     if (!(near > 0.0)) return {};
     return {near / weights, std::min(near / all, 1.0)};
@@ -364,8 +367,9 @@ template <class T>
 void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query,
                    const SunThroughWaves& sun, const CausticsOn& on, const std::atomic<bool>* cancel) {
     const Beam beam = beam_of(sun);
-    const double m0 = frame.sea().plan().from->spectrum.m0(),
-                 margin_m = caustics_margin_m(sun, floor, m0, on);
+    const double m0 = frame.sea().plan().from->spectrum.m0();
+    double margin_m = caustics_margin_m(sun, floor, m0, on);
+    if (beam.is_mirrored) margin_m = std::max(margin_m, 2.0 * map.texel_m);  // a calm has no slopes
     // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than on.depth_m.
     const double range_m =
         std::max(margin_m - waves_reach_m(sun, beam, m0, on), 0.0) / std::max(beam.tangent, kLeastTangent);

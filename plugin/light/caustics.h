@@ -55,8 +55,8 @@ struct CausticsOn {
 double caustics_margin_m(const SunThroughWaves& sun, const Floor& floor, double m0, const CausticsOn& on);
 
 // Cells of the sea, as wide as a map's texels, send what they let in by Snell's law for their own slopes to the floor, where it is spread by the
-// slopes that they don't resolve and by the sun's disc. So all light arrives somewhere, and its mean is 1. Mirrored light is that across its
-// way (fluence), whichever way a surface looks there; what slopes throw farther than the margin is even light. The frame's query has
+// slopes that they don't resolve and by the sun's disc. So all light arrives somewhere, and its mean is 1. Mirrored light is that
+// on upright walls that face it; what slopes throw farther than the margin is even light. The frame's query has
 // positions, normals and slope variances at the map's footprint. All threads of the calling arena. Throws BuildCancelled.
 template <class T>
 void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query,

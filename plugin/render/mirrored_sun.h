@@ -32,7 +32,7 @@ class MirroredSun {
     void find(const Frame<T>& frame, MirroredSunWanted wanted, const std::atomic<bool>* cancel);
     // None, which is even.
     void clear();
-    // The light across its way over its mean, at a place [m] as the box's middle is.
+    // The light on an upright wall over its mean, at a place [m] as the box's middle is.
     float at(const glm::dvec3& place_m) const;
     // At most, with what finding it takes [bytes].
     static std::size_t bytes();
@@ -44,7 +44,7 @@ class MirroredSun {
         glm::dvec2 from_m{0.0};  // along and left of the sun's way
         double texel_m = 1.0;
         int side = 0;
-        std::vector<float> texels;
+        std::vector<float> texels{};
         float at(const glm::dvec2& place_m) const;
     };
 

@@ -52,6 +52,9 @@ class PELAGIC_PG_in_light(bpy.types.PropertyGroup):
         ("response", "By Its Mass", "It answers late, and rolls on, as a ship as long, wide and deep does")))
     roll_damping: FloatProperty(name="Roll damping", default=0.1, min=0.01, max=10.0, soft_max=1.0,
                                 description="By its mass: a bare hull has 0.05, one with bilge keels 0.1, a yacht under sail 0.4")
+    caustics: FloatProperty(name="Caustics", default=0.0, min=0.0, max=10.0, soft_max=3.0,
+                            description="How much waves gather the sun's light that they mirror onto it, 1 as it is. Pictures of a shot have it; Cycles and "
+                                        "the viewport don't")
 
 
 # ---- Out
@@ -102,7 +105,8 @@ def put(context, sea, scene, folder):
         light = bodies.write(shape, file)
         made.append(entry | {"file": str(file.absolute()), "name": _free(_name(obj.name), names), "floats": floating.is_afloat(obj),
                              "buoyancy": obj.pelagic_in_light.buoyancy,
-                             "roll_damping": shortest(obj.pelagic_in_light.roll_damping), "holdout": obj.is_holdout, "glow_cd_m2": float(f"{1000.0 * light:.6g}")})
+                             "roll_damping": shortest(obj.pelagic_in_light.roll_damping), "caustics": shortest(obj.pelagic_in_light.caustics),
+                             "holdout": obj.is_holdout, "glow_cd_m2": float(f"{1000.0 * light:.6g}")})
     scene.objects = [pelagic.SceneObject(**each) for each in made]
     return remarks
 
@@ -217,6 +221,7 @@ def add(context, shot, name):
         obj.is_holdout = entry.holdout
         obj.pelagic_in_light.enabled = True
         obj.pelagic_in_light.buoyancy, obj.pelagic_in_light.roll_damping = entry.buoyancy, entry.roll_damping
+        obj.pelagic_in_light.caustics = entry.caustics
         if entry.floats:
             obj.pelagic_float.enabled = True
         made.append(obj)
@@ -269,6 +274,7 @@ class InLightPanel:
             layout.use_property_split = True
             layout.active = context.object.pelagic_in_light.enabled
             layout.prop(context.object.pelagic_in_light, "proxy")
+            layout.prop(context.object.pelagic_in_light, "caustics")
             if floating.is_afloat(context.object):
                 layout.prop(context.object.pelagic_in_light, "buoyancy")
                 if context.object.pelagic_in_light.buoyancy == "response":

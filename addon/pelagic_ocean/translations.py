@@ -68,7 +68,7 @@ GERMAN = {
     "Float": "Schwimmen lassen", "Float No More": "Nicht mehr schwimmen lassen", "Apply Preset": "Voreinstellung anwenden",
     "Delete Preset": "Voreinstellung löschen", "Save Preset": "Voreinstellung speichern", "Save…": "Speichern …",
     "Add to Sea": "In die See setzen", "Take from Sea": "Aus der See nehmen", "Triangles": "Dreiecke", "Buoyancy": "Auftrieb", "On the Water": "Auf dem Wasser",
-    "By Its Mass": "Nach seiner Masse", "Roll damping": "Rolldämpfung", "Catches": "Fängt auf",
+    "By Its Mass": "Nach seiner Masse", "Roll damping": "Rolldämpfung", "Caustics": "Kaustiken", "Catches": "Fängt auf",
     "Shadow and Reflection Catcher": "Fänger für Schatten und Spiegelbild",
     "Make Wake": "Kielwasser machen", "Mask from Painted Mesh": "Maske aus bemaltem Netz", "Release Mesh": "Netz freigeben", "Replace Ocean Modifier": "Ozean-Modifikator ersetzen",
     "Sample Sea Heights": "Wasserstand abtasten", "Use Mesh as Cage of an Ocean": "Netz als Käfig eines Ozeans",
@@ -102,6 +102,8 @@ GERMAN = {
         "Wie viele seiner Dreiecke eine Aufnahme hat, durch Blenders Dezimieren: alle, oder einen Teil, wo das Objekt fern ist",
     "How it floats in the pictures of a shot; in Blender it lies on the water":
         "Wie es in den Bildern einer Aufnahme schwimmt; in Blender liegt es auf dem Wasser",
+    "How much waves gather the sun's light that they mirror onto it, 1 as it is. Pictures of a shot have it; Cycles and the viewport don't":
+        "Wie sehr Wellen das Sonnenlicht bündeln, das sie darauf spiegeln, 1 wie es ist. Bilder einer Aufnahme haben es; Cycles und die Ansicht nicht",
     "By its mass: a bare hull has 0.05, one with bilge keels 0.1, a yacht under sail 0.4":
         "Nach seiner Masse: ein bloßer Rumpf hat 0,05, einer mit Schlingerkielen 0,1, eine Yacht unter Segeln 0,4",
     "It lies on the water under it": "Es liegt auf dem Wasser unter ihm",

@@ -271,6 +271,10 @@ KeyValue content_value(const Scene& scene, const Key& key) {
             if (name == "name") inner = object.called();
             if (name == "file") inner = object.mesh ? object.mesh->content() : "";
         }
+    // Off it isn't said, as in records of the time before it.
+    for (KeyEntry& entry : entries)
+        std::erase_if(entry.values,
+                      [](const auto& of) { return of.first == "caustics" && of.second == KeyValue(0.0); });
     return value;
 }
 

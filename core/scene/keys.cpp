@@ -1100,6 +1100,12 @@ void add_objects(Built& out) {
              .unit = "cd/m²",
              .range = limits::kObjectGlow_cd_m2,
              .soft = SoftRange{1.0, 1e5, true}}),
+        row<&SceneObject::caustics>(
+            {.name = "caustics",
+             .help =
+                 "how much waves gather the sun's light that they mirror onto it; 1 is as computed, 0 their mean light",
+             .range = limits::kWaterGain,
+             .soft = SoftRange{0.0, 3.0}}),
         row<&SceneObject::holdout>(
             {.name = "holdout",
              .help =

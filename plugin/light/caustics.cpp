@@ -20,15 +20,20 @@ constexpr double kIndex = 1.34;  // as kWaterIndex of fresnel.glsl
 constexpr int kRowsAtOnce = 64;
 constexpr int kParts = 4;   // of the sea, always as many, so that sums are the same on any number of threads
 constexpr int kSplits = 4;  // of a cell's side: its light falls as so many points
+constexpr double kLeastRise = 1e-3;  // of mirrored light, over its way
+// Less, over a level sea's, doesn't make it more: waves are before what goes along them.
+constexpr double kLeastRiseOfSun = 0.25;
 
-// The sun as the waves refract it. `away`: the horizontal direction in which its light goes.
+// The sun as the waves refract or mirror it. `away`: the horizontal direction in which its light goes.
 struct Beam {
     glm::dvec3 to_sun{0.0, 0.0, 1.0};
     glm::dvec2 away{1.0, 0.0};
-    double tangent = 0.0;       // of its way below a level sea
+    double tangent = 0.0;       // of its way below a level sea, or above it
     double cosine_there = 1.0;  // of that
     glm::dmat2 per_slope{1.0};  // how far a slope moves it on a floor 1 m deep
     double radius = 0.0;
+    bool is_mirrored = false;
+    double index = kIndex;  // that bends it
 };
 
 Beam beam_of(const SunThroughWaves& sun) {
@@ -37,11 +42,19 @@ Beam beam_of(const SunThroughWaves& sun) {
     beam.radius = static_cast<double>(sun.angular_radius);
     const double level = glm::length(glm::dvec2(beam.to_sun));
     beam.away = level > 1e-6 ? -glm::dvec2(beam.to_sun) / level : glm::dvec2(1.0, 0.0);
-    const double sine = level / kIndex;
-    beam.cosine_there = std::sqrt(1.0 - sine * sine);
-    beam.tangent = sine / beam.cosine_there;
-    // A slope s tilts the normal by −s and with it the ray by (c_t − c_i/n) s: along its plane and across it.
-    const double bend = (beam.cosine_there - beam.to_sun.z / kIndex) / beam.cosine_there;
+    beam.is_mirrored = sun.is_mirrored;
+    double bend = -2.0;  // a mirror turns a ray by twice its own angle
+    if (beam.is_mirrored) {
+        beam.index = 1.0;
+        beam.cosine_there = std::max(beam.to_sun.z, kLeastRise);
+        beam.tangent = level / beam.cosine_there;
+    } else {
+        const double sine = level / kIndex;
+        beam.cosine_there = std::sqrt(1.0 - sine * sine);
+        beam.tangent = sine / beam.cosine_there;
+        // A slope s tilts the normal by −s and with it the ray by (c_t − c_i/n) s: along its plane and across it.
+        bend = (beam.cosine_there - beam.to_sun.z / kIndex) / beam.cosine_there;
+    }
     const glm::dmat2 along = glm::outerProduct(beam.away, beam.away);
     beam.per_slope = bend * (glm::dmat2(1.0) + beam.tangent * beam.tangent * along);
     return beam;
@@ -54,6 +67,31 @@ double transmitted(double cosine) {
     return 1.0 - 0.5 * (across * across + along * along);
 }
 
+// Where a facet of that normal (unit) sends the light: the horizontal way per metre of depth or height. far: by how much it is no more than
+// that from a level sea's, where the light is mirrored.
+glm::dvec2 way_from(const Beam& beam, const glm::dvec3& n, double facing, double far) {
+    if (beam.is_mirrored) {
+        const glm::dvec3 ray = 2.0 * facing * n - beam.to_sun;
+        const glm::dvec2 level = beam.tangent * beam.away,
+                         aside = glm::dvec2(ray) / std::max(ray.z, kLeastRise) - level;
+        return level + aside * std::min(far / std::max(glm::length(aside), 1e-12), 1.0);
+    }
+    const double there = std::sqrt(1.0 - (1.0 - facing * facing) / (kIndex * kIndex));
+    const glm::dvec3 ray = -beam.to_sun / kIndex - (there - facing / kIndex) * n;
+    return glm::dvec2(ray) / std::max(-ray.z, 0.05);
+}
+
+// The part of a beam that a facet sends on, by that of the beam that it stands in; of mirrored light what of it falls on an upright wall that
+// faces it, over the level area through which it goes. None where it goes farther aside.
+double sent_on(const Beam& beam, const glm::dvec3& n, double facing, double far) {
+    if (!beam.is_mirrored) return transmitted(facing);
+    const glm::dvec3 ray = 2.0 * facing * n - beam.to_sun;
+    const double level = glm::length(glm::dvec2(ray));
+    if (!(ray.z > kLeastRise) || glm::length(glm::dvec2(ray) / ray.z - beam.tangent * beam.away) > far)
+        return 0.0;
+    return (1.0 - transmitted(facing)) * level / std::max(ray.z, kLeastRiseOfSun * beam.to_sun.z);
+}
+
 // Where light falls, in a map's texels, and how much of it, by cells of the sea.
 struct Falls {
     int columns = 0, rows = 0;  // of the cells; places have one more
@@ -64,14 +102,16 @@ struct Falls {
 template <class T>
 Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query, const Beam& beam,
                const CausticsOn& on, double margin_m, double range_m, const std::atomic<bool>* cancel) {
-    const double depth_m = on.depth_m;
+    const double depth_m = on.depth_m, far = margin_m / std::max(depth_m, 1e-9);
     const double s = map.texel_m;
+    const glm::dvec2 right = map.along, up(-right.y, right.x);
     const int margin = static_cast<int>(std::ceil(margin_m / s));
     Falls falls{.columns = map.side + 2 * margin, .rows = map.side + 2 * margin, .place = {}, .light = {}};
     const auto width = static_cast<std::size_t>(falls.columns) + 1;
     falls.place.resize(width * (static_cast<std::size_t>(falls.rows) + 1));
     falls.light.resize(static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(falls.rows));
-    const glm::dvec2 from_m = map.from_m - depth_m * beam.tangent * beam.away - margin * s;
+    const glm::dvec2 from_m =
+        map.from_m - depth_m * beam.tangent * beam.away - margin * s * right - margin * s * up;
     std::vector<glm::vec<2, T>> rest;
     std::vector<glm::vec<3, T>> position, normal;
     for (int row = 0; row < falls.rows; row += kRowsAtOnce) {
@@ -82,9 +122,9 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
         position.resize(count);
         normal.resize(count);
         for (std::size_t i = 0; i < count; ++i)
-            rest[i] = glm::vec<2, T>(static_cast<T>(static_cast<double>(i % width) * s),
-                                     static_cast<T>(static_cast<double>(i / width) * s));
-        const glm::dvec2 origin = from_m + glm::dvec2(0.0, row * s);
+            rest[i] = glm::vec<2, T>(static_cast<double>(i % width) * s * right +
+                                     static_cast<double>(i / width) * s * up);
+        const glm::dvec2 origin = from_m + row * s * up;
         Results<T> results;
         results.set(Product::Position, {position.data()});
         results.set(Product::Normal, {normal.data()});
@@ -102,19 +142,17 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
         tbb::parallel_for(Range(0, count, 1024), [&](const Range& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const glm::dvec3 n(normal[i]);
-                const double facing = std::max(glm::dot(n, beam.to_sun), 0.0),
-                             there = std::sqrt(1.0 - (1.0 - facing * facing) / (kIndex * kIndex));
-                const glm::dvec3 ray = -beam.to_sun / kIndex - (there - facing / kIndex) * n;
-                const glm::dvec2 along = glm::dvec2(ray) / std::max(-ray.z, 0.05);
+                const glm::dvec2 along = way_from(beam, n, std::max(glm::dot(n, beam.to_sun), 0.0), far);
                 const glm::dvec2 at = origin + glm::dvec2(position[i]);
-                const auto height = static_cast<double>(position[i].z);
+                const double height = static_cast<double>(position[i].z) - on.level_m;
                 // The floor's height hardly changes over the way of the light.
                 double local_m = depth_m;
                 if (floor.has_depths())
                     local_m =
                         std::clamp(floor.depth_m(at + depth_m * along), depth_m - range_m, depth_m + range_m);
-                const glm::dvec2 hit = at + std::max(height + local_m, 0.0) * along;
-                falls.place[first + i] = glm::vec2((hit - map.from_m) / s);
+                const double way_m = beam.is_mirrored ? local_m - height : local_m + height;
+                const glm::dvec2 hit = at + std::max(way_m, 0.0) * along - map.from_m;
+                falls.place[first + i] = glm::vec2(glm::dvec2(glm::dot(hit, right), glm::dot(hit, up)) / s);
             }
         });
         tbb::parallel_for(0, rows, [&](int y) {
@@ -125,7 +163,8 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
                                                          glm::dvec3(position[i + width] - position[i + 1]));
                 const double across = glm::dot(area, beam.to_sun), size = glm::length(area);
                 double light = 0.0;
-                if (across > 0.0) light = across * transmitted(std::min(across / size, 1.0));
+                if (across > 0.0)
+                    light = across * sent_on(beam, area / size, std::min(across / size, 1.0), far);
                 falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(row + y) +
                             static_cast<std::size_t>(x)] = static_cast<float>(light);
             }
@@ -199,14 +238,46 @@ double mean_light(const Beam& beam, double variance) {
     return sum / weights;
 }
 
+// The same of a sea that mirrors it, over waves of these slope variances: of what counts, and which part that is of all.
+struct MeanMirrored {
+    double light = 1.0, share = 0.0;
+};
+MeanMirrored mean_mirrored(const Beam& beam, const glm::dmat2& variance, double far) {
+    // By two independent slopes: along the beam, and what is left across it.
+    const glm::dvec2 side(-beam.away.y, beam.away.x);
+    const double along = std::sqrt(std::max(glm::dot(beam.away, variance * beam.away), 0.0)),
+                 both = along > 0.0 ? glm::dot(side, variance * beam.away) / along : 0.0,
+                 across = std::sqrt(std::max(glm::dot(side, variance * side) - both * both, 0.0));
+    constexpr int kAlong = 160, kAcross = 24;  // a low sun's light rises steeply with the slope along it
+    double near = 0.0, all = 0.0, weights = 0.0;
+    for (int i = -kAlong; i <= kAlong; ++i)
+        for (int j = -kAcross; j <= kAcross; ++j) {
+            const double u = 4.0 * i / kAlong, v = 4.0 * j / kAcross,
+                         weight = std::exp(-0.5 * (u * u + v * v));
+            const glm::dvec2 slope = along * u * beam.away + (both * u + across * v) * side;
+            const glm::dvec3 area(-slope, 1.0);
+            const double facing = glm::dot(area, beam.to_sun), size = glm::length(area);
+            weights += weight;
+            if (!(facing > 0.0)) continue;
+            const glm::dvec3 n = area / size;
+            const double cosine = std::min(facing / size, 1.0);
+            near += weight * facing * sent_on(beam, n, cosine, far);
+            all += weight * facing * sent_on(beam, n, cosine, std::numeric_limits<double>::infinity());
+        }
+    if (!(near > 0.0)) return {};
+    return {near / weights, std::min(near / all, 1.0)};
+}
+
 // Variances of the slopes that the map's texels don't resolve: the mean over some places of it.
 template <class T>
 glm::dmat2 hidden_slopes(const Frame<T>& frame, int query, const CausticsMap& map) {
     constexpr int kPlaces = 16;  // a side
     std::vector<glm::vec<2, T>> rest;
     for (int i = 0; i < kPlaces * kPlaces; ++i)
-        rest.push_back(static_cast<T>(map.side * map.texel_m / kPlaces) *
-                       glm::vec<2, T>(static_cast<T>(i % kPlaces), static_cast<T>(i / kPlaces)));
+        rest.push_back(
+            static_cast<T>(map.side * map.texel_m / kPlaces) *
+            glm::vec<2, T>(static_cast<double>(i % kPlaces) * map.along +
+                           static_cast<double>(i / kPlaces) * glm::dvec2(-map.along.y, map.along.x)));
     const std::vector<T> width(rest.size(), static_cast<T>(map.texel_m));
     std::vector<glm::vec<3, T>> hidden(rest.size());
     Results<T> results;
@@ -296,8 +367,9 @@ template <class T>
 void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query,
                    const SunThroughWaves& sun, const CausticsOn& on, const std::atomic<bool>* cancel) {
     const Beam beam = beam_of(sun);
-    const double m0 = frame.sea().plan().from->spectrum.m0(),
-                 margin_m = caustics_margin_m(sun, floor, m0, on);
+    const double m0 = frame.sea().plan().from->spectrum.m0();
+    double margin_m = caustics_margin_m(sun, floor, m0, on);
+    if (beam.is_mirrored) margin_m = std::max(margin_m, 2.0 * map.texel_m);  // a calm has no slopes
     // Light comes from within the margin as long as the floor there isn't much deeper, nor less deep, than on.depth_m.
     const double range_m =
         std::max(margin_m - waves_reach_m(sun, beam, m0, on), 0.0) / std::max(beam.tangent, kLeastTangent);
@@ -305,16 +377,24 @@ void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& f
     const glm::dvec3 all(sun.waves);
     const glm::dmat2 waves(all.x, all.z, all.z, all.y);
     const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
-    gather(falls_on(map, floor, frame, query, beam, on, margin_m, range_m, cancel), map,
-           mean_light(beam, towards_sun) * map.texel_m * map.texel_m);
     const double depth_m = on.depth_m;
-    const glm::dmat2 spread = depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope);
+    MeanMirrored mirrored;
+    if (beam.is_mirrored) mirrored = mean_mirrored(beam, waves - hidden, margin_m / std::max(depth_m, 1e-9));
+    gather(falls_on(map, floor, frame, query, beam, on, margin_m, range_m, cancel), map,
+           (beam.is_mirrored ? mirrored.light : mean_light(beam, towards_sun)) * map.texel_m * map.texel_m);
+    if (beam.is_mirrored)
+        for (float& texel : map.texels) texel = 1.0f + static_cast<float>(mirrored.share) * (texel - 1.0f);
+    const glm::dmat2 in_map(map.along.x, -map.along.y, map.along.y, map.along.x);
+    const glm::dvec2 away = in_map * beam.away;
+    const glm::dmat2 spread = in_map *
+                              (depth_m * depth_m * beam.per_slope * hidden * glm::transpose(beam.per_slope)) *
+                              glm::transpose(in_map);
     // The sun's disc: a uniform one's variance is a quarter of its radius' square.
     const double c = beam.cosine_there;
-    const double disc = depth_m * beam.radius / (2.0 * kIndex * c);
+    const double disc = depth_m * beam.radius / (2.0 * beam.index * c);
     const double along = disc * beam.to_sun.z / (c * c);
     for (int axis = 0; axis < 2; ++axis) {
-        const double part = beam.away[axis] * beam.away[axis];
+        const double part = away[axis] * away[axis];
         // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
         constexpr double kLeast_texels = 0.6;
         const double least_m = kLeast_texels * map.texel_m;

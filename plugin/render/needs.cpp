@@ -22,6 +22,7 @@
 #include "plugin/render/drawn_sea.h"
 #include "plugin/render/floor_light.h"
 #include "plugin/render/glare.h"
+#include "plugin/render/mirrored_sun.h"
 #include "plugin/render/objects.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/render.h"
@@ -245,6 +246,11 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      rows * static_cast<std::size_t>(sampled.camera.resolution.x) * a_sample,
                  "give meshes of fewer triangles");
     }
+    const auto gathering = static_cast<std::size_t>(std::ranges::count_if(
+        scene.objects, [](const SceneObject& object) { return object.caustics > 0.0; }));
+    if (gathering > 0)
+        need.add("the sun's light that waves mirror onto objects", gathering * MirroredSun::bytes(),
+                 "set objects[].caustics to 0");
     if (options.lighting.spray) {
         need.add("the map of the spray",
                  spray_map_bytes(spray_map_size(sampled.camera.resolution.x +

@@ -128,7 +128,9 @@ LitObjects::LitObjects(const Scene& scene) : scene_(scene), lamps_(scene) {
                            .colour = glm::vec3(object.colour),
                            .glow = static_cast<float>(1e-3 * object.glow_cd_m2),
                            .holdout = object.holdout,
-                           .placed = {}});
+                           .placed = {},
+                           .caustics = static_cast<float>(object.caustics),
+                           .pattern = {}});
     }
     rays_ = make_ray_scene(meshes);
 }
@@ -139,8 +141,13 @@ std::size_t LitObjects::bytes(const Scene& scene) {
     return meshes.empty() ? 0 : ray_scene_bytes(meshes) + Lamps::bytes(scene);
 }
 
+bool LitObjects::has_caustics() const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.caustics > 0.0f; });
+}
+
 template <class T>
 void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
+    origin_m_ = sea.origin_m;
     const double step_s = scene_.shot.time_scale / scene_.shot.fps;
     const int query = hulls_query(state.sea().plan()).value_or(SeaLight<T>::kQuery);
     std::vector<glm::mat4x3> transforms;
@@ -159,9 +166,14 @@ void LitObjects::place(const Frame<T>& state, double frame, const Sea& sea) {
             placed.place_m = on_earth(flat_m, sea.curvature_per_m);
             for (int axis = 0; axis < 3; ++axis)
                 placed.axes[axis] = pose.scale * from_level(pose.turn[axis], vertical);
-            if (beside == 0)
-                body.water_m = static_cast<float>(
-                    on_earth(glm::dvec3(glm::dvec2(flat_m), water_m), sea.curvature_per_m).z);
+            if (beside != 0) continue;
+            body.water_m =
+                static_cast<float>(on_earth(glm::dvec3(glm::dvec2(flat_m), water_m), sea.curvature_per_m).z);
+            const glm::dvec3 half = 0.5 * pose.scale * (most - least);
+            body.half_edges_m = {half.x * pose.turn[0], half.y * pose.turn[1], half.z * pose.turn[2]};
+            body.middle_m = pose.place_m + pose.turn * (0.5 * pose.scale * (least + most));
+            body.flat_water_m = water_m;
+            body.waves_m = water_m - (sea.rest_m ? sea.rest_m(glm::dvec2(pose.place_m)) : 0.0);
         }
         const Placed& now = body.placed[1];
         if (!sea.has_motion) body.placed[0] = body.placed[2] = now;
@@ -206,6 +218,9 @@ void LitObjects::light(const SeaLight<T>& sea) {
         sea_[lit].resize(light.size());
         std::transform(light.begin(), light.end(), sea_[lit].begin(), radiance_of);
     }
+    sun_in_sea_.clear();
+    if (has_caustics())
+        for (const SeaRadiance& of : light) sun_in_sea_.push_back(of.sun);
     find_irradiance();
     constexpr float kStep_m = 0.5f, kFarthest_m = 64.0f, kLeast = 0.01f;
     sight_in_water_m_ = kStep_m;
@@ -216,12 +231,39 @@ void LitObjects::light(const SeaLight<T>& sea) {
 template void LitObjects::light(const SeaLight<float>&);
 template void LitObjects::light(const SeaLight<double>&);
 
+template <class T>
+void LitObjects::find_caustics(const SeaLight<T>& sea, const Seen& seen, const std::atomic<bool>* cancel) {
+    for (Body& body : bodies_) {
+        if (!(body.caustics > 0.0f)) continue;
+        if (beam_ == glm::vec3(0.0f)) {
+            body.pattern.clear();
+            continue;
+        }
+        const glm::dmat3& half = body.half_edges_m;
+        const double away_m =
+            std::max(glm::length(body.middle_m - seen.eye_m) - glm::length(half[0] + half[1] + half[2]), 0.0);
+        body.pattern.find(sea.frame(),
+                          {.sun = {.to_sun = to_sun_,
+                                   .angular_radius = sky_->sun_angular_radius,
+                                   .waves = sea.slopes_from_afar()},
+                           .middle_m = body.middle_m - glm::dvec3(0.0, 0.0, body.flat_water_m),
+                           .half_edges_m = half,
+                           .level_m = body.waves_m,
+                           .finest_m = std::max(seen.finest_m, seen.pixel_tangent * away_m),
+                           .finest_cell_m = seen.finest_cell_m},
+                          cancel);
+    }
+}
+template void LitObjects::find_caustics(const SeaLight<float>&, const Seen&, const std::atomic<bool>*);
+template void LitObjects::find_caustics(const SeaLight<double>&, const Seen&, const std::atomic<bool>*);
+
 // By the normal, of the sky and sea that rays see. The nine numbers of ObjectSurroundings err by some per cent where the sun glitters on the
 // sea: the rays' means would have other light than what they stand for.
 void LitObjects::find_irradiance() {
     constexpr int kSide = 64;  // of a square round the horizon's circle in the sky's map
     constexpr float kStep = 2.0f / kSide;
-    std::vector<std::pair<glm::vec3, glm::vec3>> all;  // direction, light across it
+    using Directions = std::vector<std::pair<glm::vec3, glm::vec3>>;  // with light across them
+    Directions all, of_sun;
     for (int j = 0; j < kSide; ++j)
         for (int i = 0; i < kSide; ++i) {
             const glm::vec2 u(-1.0f + kStep * (static_cast<float>(i) + 0.5f),
@@ -231,29 +273,42 @@ void LitObjects::find_irradiance() {
             const float solid_angle = (1.0f + d.z) * (1.0f + d.z) * kStep * kStep;
             all.emplace_back(d, solid_angle * sky(d, kBlur));
             all.emplace_back(down, solid_angle * sea(-down, true));
+            if (!sun_in_sea_.empty()) of_sun.emplace_back(down, solid_angle * mirrored_sun(-down));
         }
     irradiance_.clear();
+    sun_irradiance_.clear();
+    const auto falls_on = [](const glm::vec3& normal, const Directions& directions) {
+        glm::vec3 sum(0.0f);
+        for (const auto& [from, light] : directions) sum += std::max(glm::dot(from, normal), 0.0f) * light;
+        return sum;
+    };
     for (int row = 0; row < kNormalRows; ++row)
         for (int column = 0; column < kNormalColumns; ++column) {
             const float high = kPi_f * static_cast<float>(row) / (kNormalRows - 1),
                         round = 2.0f * kPi_f * static_cast<float>(column) / kNormalColumns;
             const glm::vec3 normal(std::sin(high) * std::cos(round), std::sin(high) * std::sin(round),
                                    std::cos(high));
-            glm::vec3 sum(0.0f);
-            for (const auto& [from, light] : all) sum += std::max(glm::dot(from, normal), 0.0f) * light;
-            irradiance_.push_back(sum);
+            irradiance_.push_back(falls_on(normal, all));
+            if (!of_sun.empty()) sun_irradiance_.push_back(falls_on(normal, of_sun));
         }
 }
 
-glm::vec3 LitObjects::open_irradiance(const glm::vec3& normal) const {
+glm::vec3 LitObjects::by_normal(const std::vector<glm::vec3>& table, const glm::vec3& normal) {
     const float row = std::acos(std::clamp(normal.z, -1.0f, 1.0f)) / kPi_f * (kNormalRows - 1);
     float column = std::atan2(normal.y, normal.x) / (2.0f * kPi_f) * kNormalColumns;
     if (!(column >= 0.0f)) column += kNormalColumns;
     const int low = std::clamp(static_cast<int>(row), 0, kNormalRows - 2), left = static_cast<int>(column);
-    const auto at = [&](int r, int c) { return irradiance_[r * kNormalColumns + c % kNormalColumns]; };
+    const auto at = [&](int r, int c) { return table[r * kNormalColumns + c % kNormalColumns]; };
     const float down = row - static_cast<float>(low), right = column - static_cast<float>(left);
     return glm::mix(glm::mix(at(low, left), at(low, left + 1), right),
                     glm::mix(at(low + 1, left), at(low + 1, left + 1), right), down);
+}
+
+float LitObjects::gathered(const Surface& at) const {
+    const Body& body = bodies_[at.body];
+    if (!(body.caustics > 0.0f)) return 0.0f;
+    const glm::dvec3 place(origin_m_ + glm::dvec2(at.place), at.place.z - body.water_m);
+    return std::max(body.caustics * (body.pattern.at(place) - 1.0f), -1.0f);
 }
 
 bool LitObjects::may_meet(const Ray& ray) const {
@@ -458,8 +513,7 @@ glm::vec3 LitObjects::sky(const glm::vec3& direction) const {
 }
 
 // The sea as a direction from it to an eye shows it.
-glm::vec3 LitObjects::sea(const glm::vec3& to_eye, bool in_sun) const {
-    const std::vector<glm::vec3>& table = sea_[in_sun];
+glm::vec3 LitObjects::by_eye(const std::vector<glm::vec3>& table, const glm::vec3& to_eye) {
     const float row = std::sqrt(std::clamp(to_eye.z, 0.0f, 1.0f)) * (kRows - 1);
     float column = std::atan2(to_eye.y, to_eye.x) / (2.0f * kPi_f) * kColumns;
     if (!(column >= 0.0f)) column += kColumns;
@@ -511,7 +565,10 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
     glm::vec3 light(0.0f);
     const glm::vec3 towards = outwards(
         at, axes_round(at.normal) * glm::vec3(on_disc(number), std::sqrt(std::max(1.0f - number.x, 0.0f))));
-    if (!is_blocked(ray_from(at, towards))) light = open_irradiance(at.normal);
+    if (!is_blocked(ray_from(at, towards))) {
+        light = open_irradiance(at.normal);
+        if (const float more = gathered(at); more != 0.0f) light += more * mirrored_sun_irradiance(at.normal);
+    }
     if (is_sunny(at) &&
         !is_blocked({.from = at.smooth + off_surface_m(at.place) * at.geometric, .towards = to_sun_}))
         light += glm::dot(at.normal, to_sun_) * beam_;
@@ -603,15 +660,21 @@ glm::vec3 LitObjects::irradiance(const Surface& at, const SampleNumbers& numbers
     const SampleNumbers::Places bounces = numbers.places(kOfBounces);
     const SampleNumbers::Places of_lamps = numbers.places(kOfLamps);
     const LampsOver lamps = lamps_over(at, numbers, count);
-    MeanLight mean;
+    const float more = gathered(at);
+    MeanLight mean, of_sun;
     for (std::uint32_t k = 0; k < count; ++k) {
         const glm::vec2 place = places.of(k, count);
         const glm::vec3 towards = outwards(at, axes * glm::vec3(on_disc(place), std::sqrt(1.0f - place.x)));
         const Incoming from =
             incoming(at, towards, kBlur, bounces.of(k, count), lamps, facing(at.normal, towards).density);
         mean.add(from.open, from.light, from.is_open);
+        if (more == 0.0f) continue;
+        const glm::vec3 sun = towards.z < 0.0f ? mirrored_sun(-towards) : glm::vec3(0.0f);
+        of_sun.add(sun, from.is_open ? sun : glm::vec3(0.0f), from.is_open);
     }
-    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f) +
+    glm::vec3 pattern(0.0f);
+    if (more != 0.0f) pattern = more * kPi_f * of_sun.of(mirrored_sun_irradiance(at.normal) / kPi_f);
+    return kPi_f * mean.of(open_irradiance(at.normal) / kPi_f) + pattern +
            light_of(
                lamps, [&](const glm::vec3& from) { return facing(at.normal, from); },
                [&](std::uint32_t k) { return of_lamps.of(k, lamps.count); });

@@ -1,13 +1,14 @@
 // The bodies of a scene ([[objects]]) before a camera: where they are, what rays meet of them, and their light.
 //
 // Rays know the bodies alone. The sea is what pictures draw (render.h): where a ray goes down, it meets the plane of the water at the body.
-// Its light is that of all its waves, seen from afar.
+// Its light is that of all its waves, seen from afar; of the sun's that they mirror, caustics have the pattern (mirrored_sun.h).
 //
 // Coordinates: relative to the origin that place() is given [m], in its axes, on the earth where the sea is.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -28,6 +29,7 @@
 #include "core/waves/frame.h"
 #include "pelagic/scene.h"
 #include "plugin/render/lamps.h"
+#include "plugin/render/mirrored_sun.h"
 #include "plugin/render/ray_scene.h"
 #include "plugin/render/sea_light.h"
 
@@ -67,6 +69,16 @@ class LitObjects {
     // From now on their light is that of this sea and its sky, which must outlive the next calls.
     template <class T>
     void light(const SeaLight<T>& sea);
+    // Whether some have objects[].caustics.
+    bool has_caustics() const;
+    // Before which eye, over the flat sea [m], whose pixels are so wide, over their distance; and the sea's finest footprints [m].
+    struct Seen {
+        glm::dvec3 eye_m{0.0};
+        double pixel_tangent = 0.0, finest_m = 0.0, finest_cell_m = 0.0;
+    };
+    // Of the sea's time, where they stand: after place() and light(). All threads of the calling arena. Throws BuildCancelled.
+    template <class T>
+    void find_caustics(const SeaLight<T>& sea, const Seen& seen, const std::atomic<bool>* cancel);
 
     // The nearest body that a ray meets.
     RayHit nearest(const Ray& ray) const;
@@ -140,6 +152,12 @@ class LitObjects {
         glm::mat3 axes{1.0f}, into{1.0f};
         glm::vec3 place{0.0f}, centre{0.0f};
         float radius = 0.0f, water_m = 0.0f;
+        // The box over the flat sea, from its own origin, and how high the water lies at it, over the sea at rest.
+        glm::dvec3 middle_m{0.0};
+        glm::dmat3 half_edges_m{0.0};
+        double flat_water_m = 0.0, waves_m = 0.0;
+        float caustics = 0.0f;
+        MirroredSun pattern;
     };
     struct Surface {
         glm::vec3 place{0.0f}, geometric{0.0f}, normal{0.0f};  // both to the ray's side
@@ -178,10 +196,19 @@ class LitObjects {
                       const LampsOver& lamps, float density) const;
     static glm::vec3 outwards(const Surface& at, const glm::vec3& direction);
     void find_irradiance();
-    glm::vec3 open_irradiance(const glm::vec3& normal) const;
+    static glm::vec3 by_normal(const std::vector<glm::vec3>& table, const glm::vec3& normal);
+    glm::vec3 open_irradiance(const glm::vec3& normal) const { return by_normal(irradiance_, normal); }
+    // Of the sun that the sea mirrors: its part of the same, and of the radiance towards an eye.
+    glm::vec3 mirrored_sun_irradiance(const glm::vec3& normal) const {
+        return by_normal(sun_irradiance_, normal);
+    }
+    glm::vec3 mirrored_sun(const glm::vec3& to_eye) const { return by_eye(sun_in_sea_, to_eye); }
+    // By how much that light is more than its mean, over it.
+    float gathered(const Surface& at) const;
     glm::vec3 irradiance(const Surface& at, const SampleNumbers& numbers) const;
     glm::vec3 mirrored(const Surface& at, const glm::vec3& to_eye, const SampleNumbers& numbers) const;
-    glm::vec3 sea(const glm::vec3& to_eye, bool in_sun) const;
+    static glm::vec3 by_eye(const std::vector<glm::vec3>& table, const glm::vec3& to_eye);
+    glm::vec3 sea(const glm::vec3& to_eye, bool in_sun) const { return by_eye(sea_[in_sun], to_eye); }
     glm::vec3 sky(const glm::vec3& direction, float blur_rad) const;
     // Before a place so deep, of what falls on level water.
     glm::vec3 left_at_depth(float way_m) const;
@@ -202,6 +229,8 @@ class LitObjects {
     static constexpr int kNormalRows = 25, kNormalColumns = 48;
     std::vector<glm::vec3>
         irradiance_;  // of sky and sea that nothing hides: rows from up to down, columns by azimuth
+    std::vector<glm::vec3> sun_in_sea_, sun_irradiance_;  // as those; empty without caustics
+    glm::dvec2 origin_m_{0.0};
     float sight_in_water_m_ = 0.0f;
 };
 

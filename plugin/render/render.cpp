@@ -299,6 +299,18 @@ class RendererOf final : public Impl {
         if (hulls_)
             hulls_->place(sea_.frame(), hulls_query(plan()), pass.frame,
                           [&](glm::dvec2 place_m) { return drawn_.rest_m(place_m); });
+        if (is_lit && objects_ && objects_->has_caustics()) {
+            // Of the middle of the lens, and of no overscan: the same for all parts of a picture.
+            FloorLightWanted footprints;
+            footprints.view = view_at(scene_.camera, pass.frame);
+            set_footprints(footprints, drawn_, {footprints.view, frame_});
+            objects_->find_caustics(sea_,
+                                    {.eye_m = footprints.view.position_m,
+                                     .pixel_tangent = footprints.view.pixel_tangent(),
+                                     .finest_m = footprints.finest_m,
+                                     .finest_cell_m = footprints.finest_cell_m},
+                                    watch.cancel);
+        }
         if (is_lit && sea_.water().has_body) {
             // Of the middle of the lens, whose other places see the same maps.
             const SeaView middle{with_overscan(view_at(scene_.camera, pass.frame), overscan), frame_};

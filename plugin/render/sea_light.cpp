@@ -208,14 +208,19 @@ SeaFacets SeaLight<T>::facets(const SeenSea<T>& seen, std::size_t place) const {
 }
 
 template <class T>
+glm::vec3 SeaLight<T>::slopes_from_afar() const {
+    // Of water without a body nobody has asked for the waves' slopes: Cox and Munk 1954.
+    const auto slopes = static_cast<float>(0.003 + 0.00512 * plan().from->scene.sea.wind_speed_mps);
+    return water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
+}
+
+template <class T>
 void SeaLight<T>::light_from_afar(std::span<const glm::vec3> to_eye, bool lit,
                                   std::span<SeaRadiance> light) const {
     Sky sky = sky_;
     if (!lit) sky.sun_radiance = sky.sun_irradiance = glm::vec3(0.0f);
     const Scene& scene = plan().from->scene;
-    // Of water without a body nobody has asked for the waves' slopes: Cox and Munk 1954.
-    const auto slopes = static_cast<float>(0.003 + 0.00512 * scene.sea.wind_speed_mps);
-    glm::vec3 variance = water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
+    glm::vec3 variance = slopes_from_afar();
     // A calm sea's glitter would be a point that tables of directions miss, or see as a wide one.
     constexpr float kLeast = 0.01f;
     variance.x = std::max(variance.x, kLeast);

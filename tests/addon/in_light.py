@@ -128,11 +128,12 @@ with checking("imported again it is at the same place, with its wake, afloat and
         if name == "points_m":
             assert np.allclose(values, again.object_mesh(0)[name], atol=2e-3)
     assert ship.pelagic_in_light.buoyancy == shot.objects[0].buoyancy == "plane"
-    ship.pelagic_in_light.buoyancy, ship.pelagic_in_light.roll_damping = "response", 0.3
+    ship.pelagic_in_light.buoyancy, ship.pelagic_in_light.roll_damping, ship.pelagic_in_light.caustics = "response", 0.3, 1.5
     body = exported("by-mass").objects[0]
-    assert (body.buoyancy, body.roll_damping) == ("response", 0.3)
+    assert (body.buoyancy, body.roll_damping, body.caustics) == ("response", 0.3, 1.5)
     assert bpy.ops.pelagic.import_shot(filepath=str(FOLDER / "by-mass.toml")) == {"FINISHED"}
-    assert {(obj.pelagic_in_light.buoyancy, round(obj.pelagic_in_light.roll_damping, 6)) for obj in in_light.of_scene(bpy.context.scene)} == {("response", 0.3)}
+    assert {(obj.pelagic_in_light.buoyancy, round(obj.pelagic_in_light.roll_damping, 6), obj.pelagic_in_light.caustics)
+            for obj in in_light.of_scene(bpy.context.scene)} == {("response", 0.3, 1.5)}
 
 
 # ---- Hard cases

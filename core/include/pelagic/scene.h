@@ -315,6 +315,7 @@ struct SceneObject {
     double foam = 1.0;                       // times the foam where hull and water meet, 0 … 1
     glm::dvec3 colour{1.0};                  // times its materials', 0 … 1
     double glow_cd_m2 = 0.0;                 // luminance of materials that glow, ≥ 0
+    double caustics = 0.0;  // ≥ 0, times the pattern of the sun's light that waves mirror onto it
     bool holdout =
         false;  // it is rendered elsewhere: nothing, with alpha 0, where it stands, but mirrored and shadowing
 

@@ -329,6 +329,7 @@ TEST(Keys, BodiesCountByTheirMeshesAndNames) {
         [](SceneObject& o) { o.foam = 0.5; },
         [](SceneObject& o) { o.colour.y = 0.5; },
         [](SceneObject& o) { o.glow_cd_m2 = 1.0; },
+        [](SceneObject& o) { o.caustics = 1.0; },
         [](SceneObject& o) { o.holdout = true; }};
     for (const auto& change : changes) {
         other = scene;

@@ -611,6 +611,8 @@ TEST(HullFingerprints, HaveThemWhereTheyChangeSomething) {
         "colour", [](SceneObject& o) { o.colour.y = 0.5; }, false);
     expect_other(
         "glow", [](SceneObject& o) { o.glow_cd_m2 = 5.0; }, false);
+    expect_other(
+        "caustics", [](SceneObject& o) { o.caustics = 1.0; }, false);
     Scene empty = scene;
     empty.objects.clear();
     scene.objects[0].mesh = sheet();

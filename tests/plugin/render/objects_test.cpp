@@ -546,6 +546,7 @@ TEST(Objects, AddUpOnAnyNumberOfThreads) {
                      object(box({2.3f, -0.2f, 6.0f}, {2.7f, 0.2f, 6.4f}, kGlows), "lamp")};
     scene.objects[0].floats = scene.objects[2].floats = true;
     scene.objects[3].glow_cd_m2 = 1e6;
+    scene.objects[0].caustics = 1.0;
     const Sky sky = daylight_sky({.sun_elevation_deg = 3.0, .sun_azimuth_deg = 80.0}, 64);
     std::vector<Picture> pictures;
     for (const int threads : {1, 2}) {
@@ -576,6 +577,55 @@ TEST(Objects, AddUpOnAnyNumberOfThreads) {
         if (one.empty()) continue;
         EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(float)), 0) << layer;
     }
+}
+
+// The light that waves mirror onto a side has the pattern of mirrored_sun.h, and the mean that it has without; it is the same in a part of the
+// picture.
+TEST(Objects, HaveTheSunsPatternOnTheirSides) {
+    Scene scene = calm_scene();
+    scene.camera.resolution = {64, 32};
+    scene.sea.wind_speed_mps = 3.0;
+    scene.waves.cascades = {{60.0, 128}, {9.0, 128}};
+    scene.camera.position_m = {0.0, -14.0, 2.0};
+    scene.camera.look_at_m = {0.0, 0.0, 1.5};
+    scene.objects = {object(box({-6, -1, -2}, {6, 1, 4}))};
+    const Sky sky = sunny_sky(20.0, 260.0);
+    double sum = 0.0, mean = 0.0, squares = 0.0;
+    for (const int frame : {1, 40, 80, 120, 160, 200}) {
+        const auto picture_with = [&](double caustics, RenderOptions options) {
+            scene.objects[0].caustics = caustics;
+            return picture_of(scene, options, sky, frame);
+        };
+        const RenderOptions options = options_of(scene, "all", 1);
+        const Picture without = picture_with(0.0, options), with = picture_with(1.0, options);
+        int count = 0;
+        for (std::size_t i = 0; i < with.layers.size(); ++i) {
+            const glm::vec3 more =
+                vector_of(with, PictureLayer::Object, i) - vector_of(without, PictureLayer::Object, i);
+            if (!shows_object(with, i)) {
+                ASSERT_NEAR(static_cast<double>(more.y), 0.0, 1e-4);
+                continue;
+            }
+            ++count;
+            const auto light = static_cast<double>(vector_of(without, PictureLayer::Object, i).y);
+            sum += static_cast<double>(more.y);
+            mean += light;
+            squares += static_cast<double>(more.y * more.y);
+            ASSERT_TRUE(std::isfinite(more.y));
+        }
+        EXPECT_GT(count, 600);
+        if (frame > 1) continue;
+        RenderOptions part = options;
+        part.region = PixelWindow{{10, 8}, {40, 24}};
+        const Picture region = picture_with(1.0, part);
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 30; ++x)
+                EXPECT_EQ(
+                    vector_of(region, PictureLayer::Object, static_cast<std::size_t>(30 * y + x)),
+                    vector_of(with, PictureLayer::Object, static_cast<std::size_t>(64 * (y + 8) + x + 10)));
+    }
+    std::printf("more %.4f, mean %.4f, rms %.4f\n", sum, mean, std::sqrt(squares));
+    EXPECT_NEAR(sum / mean, 0.0, 0.02);
 }
 
 // A body that floats follows long waves: where it lies on the water it shows as much above it as in a calm.

@@ -426,6 +426,7 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
         return false;
     if (key.path == kObjectsKey && scene.objects.empty()) return false;
     if (key.path == kCoastKey && !scene.waves.coast) return false;
+    if (key.path == kRainKey && key.get(scene) == key.fallback) return false;
     return (key.key_parts & parts).any();
 }
 

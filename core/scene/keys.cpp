@@ -217,7 +217,8 @@ void add_sea(Built& out) {
             {.name = "rain_mm_per_h",
              .help =
                  "on the sea: rings of its drops, which dull what the water mirrors, and a wind sea with less of its waves "
-                 "below a few metres: 2, drizzle; 10, steady rain; 50, a cloudburst. What falls through the air isn't drawn",
+                 "below a few metres, in a light wind of nearly all: 2, drizzle; 10, steady rain; 50, a cloudburst. What falls "
+                 "through the air isn't drawn",
              .unit = "mm/h",
              .range = limits::kRain_mm_per_h,
              .soft = SoftRange{0.0, 50.0},

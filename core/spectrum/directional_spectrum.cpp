@@ -10,19 +10,31 @@ namespace {
 // A system with less than this share of m0 says nothing about the sea's longest waves.
 constexpr double kNotableShare = 0.02;
 
+// What rain leaves of a sea's own waves. A height that is asked for is that in the rain.
+void rain_on(std::vector<WaveSystem>& systems, const SeaState& sea, const Dispersion& dispersion) {
+    const auto energy = [&] {
+        double sum = 0.0;
+        for (const WaveSystem& system : systems) sum += system.m0();
+        return sum;
+    };
+    const double dry = energy();
+    const RainDamping rain(sea.rain_mm_per_h, sea.wind_speed_mps);
+    for (WaveSystem& system : systems) system = system.rained_on(rain, dispersion);
+    const double left = energy();
+    if (sea.significant_height_m && left > 0.0)
+        for (WaveSystem& system : systems) system = system.scaled(dry / left);
+}
+
 }  // namespace
 
 DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains)
     : dispersion_{sea.depth_m}, systems_(WaveSystem::sea(sea, dispersion_)) {
+    if (sea.rain_mm_per_h > 0.0) rain_on(systems_, sea, dispersion_);
     for (const Swell& swell : sea.swell) {
         if (swell.height_m > 0.0)
             systems_.push_back(WaveSystem::swell(swell, dispersion_).directed(sea.directionality));
     }
-    if (sea.rain_mm_per_h > 0.0) {
-        const RainDamping rain(sea.rain_mm_per_h, sea.wind_speed_mps);
-        for (WaveSystem& system : systems_) system = system.rained_on(rain, dispersion_);
-        systems_.push_back(WaveSystem::rings(sea.rain_mm_per_h, dispersion_));
-    }
+    if (sea.rain_mm_per_h > 0.0) systems_.push_back(WaveSystem::rings(sea.rain_mm_per_h, dispersion_));
     if (!gains.empty())
         for (WaveSystem& system : systems_) system = system.gained(BandGains(gains), dispersion_);
     add_up();
@@ -79,18 +91,25 @@ double DirectionalSpectrum::arc(double k, double theta0, double theta1) const {
     return sum;
 }
 
+bool DirectionalSpectrum::is_calm() const {
+    return std::ranges::all_of(systems_, &WaveSystem::is_rings);
+}
+
 double DirectionalSpectrum::peak_wavenumber() const {
-    const auto most = std::max_element(systems_.begin(), systems_.end(),
-                                       [](const auto& a, const auto& b) { return a.m0() < b.m0(); });
-    return most == systems_.end() ? kCalmPeakWavenumber : most->peak_wavenumber();
+    if (is_calm()) return kCalmPeakWavenumber;
+    return std::ranges::max_element(
+               systems_, {}, [](const WaveSystem& system) { return system.is_rings() ? 0.0 : system.m0(); })
+        ->peak_wavenumber();
 }
 
 double DirectionalSpectrum::longest_peak_wavenumber() const {
-    double longest = std::numeric_limits<double>::infinity();
-    for (const WaveSystem& system : systems_) {
-        if (system.m0() >= kNotableShare * m0_) longest = std::min(longest, system.peak_wavenumber());
-    }
-    return systems_.empty() ? kCalmPeakWavenumber : longest;
+    if (is_calm()) return kCalmPeakWavenumber;
+    double m0 = 0.0, longest = std::numeric_limits<double>::infinity();
+    for (const WaveSystem& system : systems_) m0 += system.is_rings() ? 0.0 : system.m0();
+    for (const WaveSystem& system : systems_)
+        if (!system.is_rings() && system.m0() >= kNotableShare * m0)
+            longest = std::min(longest, system.peak_wavenumber());
+    return longest;
 }
 
 }  // namespace pelagic

@@ -33,6 +33,7 @@ class DirectionalSpectrum {
     explicit DirectionalSpectrum(std::span<const Part> parts);
 
     bool empty() const { return systems_.empty(); }
+    bool is_calm() const;              // no waves but the rings of rain, whose peaks don't count
     double m0() const { return m0_; }  // [m²], over all wavenumbers, to 1e-6
 
     // S_k(k) [m³]; 0 for k ≤ 0, and outside panels().
@@ -47,7 +48,7 @@ class DirectionalSpectrum {
     // 1e-10 of S_k.
     double arc(double k, double theta0, double theta1) const;
 
-    // Peak of the system with the most energy [rad/m]; kCalmPeakWavenumber for an empty sea.
+    // Peak of the system with the most energy [rad/m]; kCalmPeakWavenumber for a calm sea.
     double peak_wavenumber() const;
 
     // Smallest peak among the systems that hold at least 2 % of m0.

@@ -21,8 +21,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "core/base/constants.h"
 #include "core/spectrum/angular.h"
 #include "core/spectrum/elfouhaily.h"
 #include "core/spectrum/wave_point.h"
@@ -41,9 +41,9 @@ struct RainRings {
     // By angular frequency [m² s], at ω > 0 [rad/s].
     double density(double omega) const {
         const double x = std::log(omega / peak_omega()) * peak_hz / width_hz;
-        return most / kTwoPi * std::exp(-kPi * x * x);
+        return most / (2.0 * std::numbers::pi) * std::exp(-std::numbers::pi * x * x);
     }
-    double peak_omega() const { return kTwoPi * peak_hz; }
+    double peak_omega() const { return 2.0 * std::numbers::pi * peak_hz; }
 };
 
 struct IsotropicSpreading {

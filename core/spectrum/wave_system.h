@@ -90,6 +90,7 @@ class WaveSystem {
         return std::holds_alternative<SwellEnergy>(energy_) ||
                std::holds_alternative<MeasuredEnergy>(energy_);
     }
+    bool is_rings() const { return std::holds_alternative<RainRings>(energy_); }
     double direction() const { return direction_; }
     double directionality() const { return directionality_; }
 

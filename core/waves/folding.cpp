@@ -82,7 +82,7 @@ std::vector<std::string> coast_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     const DirectionalSpectrum& spectrum = prepared.spectrum;
     if (!scene.waves.coast || scene.waves.model != WaveModel::Trochoid || !scene.waves.coast_depths ||
-        !(spectrum.m0() > 0.0))
+        spectrum.is_calm())
         return {};
     const DepthMap& map = *scene.waves.coast_depths;
     std::vector<std::string> warnings;
@@ -162,7 +162,7 @@ std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
     constexpr double kFewWaves = 10.0;
     const Scene& scene = prepared.scene;
     if (scene.waves.tiling != Tiling::Periodic || scene.waves.model != WaveModel::Fft ||
-        scene.waves.cascades.empty() || prepared.spectrum.empty())
+        scene.waves.cascades.empty() || prepared.spectrum.is_calm())
         return {};
     const double size_m = scene.waves.cascades.front().size_m;
     const double peak_m = kTwoPi / prepared.spectrum.longest_peak_wavenumber();
@@ -244,7 +244,7 @@ std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
 std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     const std::vector<HeroWave>& heroes = prepared.scene.waves.heroes;
     if (heroes.empty()) return {};
-    if (!(prepared.spectrum.m0() > 0.0))
+    if (prepared.spectrum.is_calm())
         return {"the sea is calm and has no wave to raise: waves.heroes has nothing to stand in"};
     std::vector<std::string> warnings;
     const auto tenths = [](double value) { return number_text(std::round(10.0 * value) / 10.0); };
@@ -309,7 +309,7 @@ double shown_edge_m(const Waves& waves, const WaveMask& mask) {
 std::vector<std::string> mask_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     const std::optional<MasksPlan> plan = plan_masks(scene);
-    if (!plan || !(prepared.spectrum.m0() > 0.0)) return {};
+    if (!plan || prepared.spectrum.is_calm()) return {};
     std::vector<std::string> warnings;
     const double longest_m = kTwoPi / prepared.spectrum.longest_peak_wavenumber();
     for (std::size_t i = 0; i < scene.waves.masks.size(); ++i) {
@@ -375,6 +375,13 @@ std::vector<std::string> still_warnings(const PreparedScene& prepared) {
     return warnings;
 }
 
+// What makes a sea's waves, but for rain.
+std::string dry_waves(const PreparedScene& prepared) {
+    Scene scene = prepared.scene;
+    scene.sea.rain_mm_per_h = 0.0;
+    return canonical(scene, key_parts(KeyPart::Waves));
+}
+
 // Of a sea that changes: those of its keys, and keys between which it changes faster than seas do.
 std::vector<std::string> weather_warnings(const Weather& weather) {
     constexpr double kPeriods =
@@ -385,10 +392,11 @@ std::vector<std::string> weather_warnings(const Weather& weather) {
             warnings.push_back("at frame " + std::to_string(key.frame) + ' ' + warning);
     for (std::size_t i = 0; i + 1 < weather.keys.size(); ++i) {
         const Weather::Key &key = weather.keys[i], &next = weather.keys[i + 1];
-        if (key.waves == next.waves) continue;
+        if (key.waves == next.waves || dry_waves(*key.sea) == dry_waves(*next.sea))
+            continue;  // a shower may be short
         double period_s = 0.0;
         for (const DirectionalSpectrum* of : {&key.sea->spectrum, &next.sea->spectrum})
-            if (!of->empty())
+            if (!of->is_calm())
                 period_s = std::max(period_s, kTwoPi / of->dispersion().omega(of->longest_peak_wavenumber()));
         const double lasts_s = next.time_s - key.time_s;
         if (lasts_s < kPeriods * period_s)

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/scene/canonical.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/spectral_moments.h"
 #include "tests/core/spectrum/oracles.h"
@@ -72,9 +73,6 @@ TEST(Rain, LeavesOfTheWindsWavesWhatTheWindKeepsUp) {
             EXPECT_GT(energy, wind < 10.0 ? 0.4 : 0.97) << wind << ' ' << rain;
             EXPECT_LT(energy, 1.0) << wind << ' ' << rain;
         }
-    // A wave of 30 cm dies in seconds and not in the 19 minutes that water alone would take (Nystuen 1990).
-    const double k = 2.0 * oracle::kPi / 0.3, at_20 = 2.0 * 1e-4 * k * k;
-    EXPECT_LT(1.0 / at_20, 15.0);
 }
 
 TEST(Rain, FallsOnSwellAndBuoysWavesWithoutTakingFromThem) {
@@ -91,13 +89,46 @@ TEST(Rain, FallsOnSwellAndBuoysWavesWithoutTakingFromThem) {
     EXPECT_NEAR(whole(buoy).m0 - rings, dry, 1e-9 * dry);
 }
 
-// A sea that outran its wind keeps the height that was asked for.
-TEST(Rain, KeepsTheHeightOfASeaWhoseWindFell) {
-    for (const double wind : {0.01, 0.5, 2.0}) {
-        SeaState sea = rainy(100.0, wind);
-        sea.significant_height_m = 3.0;
-        EXPECT_NEAR(4.0 * std::sqrt(whole(sea).m0), 3.0, 0.06) << wind;
-    }
+// Also that of a light wind's sea, which loses most of its waves.
+TEST(Rain, KeepsTheHeightThatIsAskedFor) {
+    for (const double wind : {0.01, 0.5, 3.0, 12.0})
+        for (const double height_m : {0.1, 0.5, 3.0}) {
+            SeaState sea = rainy(100.0, wind);
+            sea.significant_height_m = height_m;
+            const double rings = whole(rainy(100.0, 0.0)).m0;
+            EXPECT_NEAR(4.0 * std::sqrt(whole(sea).m0 - rings), height_m, 1e-4 * height_m) << wind;
+        }
+}
+
+// A buoy's ripples are the wind's.
+TEST(Rain, CalmsTheRipplesThatAreJoinedToABuoysWaves) {
+    SeaState buoy = rainy(0.0, 6.0);
+    buoy.spectrum = SpectrumKind::File;
+    buoy.measured = oracle::made_up_buoy();
+    const DirectionalSpectrum dry(buoy);
+    buoy.rain_mm_per_h = 20.0;
+    const DirectionalSpectrum wet(buoy);
+    EXPECT_LT(wet.omnidirectional(20.0) / dry.omnidirectional(20.0), 0.5);
+    EXPECT_EQ(wet.omnidirectional(0.1), dry.omnidirectional(0.1));
+}
+
+// The rings alone are a calm: they set no tile's size.
+TEST(Rain, InACalmHasNoPeak) {
+    const DirectionalSpectrum rings(rainy(20.0, 0.0)), dry(rainy(0.0, 8.0)), wet(rainy(20.0, 8.0));
+    EXPECT_TRUE(rings.is_calm());
+    EXPECT_FALSE(rings.empty());
+    EXPECT_EQ(rings.peak_wavenumber(), DirectionalSpectrum::kCalmPeakWavenumber);
+    EXPECT_EQ(rings.longest_peak_wavenumber(), DirectionalSpectrum::kCalmPeakWavenumber);
+    EXPECT_FALSE(wet.is_calm());
+    EXPECT_EQ(wet.longest_peak_wavenumber(), dry.longest_peak_wavenumber());
+}
+
+// Shots of before it keep their fingerprints.
+TEST(Rain, IsntSaidWhereItIsDry) {
+    Scene scene;
+    EXPECT_EQ(canonical(scene).find("rain"), std::string::npos);
+    scene.sea.rain_mm_per_h = 1.0;
+    EXPECT_NE(canonical(scene).find("rain"), std::string::npos);
 }
 
 }  // namespace

@@ -318,6 +318,35 @@ TEST(Weather, HiddenVarianceAndFoamAreThoseOfTheTime) {
     }
 }
 
+// A shower: rings come and go by their variance, short waves go and come back, and nobody calls it too fast.
+TEST(Weather, HasShowers) {
+    Scene scene = rising();
+    scene.keyed.clear();
+    scene.sea.wind_speed_mps = 6.0;
+    give_keys(scene, "sea.rain_mm_per_h", {{1, 0.0}, {48, 40.0}, {96, 0.0}}, kLinear);
+    for (const std::string& warning : sea_warnings(*prepare(scene)))
+        EXPECT_EQ(warning.find("faster than waves"), std::string::npos) << warning;
+    const auto points = random_points<double>(300.0, 200);
+    const auto slopes = [&](double rain_mm_per_h) {
+        Scene still = scene;
+        still.keyed.clear();
+        still.sea.rain_mm_per_h = rain_mm_per_h;
+        return moments(prepare(still)->spectrum, 0.0, std::numeric_limits<double>::infinity());
+    };
+    auto frame = frame_over_time<double>(scene, {everything()});
+    frame.set(scene.shot.time_s(30.0));
+    const ProductArrays<double> of_run = sample(frame, 0, points);
+    frame.set(scene.shot.time_s(48.0));
+    EXPECT_NEAR(frame.sea().total().mss() / slopes(40.0).mss(), 1.0, 1e-5);
+    frame.set(scene.shot.time_s(96.0));
+    EXPECT_NEAR(frame.sea().total().mss() / slopes(0.0).mss(), 1.0, 1e-5);
+    frame.set(scene.shot.time_s(24.5));
+    EXPECT_NEAR(frame.sea().total().mss() / (0.5 * (slopes(0.0).mss() + slopes(40.0).mss())), 1.0, 1e-5);
+    auto alone = frame_over_time<double>(scene, {everything()});
+    alone.set(scene.shot.time_s(30.0));
+    EXPECT_TRUE(same_samples(sample(alone, 0, points), of_run));
+}
+
 // Gusts keep their patches: of a strength that changes each moment has what a sea of that strength has, and the waves stay.
 TEST(Weather, GustsHaveTheStrengthOfTheTime) {
     Scene scene = rising();

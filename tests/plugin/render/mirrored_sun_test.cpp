@@ -31,7 +31,7 @@ OpenSea open_sea(double wind_mps, int seed = 1) {
     scene.sea.fetch_m = 2e3;
     scene.shot.seed = static_cast<std::uint64_t>(seed);
     scene.waves.choppiness = 0.0;  // so that places at rest are as dense as on the sea
-    scene.waves.cascades = {{.size_m = 60.0, .resolution = 128}, {.size_m = 11.0, .resolution = 128}};
+    scene.waves.cascades = {{.size_m = 30.0, .resolution = 256}, {.size_m = 3.0, .resolution = 256}};
     const auto prepared = prepare(scene);
     const Query query = view_query(
         *prepared, {.products = {}, .finest_cell_m = kFinest_m, .finest_pixel_m = kFinest_m, .points = 1000});

@@ -81,10 +81,9 @@ glm::dvec2 way_from(const Beam& beam, const glm::dvec3& n, double facing, double
     return glm::dvec2(ray) / std::max(-ray.z, 0.05);
 }
 
-// The part of a beam that a facet sends on, by that of the beam that it stands in; of mirrored light what of it falls on an upright wall that
-// faces it, over the level area through which it goes. None where it goes farther aside.
-double sent_on(const Beam& beam, const glm::dvec3& n, double facing, double far) {
-    if (!beam.is_mirrored) return transmitted(facing);
+// The part of a beam that a facet mirrors onto an upright wall that faces it, over the level area through which it goes. None where it goes
+// farther aside.
+double mirrored_on(const Beam& beam, const glm::dvec3& n, double facing, double far) {
     const glm::dvec3 ray = 2.0 * facing * n - beam.to_sun;
     const double level = glm::length(glm::dvec2(ray));
     if (!(ray.z > kLeastRise) || glm::length(glm::dvec2(ray) / ray.z - beam.tangent * beam.away) > far)
@@ -92,11 +91,24 @@ double sent_on(const Beam& beam, const glm::dvec3& n, double facing, double far)
     return (1.0 - transmitted(facing)) * level / std::max(ray.z, kLeastRiseOfSun * beam.to_sun.z);
 }
 
+// A slope moves mirrored light along its way the more, the less that rises: by how many times as much as that of a level sea, by powers of 2
+// from ¼ to 4. Light of a width between two is a part of either's.
+constexpr int kWidths = 5;
+double width_of(const Beam& beam, double rise) {
+    constexpr double kMiddle = kWidths / 2;
+    return std::clamp(kMiddle + 2.0 * std::log2(beam.to_sun.z / std::max(rise, kLeastRise)), 0.0,
+                      2.0 * kMiddle);
+}
+double part_of_width(double width, int of) {
+    return std::max(1.0 - std::abs(width - of), 0.0);
+}
+
 // Where light falls, in a map's texels, and how much of it, by cells of the sea.
 struct Falls {
     int columns = 0, rows = 0;  // of the cells; places have one more
     std::vector<glm::vec2> place;
     std::vector<float> light;
+    std::vector<float> width;  // of mirrored light: width_of()
 };
 
 template <class T>
@@ -106,14 +118,20 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
     const double s = map.texel_m;
     const glm::dvec2 right = map.along, up(-right.y, right.x);
     const int margin = static_cast<int>(std::ceil(margin_m / s));
-    Falls falls{.columns = map.side + 2 * margin, .rows = map.side + 2 * margin, .place = {}, .light = {}};
+    Falls falls{.columns = map.side + 2 * margin,
+                .rows = map.side + 2 * margin,
+                .place = {},
+                .light = {},
+                .width = {}};
     const auto width = static_cast<std::size_t>(falls.columns) + 1;
     falls.place.resize(width * (static_cast<std::size_t>(falls.rows) + 1));
     falls.light.resize(static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(falls.rows));
+    if (beam.is_mirrored) falls.width.resize(falls.light.size());
     const glm::dvec2 from_m =
         map.from_m - depth_m * beam.tangent * beam.away - margin * s * right - margin * s * up;
     std::vector<glm::vec<2, T>> rest;
     std::vector<glm::vec<3, T>> position, normal;
+    std::vector<glm::vec2> mirrored;  // what a square metre sends, and its width
     for (int row = 0; row < falls.rows; row += kRowsAtOnce) {
         stop_if(cancel);
         const int rows = std::min(kRowsAtOnce, falls.rows - row);
@@ -121,6 +139,7 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
         rest.resize(count);
         position.resize(count);
         normal.resize(count);
+        if (beam.is_mirrored) mirrored.resize(count);
         for (std::size_t i = 0; i < count; ++i)
             rest[i] = glm::vec<2, T>(static_cast<double>(i % width) * s * right +
                                      static_cast<double>(i / width) * s * up);
@@ -142,6 +161,14 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
         tbb::parallel_for(Range(0, count, 1024), [&](const Range& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const glm::dvec3 n(normal[i]);
+                if (beam.is_mirrored) {
+                    const double facing = glm::dot(n, beam.to_sun);
+                    if (facing > 0.0)
+                        mirrored[i] = glm::vec2(facing / n.z * mirrored_on(beam, n, facing, far),
+                                                width_of(beam, 2.0 * facing * n.z - beam.to_sun.z));
+                    else
+                        mirrored[i] = glm::vec2(0.0f);
+                }
                 const glm::dvec2 along = way_from(beam, n, std::max(glm::dot(n, beam.to_sun), 0.0), far);
                 const glm::dvec2 at = origin + glm::dvec2(position[i]);
                 const double height = static_cast<double>(position[i].z) - on.level_m;
@@ -161,20 +188,32 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
                 // The cell's area by its diagonals, normal to it.
                 const glm::dvec3 area = 0.5 * glm::cross(glm::dvec3(position[i + width + 1] - position[i]),
                                                          glm::dvec3(position[i + width] - position[i + 1]));
+                const std::size_t cell =
+                    static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(row + y) +
+                    static_cast<std::size_t>(x);
+                if (beam.is_mirrored) {
+                    // By the corners' normals: their variance is known, and much of the light is that of steep ones.
+                    float light = 0.0f, width_light = 0.0f;
+                    for (const std::size_t corner : {i, i + 1, i + width, i + width + 1}) {
+                        light += mirrored[corner].x;
+                        width_light += mirrored[corner].x * mirrored[corner].y;
+                    }
+                    falls.light[cell] = 0.25f * static_cast<float>(area.z) * light;
+                    if (light > 0.0f) falls.width[cell] = width_light / light;
+                    continue;
+                }
                 const double across = glm::dot(area, beam.to_sun), size = glm::length(area);
                 double light = 0.0;
-                if (across > 0.0)
-                    light = across * sent_on(beam, area / size, std::min(across / size, 1.0), far);
-                falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(row + y) +
-                            static_cast<std::size_t>(x)] = static_cast<float>(light);
+                if (across > 0.0) light = across * transmitted(std::min(across / size, 1.0));
+                falls.light[cell] = static_cast<float>(light);
             }
         });
     }
     return falls;
 }
 
-// Adds each cell's light to the texels on which it falls, over `mean`, that of a cell.
-void gather(const Falls& falls, const CausticsMap& map, double mean) {
+// Adds each cell's light, of one width where there are some, to the texels on which it falls, over `mean`, that of a cell.
+void gather(const Falls& falls, const CausticsMap& map, double mean, int width_there = 0) {
     const auto scale = static_cast<float>(1.0 / (mean * kSplits * kSplits));
     const auto width = static_cast<std::size_t>(falls.columns) + 1;
     // With a texel round the map, for light that falls on its edge.
@@ -188,10 +227,13 @@ void gather(const Falls& falls, const CausticsMap& map, double mean) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < falls.columns; ++x) {
                 const std::size_t i = width * static_cast<std::size_t>(y) + static_cast<std::size_t>(x);
-                const float light =
-                    scale *
-                    falls.light[static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(y) +
-                                static_cast<std::size_t>(x)];
+                const std::size_t cell =
+                    static_cast<std::size_t>(falls.columns) * static_cast<std::size_t>(y) +
+                    static_cast<std::size_t>(x);
+                float light = scale * falls.light[cell];
+                if (!falls.width.empty())
+                    light *= static_cast<float>(
+                        part_of_width(static_cast<double>(falls.width[cell]), width_there));
                 if (light == 0.0f) continue;
                 for (int v = 0; v < kSplits; ++v)
                     for (int u = 0; u < kSplits; ++u) {
@@ -238,9 +280,10 @@ double mean_light(const Beam& beam, double variance) {
     return sum / weights;
 }
 
-// The same of a sea that mirrors it, over waves of these slope variances: of what counts, and which part that is of all.
+// The same of a sea that mirrors it, over waves of these slope variances: of what counts, which part that is of all, and which parts have which widths.
 struct MeanMirrored {
     double light = 1.0, share = 0.0;
+    std::array<double, kWidths> of_width{};  // of `light`
 };
 MeanMirrored mean_mirrored(const Beam& beam, const glm::dmat2& variance, double far) {
     // By two independent slopes: along the beam, and what is left across it.
@@ -250,6 +293,7 @@ MeanMirrored mean_mirrored(const Beam& beam, const glm::dmat2& variance, double 
                  across = std::sqrt(std::max(glm::dot(side, variance * side) - both * both, 0.0));
     constexpr int kAlong = 160, kAcross = 24;  // a low sun's light rises steeply with the slope along it
     double near = 0.0, all = 0.0, weights = 0.0;
+    std::array<double, kWidths> of_width{};
     for (int i = -kAlong; i <= kAlong; ++i)
         for (int j = -kAcross; j <= kAcross; ++j) {
             const double u = 4.0 * i / kAlong, v = 4.0 * j / kAcross,
@@ -261,11 +305,16 @@ MeanMirrored mean_mirrored(const Beam& beam, const glm::dmat2& variance, double 
             if (!(facing > 0.0)) continue;
             const glm::dvec3 n = area / size;
             const double cosine = std::min(facing / size, 1.0);
-            near += weight * facing * sent_on(beam, n, cosine, far);
-            all += weight * facing * sent_on(beam, n, cosine, std::numeric_limits<double>::infinity());
+            const double sent = weight * facing * mirrored_on(beam, n, cosine, far),
+                         width = width_of(beam, 2.0 * cosine * n.z - beam.to_sun.z);
+            near += sent;
+            for (int of = 0; of < kWidths; ++of)
+                of_width[static_cast<std::size_t>(of)] += sent * part_of_width(width, of);
+            all += weight * facing * mirrored_on(beam, n, cosine, std::numeric_limits<double>::infinity());
         }
     if (!(near > 0.0)) return {};
-    return {near / weights, std::min(near / all, 1.0)};
+    for (double& of : of_width) of /= near;
+    return {near / weights, std::min(near / all, 1.0), of_width};
 }
 
 // Variances of the slopes that the map's texels don't resolve: the mean over some places of it.
@@ -293,7 +342,7 @@ glm::dmat2 hidden_slopes(const Frame<T>& frame, int query, const CausticsMap& ma
 }
 
 // A normal distribution of that deviation [texels], along one axis; beyond the map light is even.
-void blur(const CausticsMap& map, int axis, double deviation) {
+void blur(const CausticsMap& map, int axis, double deviation, float even) {
     const int reach = static_cast<int>(std::min(std::ceil(3.0 * deviation), 0.5 * map.side));
     if (deviation < 0.05 || reach < 1) return;
     std::vector<float> weight(static_cast<std::size_t>(2 * reach) + 1);
@@ -304,7 +353,7 @@ void blur(const CausticsMap& map, int axis, double deviation) {
     for (float& w : weight) w /= sum;
     const std::ptrdiff_t side = map.side, step = axis == 0 ? 1 : side, across = axis == 0 ? side : 1;
     tbb::parallel_for(std::ptrdiff_t{0}, side, [&](std::ptrdiff_t line) {
-        std::vector<float> before(static_cast<std::size_t>(side + 2 * reach), 1.0f);
+        std::vector<float> before(static_cast<std::size_t>(side + 2 * reach), even);
         float* const first = map.texels.data() + line * across;
         for (std::ptrdiff_t i = 0; i < side; ++i)
             before[static_cast<std::size_t>(i + reach)] = first[i * step];
@@ -378,12 +427,7 @@ void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& f
     const glm::dmat2 waves(all.x, all.z, all.z, all.y);
     const double towards_sun = glm::dot(beam.away, (waves - hidden) * beam.away);
     const double depth_m = on.depth_m;
-    MeanMirrored mirrored;
-    if (beam.is_mirrored) mirrored = mean_mirrored(beam, waves - hidden, margin_m / std::max(depth_m, 1e-9));
-    gather(falls_on(map, floor, frame, query, beam, on, margin_m, range_m, cancel), map,
-           (beam.is_mirrored ? mirrored.light : mean_light(beam, towards_sun)) * map.texel_m * map.texel_m);
-    if (beam.is_mirrored)
-        for (float& texel : map.texels) texel = 1.0f + static_cast<float>(mirrored.share) * (texel - 1.0f);
+    const Falls falls = falls_on(map, floor, frame, query, beam, on, margin_m, range_m, cancel);
     const glm::dmat2 in_map(map.along.x, -map.along.y, map.along.y, map.along.x);
     const glm::dvec2 away = in_map * beam.away;
     const glm::dmat2 spread = in_map *
@@ -393,14 +437,38 @@ void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& f
     const double c = beam.cosine_there;
     const double disc = depth_m * beam.radius / (2.0 * beam.index * c);
     const double along = disc * beam.to_sun.z / (c * c);
-    for (int axis = 0; axis < 2; ++axis) {
-        const double part = away[axis] * away[axis];
-        // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
-        constexpr double kLeast_texels = 0.6;
-        const double least_m = kLeast_texels * map.texel_m;
-        const double variance =
-            least_m * least_m + spread[axis][axis] + along * along * part + disc * disc * (1.0 - part);
-        blur(map, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m);
+    // wider: how many times along the light's way.
+    const auto spread_out = [&](const CausticsMap& of, double wider, float even) {
+        const glm::dmat2 widened = glm::dmat2(1.0) + (wider - 1.0) * glm::outerProduct(away, away);
+        const glm::dmat2 turned = widened * spread * widened;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double part = away[axis] * away[axis];
+            // Never less than this: cells send their light as so many points, which show where a sheet of them is folded.
+            constexpr double kLeast_texels = 0.6;
+            const double least_m = kLeast_texels * map.texel_m;
+            const double variance = least_m * least_m + turned[axis][axis] +
+                                    wider * wider * along * along * part + disc * disc * (1.0 - part);
+            blur(of, axis, std::sqrt(std::max(variance, 0.0)) / map.texel_m, even);
+        }
+    };
+    const double cell_m2 = map.texel_m * map.texel_m;
+    if (!beam.is_mirrored) {
+        gather(falls, map, mean_light(beam, towards_sun) * cell_m2);
+        spread_out(map, 1.0, 1.0f);
+        return;
+    }
+    const MeanMirrored mean = mean_mirrored(beam, waves - hidden, margin_m / std::max(depth_m, 1e-9));
+    std::vector<float> of_width(map.texels.size());
+    CausticsMap one = map;
+    one.texels = of_width;
+    std::ranges::fill(map.texels, 1.0f - static_cast<float>(mean.share));
+    for (int width = 0; width < kWidths; ++width) {
+        stop_if(cancel);
+        gather(falls, one, mean.light * cell_m2, width);
+        spread_out(one, std::exp2(width - kWidths / 2),
+                   static_cast<float>(mean.of_width[static_cast<std::size_t>(width)]));
+        for (std::size_t i = 0; i < of_width.size(); ++i)
+            map.texels[i] += static_cast<float>(mean.share) * of_width[i];
     }
 }
 

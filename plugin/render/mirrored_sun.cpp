@@ -132,7 +132,8 @@ float MirroredSun::at(const glm::dvec3& place_m) const {
 std::size_t MirroredSun::bytes() {
     const auto planes = static_cast<std::size_t>(std::ceil(-std::log(kOfHighest) / std::log(kRise))) + 1;
     constexpr auto kSide = static_cast<std::size_t>(kMostSide);
-    return planes * kSide * kSide * sizeof(float) + caustics_bytes(kMostSide, kMostMirrored);
+    constexpr std::size_t kWidths = 6;  // of cells with their margins, and of a map of one width
+    return (planes + kWidths) * kSide * kSide * sizeof(float) + caustics_bytes(kMostSide, kMostMirrored);
 }
 
 }  // namespace pelagic

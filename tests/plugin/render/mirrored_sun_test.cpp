@@ -31,7 +31,7 @@ OpenSea open_sea(double wind_mps, int seed = 1) {
     scene.sea.fetch_m = 2e3;
     scene.shot.seed = static_cast<std::uint64_t>(seed);
     scene.waves.choppiness = 0.0;  // so that places at rest are as dense as on the sea
-    scene.waves.cascades = {{.size_m = 60.0, .resolution = 128}, {.size_m = 11.0, .resolution = 128}};
+    scene.waves.cascades = {{.size_m = 30.0, .resolution = 256}, {.size_m = 3.0, .resolution = 256}};
     const auto prepared = prepare(scene);
     const Query query = view_query(
         *prepared, {.products = {}, .finest_cell_m = kFinest_m, .finest_pixel_m = kFinest_m, .points = 1000});
@@ -152,8 +152,7 @@ TEST(MirroredSun, IsThatOfAllFacets) {
             errors += error * error / static_cast<double>(places.size());
             squares += (light - mean) * (light - mean) / static_cast<double>(places.size());
         }
-        std::printf("rms error %.3f of contrast %.3f\n", std::sqrt(errors), std::sqrt(squares));
-        EXPECT_LT(std::sqrt(errors), 0.1) << elevation;
+        EXPECT_LT(std::sqrt(errors), elevation < 30.0 ? 0.06 : 0.13) << elevation;
         EXPECT_GT(std::sqrt(squares), elevation < 30.0 ? 0.1 : 0.25) << elevation;
     }
 }
@@ -163,7 +162,7 @@ TEST(MirroredSun, KeepsItsMean) {
     for (const double elevation : {8.0, 20.0, 60.0}) {
         double sum = 0.0, squares = 0.0;
         int count = 0;
-        for (const int seed : {1, 2, 3, 4, 5, 6}) {
+        for (const int seed : {1, 2, 3}) {
             const OpenSea sea = open_sea(4.0, seed);
             MirroredSunWanted wanted = box_over(sea, elevation, {0.0, 0.0, 1.5}, {20.0, 20.0, 1.5});
             wanted.finest_m = 0.5;
@@ -180,8 +179,6 @@ TEST(MirroredSun, KeepsItsMean) {
                     }
         }
         const double mean = sum / count;
-        std::printf("%g: mean %.4f contrast %.3f\n", elevation, mean,
-                    std::sqrt(squares / count - mean * mean));
         EXPECT_NEAR(mean, 1.0, 0.02) << elevation;
     }
 }

@@ -38,21 +38,21 @@ def state(preview):
 
 
 def settle():
-    """Until the preview has nothing left to do; its timers don't run while a script does. In software a picture takes
-    seconds: there is no more than is needed."""
+    """Until what is shown is all that the preview has to show; its timers don't run while a script does. In software a picture takes
+    seconds: the last one is not drawn again."""
     for _ in range(20):
         preview = viewport._preview
-        before = preview and state(preview)
         redraw()
         if preview is None or viewport._preview is not preview:
             return
+        drawn = state(preview)
         if preview._job is not None:
             preview._job.finish()
         asked = preview.drawing.awaits_foam  # the next picture has it
         while preview.drawing.awaits_foam and preview.drawing.sea.is_foam_busy:
             time.sleep(0.01)
         viewport._tend()
-        if state(preview) == before and not asked and not any(before[-3:]):
+        if state(preview) == drawn and not asked and not any(drawn[-3:]):
             return
     raise AssertionError("the preview doesn't come to rest")
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -84,81 +85,90 @@ TEST_P(HardCases, AreRefusedWithTheKeyOrLoaded) {
     }
 }
 
-// In single precision with all waves that there are, and in double by the query that a bake has.
-TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
-    if (!GetParam().loads()) return;
-    for (const bool is_double : {false, true}) {
-        Plan plan = plan_bake(scene());
-        if (!is_double) {
-            Query all = plan.queries[plan.outputs.front().query].query;
-            all.cell_m = all.pixel_m = {0.0};
-            all.lattice.reset();
-            plan = make_plan(scene(), {all});
-        }
-        const int asked = is_double ? plan.outputs.front().query : 0;
-        with_precision(is_double, [&]<class T>(T) {
-            SeaAtTime<T> sea(std::make_shared<const Sea<T>>(plan));
-            sea.set(plan.from->scene.shot.time_s(1));
-            const Query& query = plan.queries[asked].query;
-            std::vector<glm::vec<2, T>> rest;
-            std::vector<T> cell;
-            const double reach_m = plan.from->scene.surface.size_m;
-            const double coarsest_m = query.pixel_m.back(), finest_m = query.pixel_m.front();
-            for (int i = 0; i < 400; ++i) {
-                rest.emplace_back(reach_m * (i % 20 - 9.7) / 20.0, reach_m * (i / 20 - 9.3) / 20.0);
-                cell.push_back(static_cast<T>(finest_m + (coarsest_m - finest_m) * i / 400.0));
-            }
-            ProductArrays<T> arrays;
-            arrays.resize(query.products, rest.size());
-            sea.evaluate(asked,
-                         {.count = rest.size(),
-                          .rest_m = {rest.data()},
-                          .cell_m = {cell.data()},
-                          .pixel_m = {cell.data()}},
-                         arrays.results());
-            for (const ProductRow& row : kProductTable) {
-                if (!query.products[index(row.product)]) continue;
-                if (row.components == 1) {
-                    for (const T value : arrays.numbers(NumberProduct::checked(row.product))) {
-                        ASSERT_TRUE(std::isfinite(value)) << row.name;
-                        if (row.product == Product::Coverage) {
-                            ASSERT_TRUE(value >= T(0) && value <= T(1)) << value;
-                        }
-                    }
-                    continue;
-                }
-                for (const auto& v : arrays.vectors(VectorProduct::checked(row.product))) {
-                    ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << row.name;
-                    if (row.product == Product::SlopeVariance) {
-                        ASSERT_TRUE(v.x >= T(0) && v.y >= T(0) &&
-                                    v.x * v.y - v.z * v.z >= -T(1e-6) * (v.x * v.y + T(1e-30)))
-                            << v.x << ' ' << v.y << ' ' << v.z;
-                    }
-                    if (row.product == Product::Normal) {
-                        ASSERT_NEAR(std::hypot(static_cast<double>(v.x), static_cast<double>(v.y),
-                                               static_cast<double>(v.z)),
-                                    1.0, 1e-5);
-                        if (GetParam().limit == "flat") {
-                            ASSERT_EQ(v, (glm::vec<3, T>(T(0), T(0), T(1))));
-                        }
-                    }
-                    if (row.product == Product::Position) {
-                        if (GetParam().limit == "flat") {
-                            ASSERT_EQ(v.z, T(0));
-                        }
-                        if (GetParam().limit == "calm") {
-                            ASSERT_LT(std::abs(v.z), T(0.1));
-                        }
-                    }
-                }
-            }
-            const SpectralMoments shown = sea.sea().resolved_moments(asked), total = sea.sea().total();
-            EXPECT_LE(shown.m0, total.m0 * (1.0 + 1e-6));
-            // A mode has the energy of its cell at the wavenumber in the cell's middle: of slopes, which grow with it, that is not
-            // quite the cell's mean.
-            EXPECT_LE(shown.mss(), total.mss() * (1.0 + 2e-3));
-        });
+// is_double: by the query that a bake has; otherwise with all waves that there are.
+void expect_values(const HardCase& hard, bool is_double) {
+    if (!hard.loads()) return;
+    Scene shot = load_shot(hard.file, check_scene);
+    // What foam remembers is most of the work: where that isn't what is hard, it forgets soon.
+    if (hard.file.filename().string().find("foam") == std::string::npos)
+        shot.effects.foam_decay_s = std::min(shot.effects.foam_decay_s, 0.2);
+    Plan plan = plan_bake(shot);
+    if (!is_double) {
+        Query all = plan.queries[plan.outputs.front().query].query;
+        all.cell_m = all.pixel_m = {0.0};
+        all.lattice.reset();
+        plan = make_plan(shot, {all});
     }
+    const int asked = is_double ? plan.outputs.front().query : 0;
+    with_precision(is_double, [&]<class T>(T) {
+        SeaAtTime<T> sea(std::make_shared<const Sea<T>>(plan));
+        sea.set(plan.from->scene.shot.time_s(1));
+        const Query& query = plan.queries[asked].query;
+        std::vector<glm::vec<2, T>> rest;
+        std::vector<T> cell;
+        const double reach_m = plan.from->scene.surface.size_m;
+        const double coarsest_m = query.pixel_m.back(), finest_m = query.pixel_m.front();
+        for (int i = 0; i < 400; ++i) {
+            rest.emplace_back(reach_m * (i % 20 - 9.7) / 20.0, reach_m * (i / 20 - 9.3) / 20.0);
+            cell.push_back(static_cast<T>(finest_m + (coarsest_m - finest_m) * i / 400.0));
+        }
+        ProductArrays<T> arrays;
+        arrays.resize(query.products, rest.size());
+        sea.evaluate(asked,
+                     {.count = rest.size(),
+                      .rest_m = {rest.data()},
+                      .cell_m = {cell.data()},
+                      .pixel_m = {cell.data()}},
+                     arrays.results());
+        for (const ProductRow& row : kProductTable) {
+            if (!query.products[index(row.product)]) continue;
+            if (row.components == 1) {
+                for (const T value : arrays.numbers(NumberProduct::checked(row.product))) {
+                    ASSERT_TRUE(std::isfinite(value)) << row.name;
+                    if (row.product == Product::Coverage) {
+                        ASSERT_TRUE(value >= T(0) && value <= T(1)) << value;
+                    }
+                }
+                continue;
+            }
+            for (const auto& v : arrays.vectors(VectorProduct::checked(row.product))) {
+                ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << row.name;
+                if (row.product == Product::SlopeVariance) {
+                    ASSERT_TRUE(v.x >= T(0) && v.y >= T(0) &&
+                                v.x * v.y - v.z * v.z >= -T(1e-6) * (v.x * v.y + T(1e-30)))
+                        << v.x << ' ' << v.y << ' ' << v.z;
+                }
+                if (row.product == Product::Normal) {
+                    ASSERT_NEAR(std::hypot(static_cast<double>(v.x), static_cast<double>(v.y),
+                                           static_cast<double>(v.z)),
+                                1.0, 1e-5);
+                    if (hard.limit == "flat") {
+                        ASSERT_EQ(v, (glm::vec<3, T>(T(0), T(0), T(1))));
+                    }
+                }
+                if (row.product == Product::Position) {
+                    if (hard.limit == "flat") {
+                        ASSERT_EQ(v.z, T(0));
+                    }
+                    if (hard.limit == "calm") {
+                        ASSERT_LT(std::abs(v.z), T(0.1));
+                    }
+                }
+            }
+        }
+        const SpectralMoments shown = sea.sea().resolved_moments(asked), total = sea.sea().total();
+        EXPECT_LE(shown.m0, total.m0 * (1.0 + 1e-6));
+        // A mode has the energy of its cell at the wavenumber in the cell's middle: of slopes, which grow with it, that is not
+        // quite the cell's mean.
+        EXPECT_LE(shown.mss(), total.mss() * (1.0 + 2e-3));
+    });
+}
+
+TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
+    expect_values(GetParam(), false);
+}
+TEST_P(HardCases, HaveFiniteValuesInDouble) {
+    expect_values(GetParam(), true);
 }
 
 // Writers refuse what isn't finite by throwing.

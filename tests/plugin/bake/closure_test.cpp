@@ -234,9 +234,11 @@ class Closure : public ::testing::Test {
             }
     }
 
-    // Two frames say of a camera that stands what three do.
+    // Two frames say of a camera that stands what three do, and one says it where no edit is of frames.
     void expect_closed(BaseShot base) {
-        if (base.scene.camera.keys.size() < 2) base.scene.shot.last_frame = base.scene.shot.first_frame + 1;
+        if (base.scene.camera.keys.size() < 2)
+            base.scene.shot.last_frame =
+                std::min(base.scene.shot.last_frame, base.scene.shot.first_frame + 1);
         is_picture_ = base.is_picture;
         shot_ = base.name;
         base_ = folder_ / "base";
@@ -250,7 +252,9 @@ class Closure : public ::testing::Test {
                                     without_fingerprint(bytes, fingerprint, path.ends_with("png")));
         }
         if (!is_picture_) compare_sources(base.scene);
-        for (const Edit& edit : edits_of(base)) try_edit(edit);
+        std::set<std::string> tried;
+        for (const Edit& edit : edits_of(base))
+            if (tried.insert(edit.key).second || !has_one_edit_a_key_) try_edit(edit);
         print_table(base.name);
         EXPECT_TRUE(made_for_nothing_.empty())
             << "made again, and they are the same:\n"
@@ -344,7 +348,7 @@ class Closure : public ::testing::Test {
     }
 
     fs::path folder_, base_;
-    bool is_picture_ = false;
+    bool is_picture_ = false, has_one_edit_a_key_ = false;
     std::string_view shot_;
     Made base_made_;
     std::set<std::string> base_files_;
@@ -410,7 +414,13 @@ TEST_F(Closure, OfABuoysSpectrum) {
     expect_closed(buoy_shot());
 }
 TEST_F(Closure, OfPicturesByDaylight) {
-    expect_closed(only(daylight_shot(), {"camera", "light", "water", "effects"}));
+    // One frame, fewer pixels, and foam that forgets soon: each edit's light and sea are most of the work.
+    BaseShot base = only(daylight_shot(), {"camera", "light", "water", "effects"});
+    base.scene.shot.last_frame = base.scene.shot.first_frame;
+    base.scene.camera.resolution = {16, 9};
+    base.scene.effects.foam_decay_s = 0.5;
+    has_one_edit_a_key_ = true;
+    expect_closed(std::move(base));
 }
 TEST_F(Closure, OfPicturesByDaylightByAllKeys) {
     expect_closed(daylight_shot());

@@ -291,9 +291,10 @@ class Pictures(unittest.TestCase):
             self.assertTrue(np.isfinite(full[name]).all(), name)
         self.assertTrue((full["depth"][~full["is_sea"]] == 1e10).all() and (full["depth"][full["is_sea"]] < 1e9).all())
         self.assertTrue(full["alpha"].min() >= 0.0 and full["alpha"].max() == 1.0 and full["alpha"][0].max() == 0.0)
-        for name in shapes:
-            one = pelagic.render(shot(), 1, (12, 8), 1, sky_quality="one", layers=[name])
-            self.assertEqual(sorted(one), sorted([*light, name]))
+        for first in range(3):  # a picture for each name would take most of this file's time
+            some = list(shapes)[first::3]
+            made = pelagic.render(shot(), 1, (12, 8), 1, sky_quality="one", layers=some)
+            self.assertEqual(sorted(made), sorted([*light, *some]))
         for wrong in ({"layers": ["z"]}, {"layers": [""]}, {"shutter": -0.1}, {"shutter": 4.1}, {"shutter": float("nan")}):
             with self.assertRaises(ValueError, msg=wrong):
                 pelagic.render(shot(), 1, (12, 8), 1, **wrong)

@@ -520,7 +520,7 @@ class Threads(unittest.TestCase):
     def test_two_frames_of_one_sea_in_two_threads_give_the_same_bits(self):
         sea = pelagic.Sea(small_scene(), ALL)
         rest, _ = pelagic.patch(SIZE_M, RESOLUTION)
-        times = [0.25 * i for i in range(40)]
+        times = [0.25 * i for i in range(12)]
 
         def run(order, answers):
             frame = pelagic.Frame(sea)

@@ -181,7 +181,7 @@ class StormCameras(unittest.TestCase):
             """The share of the sea in the picture that foam and spray make white, without the sun's glitter."""
             scene = pelagic.Scene()
             scene.apply_preset(f"beaufort-{force}")
-            seen = pelagic.render(scene, 1, (160, 90), 1, layers=[])
+            seen = pelagic.render(scene, 1, (96, 54), 1, layers=[])
             light = (seen["sky"] + seen["sea"] + seen["foam"] + seen["air"])[seen["is_sea"]] * pelagic.Sky(scene).exposure(scene)
             return np.mean((light @ [0.2126, 0.7152, 0.0722] > 0.3) & (light.min(1) > 0.7 * light.max(1)))
 

@@ -144,4 +144,3 @@ class _Mirrored(_Picture):
             for name, value in (("finer_first", finer_first), ("finer_size", finer_size), ("first", first), ("apart", apart)):
                 shader.uniform_int(name, value)
             self._triangle.draw(shader)
-

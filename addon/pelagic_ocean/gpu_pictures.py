@@ -83,18 +83,18 @@ class _Picture:
         # As far as the boxes let it be: distances far away are the finer in the depth.
         ahead = np.concatenate([part.shape.corners_of_box @ (clip[3] @ matrix)[:3] + (clip[3] @ matrix)[3] for _, part, matrix in placed])
         near_m = max(NEAR_M, 0.5 * float(ahead.min()))
-        uniforms = {**uniforms, "object_eye": told["eye_m"], "depth_of_distance": (1.0, -2.0 * near_m)}
+        # Asked for each time: Blender makes another where the picture has changed; before the shader has its textures, for that may bind it.
+        images = {image: gpu.texture.from_image(image) for _, part, _ in placed for image in part.images if image is not None}
         with drawing(self._framebuffer, (0, 0, *self._size), True):
             self._framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
+            shader.bind()
+            put(shader, {**uniforms, "object_eye": told["eye_m"], "depth_of_distance": (1.0, -2.0 * near_m)}, textures)
             for body, part, matrix in placed:
-                shader.bind()
-                put(shader, {**uniforms, "object_water_m": body.water_m,
-                             "clip_from_object": Matrix((clip @ matrix).tolist()), "grid_from_object": Matrix(matrix.tolist())},
-                    {**textures, "object_materials": part.materials})
+                put(shader, {"object_water_m": body.water_m, "clip_from_object": Matrix((clip @ matrix).tolist()), "grid_from_object": Matrix(matrix.tolist())},
+                    {"object_materials": part.materials})
                 for slot, batch in part.shape.batches:
                     image = None if slot is None else part.images[slot]
-                    # Asked for each time: Blender makes another where the picture has changed.
-                    put(shader, {"object_has_image": int(image is not None)}, {} if image is None else {"object_image": gpu.texture.from_image(image)})
+                    put(shader, {"object_has_image": int(image is not None)}, {} if image is None else {"object_image": images[image]})
                     batch.draw(shader)
         return near_m
 
@@ -144,4 +144,3 @@ class _Mirrored(_Picture):
             for name, value in (("finer_first", finer_first), ("finer_size", finer_size), ("first", first), ("apart", apart)):
                 shader.uniform_int(name, value)
             self._triangle.draw(shader)
-

@@ -21,8 +21,8 @@ struct DrawOptions {
     bool is_shaped = false;     // the sea lies on a surface that isn't flat at rest
     bool from_below = false;    // all of the picture looks through water (plugin/render/waterline.h)
     bool behind_glass = false;  // nothing nearer than the camera's front glass is seen (ditto)
-    bool has_objects =
-        false;  // whose shadow, mirror image and hulls the sea has; a host's own, where it is for one
+    // Whose shadow, mirror image and hulls the sea has, and what of them is in the water; a host's own, where it is for one.
+    bool has_objects = false;
     bool has_images = false;  // materials of the objects have pictures
     bool wireframe = false;   // the grid's edges on black
     // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is

@@ -188,7 +188,8 @@ ShaderVariant::ShaderVariant(std::string constants, std::vector<std::string_view
                              std::vector<std::string_view> fragment)
     : constants_(std::move(constants)), vertex_(std::move(vertex)), fragment_(std::move(fragment)) {
     key_ = constants_;
-    key_ += fragment_.back();
+    for (const auto* files : {&vertex_, &fragment_})
+        for (const std::string_view file : *files) key_ += file;
 }
 
 ShaderSource ShaderVariant::source(const std::vector<std::string_view>& files) const {

@@ -704,7 +704,7 @@ py::array places_of_hulls(const GpuHulls& hulls, const std::vector<Matrix>& grid
 void add_gpu_hulls(py::module_& module) {
     py::class_<GpuHulls>(
         module, "GpuHulls", py::module_local(),
-        "Where a host's own objects keep water out, for GpuSea's shader with hulls: as the objects of a shot do.\n\n"
+        "Where a host's own objects keep water out, for GpuSea's shader with objects: as the objects of a shot do.\n\n"
         "meshes: (points, triangles) of each, float32 (n, 3) [m] in its own axes, z up, and indices (m, 3). Some tenths of a second "
         "for a large one; other threads run meanwhile, and equal meshes are made once. What keeps no water out does nothing: a sheet, a mesh without "
         "area, one with indices out of range or numbers that aren't finite.")
@@ -864,7 +864,7 @@ void add_viewport(py::module_& module) {
             "These shaders' attributes are place_in and normal_in (three each, the object's own) and "
             "material_in, a row of the texture object_materials, float32 (rows, 2, 4): colour and roughness, glow and 0; and image_at_in (two), a "
             "place in the texture object_image, linear colours that repeat and stand for the material's where int object_has_image isn't 0. Their uniforms besides "
-            "GpuLight's, surroundings() and those of shadows: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
+            "GpuLight's, surroundings() and those beside sun_blockers: mat4 clip_from_object and grid_from_object, vec2 depth_of_distance (clip z is "
             "its .x w + .y), vec3 object_eye and object_colour, object_glow (a factor), object_water_m (height of the water), "
             "shadow_texel_m (how far off its own surface a place asks for its shadow).")
         .def_property_readonly(
@@ -886,9 +886,11 @@ void add_viewport(py::module_& module) {
             "for a grid's origin [m].")
         .def(
             "surroundings", &GpuSea::surroundings, py::arg("scene"), py::arg("light").none(false),
-            "Uniforms of the shader \"object\" by name: the light of sky and sea round bodies, of a scene that this sea and this GpuLight serve.")
-        .def("water", &GpuSea::water, py::arg("scene"),
-             "Uniforms of the sea's shader by name: the water of a scene that this sea serves.")
+            "Uniforms of the shaders \"object_mirrored\" and \"object_in_water\" by name: the light of sky and sea round bodies, of a scene that this sea and this "
+            "GpuLight serve.")
+        .def(
+            "water", &GpuSea::water, py::arg("scene"),
+            "Uniforms of the sea's shader and of \"object_in_water\" by name: the water of a scene that this sea serves.")
         .def_property_readonly(
             "changes", &GpuSea::changes,
             "Whether its scene's sea has keys: then uniforms and all textures change with set().")

@@ -639,5 +639,14 @@ TEST(PreviewsObjects, ChangeNothingWhereThereAreNone) {
     EXPECT_EQ(text_of_host().find("sampler2DShadow"), std::string::npos);
 }
 
+// A renderer keeps its programs by them, also when its window reads a shot again whose bodies have pictures by now.
+TEST(PreviewsObjects, HaveAnotherKeyWithPicturesThanWithoutThem) {
+    DrawOptions plain, painted;
+    painted.has_images = true;
+    for (const ObjectPicture picture : {ObjectPicture::Seen, ObjectPicture::Mirrored, ObjectPicture::InWater})
+        EXPECT_NE(ShaderVariant::of_object(plain, 256, picture).key(),
+                  ShaderVariant::of_object(painted, 256, picture).key());
+}
+
 }  // namespace
 }  // namespace pelagic

@@ -1104,7 +1104,7 @@ void add_objects(Built& out) {
         row<&SceneObject::caustics>(
             {.name = "caustics",
              .help =
-                 "how much waves gather the sun's light that they mirror onto it; 1 is as computed, 0 their mean light",
+                 "how much waves gather the sun's light that they mirror onto it; 1 is as computed, 0 their mean light, and over 1 the mean rises, as no light is less than none",
              .range = limits::kWaterGain,
              .soft = SoftRange{0.0, 3.0}}),
         row<&SceneObject::holdout>(

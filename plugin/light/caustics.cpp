@@ -163,7 +163,7 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
                 const glm::dvec3 n(normal[i]);
                 if (beam.is_mirrored) {
                     const double facing = glm::dot(n, beam.to_sun);
-                    if (facing > 0.0)
+                    if (facing > 0.0 && n.z > 0.0)
                         mirrored[i] = glm::vec2(facing / n.z * mirrored_on(beam, n, facing, far),
                                                 width_of(beam, 2.0 * facing * n.z - beam.to_sun.z));
                     else
@@ -198,7 +198,8 @@ Falls falls_on(const CausticsMap& map, const Floor& floor, const Frame<T>& frame
                         light += mirrored[corner].x;
                         width_light += mirrored[corner].x * mirrored[corner].y;
                     }
-                    falls.light[cell] = 0.25f * static_cast<float>(area.z) * light;
+                    // Of a folded sheet what lies upside down sends none.
+                    falls.light[cell] = 0.25f * std::max(static_cast<float>(area.z), 0.0f) * light;
                     if (light > 0.0f) falls.width[cell] = width_light / light;
                     continue;
                 }
@@ -399,17 +400,17 @@ double caustics_margin_m(const SunThroughWaves& sun, const Floor& floor, double 
     return std::min(margin_m, on.most_margin_m);
 }
 
-std::size_t caustics_bytes(int side, double margin) {
+std::size_t caustics_bytes(int side, double margin, bool is_mirrored) {
     const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     const double with_margins = (1.0 + 2.0 * margin) * (1.0 + 2.0 * margin);
     // Falls, and what some rows of cells are asked for.
-    constexpr std::size_t kOfPoint = 10 * sizeof(double);
+    const std::size_t of_point = 10 * sizeof(double) + (is_mirrored ? sizeof(glm::vec2) : 0),
+                      of_cell = sizeof(glm::vec2) + (is_mirrored ? 2 : 1) * sizeof(float);
     const std::size_t rows = static_cast<std::size_t>(kRowsAtOnce + 1) *
                              static_cast<std::size_t>(static_cast<double>(side) * (1.0 + 2.0 * margin) + 2.0);
-    return texels * kParts * sizeof(float) +
-           static_cast<std::size_t>(static_cast<double>(texels) * with_margins) *
-               (sizeof(glm::vec2) + sizeof(float)) +
-           rows * kOfPoint;
+    // The map of one width is beside the others.
+    return texels * (kParts + (is_mirrored ? 1 : 0)) * sizeof(float) +
+           static_cast<std::size_t>(static_cast<double>(texels) * with_margins) * of_cell + rows * of_point;
 }
 
 template <class T>

@@ -62,6 +62,6 @@ template <class T>
 void find_caustics(const CausticsMap& map, const Floor& floor, const Frame<T>& frame, int query,
                    const SunThroughWaves& sun, const CausticsOn& on, const std::atomic<bool>* cancel);
 // What that holds beside the map [bytes]; margin: over the map's side.
-std::size_t caustics_bytes(int side, double margin);
+std::size_t caustics_bytes(int side, double margin, bool is_mirrored = false);
 
 }  // namespace pelagic

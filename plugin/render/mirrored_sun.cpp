@@ -23,12 +23,16 @@ glm::dvec2 turned(const glm::dvec2& place, const glm::dvec2& along) {
     return {glm::dot(place, along), glm::dot(place, left_of(along))};
 }
 
+// Steps of one ladder over the water for all bodies: where one heaves, the planes that it needs stay as they are, and its pattern doesn't jump.
+// Only what is lower than a 64th of a body's top has its first plane, which may be another when that top has risen by kRise.
 std::vector<double> heights_m(double bottom_m, double top_m) {
-    const double first_m = std::min(std::max({bottom_m, kOfHighest * top_m, kLowest_m}), top_m);
-    const double steps = std::ceil(std::log(top_m / first_m) / std::log(kRise));
+    const auto step_of = [](double height_m) {
+        return std::log(std::max(height_m / kLowest_m, 1.0)) / std::log(kRise);
+    };
+    const double last = std::ceil(step_of(top_m));
     std::vector<double> heights;
-    for (double k = 0.0; k <= steps; k += 1.0)
-        heights.push_back(first_m * std::pow(top_m / first_m, steps > 0.0 ? k / steps : 0.0));
+    for (double k = std::floor(step_of(std::max(bottom_m, kOfHighest * top_m))); k <= last; k += 1.0)
+        heights.push_back(kLowest_m * std::pow(kRise, k));
     return heights;
 }
 
@@ -63,7 +67,8 @@ void MirroredSun::find(const Frame<T>& frame, MirroredSunWanted wanted, const st
         const glm::dvec3 edges = glm::abs(direction * wanted.half_edges_m);
         return edges.x + edges.y + edges.z;
     };
-    const double high_m = half_m({0.0, 0.0, 1.0}), top_m = wanted.middle_m.z + high_m;
+    const double high_m = half_m({0.0, 0.0, 1.0}), top_m = wanted.middle_m.z + high_m,
+                 bottom_m = wanted.middle_m.z - high_m;
     share_ = static_cast<float>(caustics_share(wanted.sun));
     if (share_ > 0.0f && top_m > 0.0) {
         way_ = level_way(wanted.sun);
@@ -72,9 +77,10 @@ void MirroredSun::find(const Frame<T>& frame, MirroredSunWanted wanted, const st
         const double far_m = std::max(half_m(glm::dvec3(along_, 0.0)), 1e-3),
                      wide_m = std::max(half_m(glm::dvec3(left_of(along_), 0.0)), 1e-3);
         const glm::dvec2 middle_m = turned(glm::dvec2(wanted.middle_m), along_);
-        for (const double height_m : heights_m(wanted.middle_m.z - high_m, top_m)) {
-            // The place on this plane of what the nearest ones' light meets between them and it.
-            const double shift_m = (kRise - 1.0) * height_m * tangent;
+        for (const double height_m : heights_m(bottom_m, top_m)) {
+            // The place on this plane of what the nearest ones' light meets between them and it; below the first it meets all.
+            double shift_m = (kRise - 1.0) * height_m * tangent;
+            if (planes_.empty()) shift_m = std::max(shift_m, (height_m - std::max(bottom_m, 0.0)) * tangent);
             const double width_m = 2.0 * std::max(far_m + shift_m, wide_m);
             double texel_m = std::max({width_m / (kMostSide - 2),
                                        height_m / (kTexelsAWay * static_cast<double>(wanted.sun.to_sun.z)),
@@ -130,10 +136,12 @@ float MirroredSun::at(const glm::dvec3& place_m) const {
 }
 
 std::size_t MirroredSun::bytes() {
-    const auto planes = static_cast<std::size_t>(std::ceil(-std::log(kOfHighest) / std::log(kRise))) + 1;
-    constexpr auto kSide = static_cast<std::size_t>(kMostSide);
-    constexpr std::size_t kWidths = 6;  // of cells with their margins, and of a map of one width
-    return (planes + kWidths) * kSide * kSide * sizeof(float) + caustics_bytes(kMostSide, kMostMirrored);
+    const auto planes = static_cast<std::size_t>(std::ceil(-std::log(kOfHighest) / std::log(kRise))) + 2;
+    return planes * static_cast<std::size_t>(kMostSide) * static_cast<std::size_t>(kMostSide) * sizeof(float);
+}
+
+std::size_t MirroredSun::finding_bytes() {
+    return caustics_bytes(kMostSide, kMostMirrored, true);
 }
 
 }  // namespace pelagic

@@ -34,8 +34,9 @@ class MirroredSun {
     void clear();
     // The light on an upright wall over its mean, at a place [m] as the box's middle is.
     float at(const glm::dvec3& place_m) const;
-    // At most, with what finding it takes [bytes].
+    // At most, and of what finding one holds meanwhile [bytes].
     static std::size_t bytes();
+    static std::size_t finding_bytes();
 
   private:
     // Where the light of a level sea falls, relative to a plane: a place on others follows that light's way.

@@ -249,7 +249,9 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     const auto gathering = static_cast<std::size_t>(std::ranges::count_if(
         scene.objects, [](const SceneObject& object) { return object.caustics > 0.0; }));
     if (gathering > 0)
-        need.add("the sun's light that waves mirror onto objects", gathering * MirroredSun::bytes(),
+        // They are found one after the other.
+        need.add("the sun's light that waves mirror onto objects",
+                 gathering * MirroredSun::bytes() + MirroredSun::finding_bytes(),
                  "set objects[].caustics to 0");
     if (options.lighting.spray) {
         need.add("the map of the spray",

@@ -233,25 +233,26 @@ template void LitObjects::light(const SeaLight<double>&);
 
 template <class T>
 void LitObjects::find_caustics(const SeaLight<T>& sea, const Seen& seen, const std::atomic<bool>* cancel) {
+    const bool has_sun = beam_ != glm::vec3(0.0f);
+    const glm::vec3 waves = has_sun && has_caustics() ? sea.wave_slopes() : glm::vec3(0.0f);
     for (Body& body : bodies_) {
         if (!(body.caustics > 0.0f)) continue;
-        if (beam_ == glm::vec3(0.0f)) {
+        if (!has_sun) {
             body.pattern.clear();
             continue;
         }
         const glm::dmat3& half = body.half_edges_m;
         const double away_m =
             std::max(glm::length(body.middle_m - seen.eye_m) - glm::length(half[0] + half[1] + half[2]), 0.0);
-        body.pattern.find(sea.frame(),
-                          {.sun = {.to_sun = to_sun_,
-                                   .angular_radius = sky_->sun_angular_radius,
-                                   .waves = sea.slopes_from_afar()},
-                           .middle_m = body.middle_m - glm::dvec3(0.0, 0.0, body.flat_water_m),
-                           .half_edges_m = half,
-                           .level_m = body.waves_m,
-                           .finest_m = std::max(seen.finest_m, seen.pixel_tangent * away_m),
-                           .finest_cell_m = seen.finest_cell_m},
-                          cancel);
+        body.pattern.find(
+            sea.frame(),
+            {.sun = {.to_sun = to_sun_, .angular_radius = sky_->sun_angular_radius, .waves = waves},
+             .middle_m = body.middle_m - glm::dvec3(0.0, 0.0, body.flat_water_m),
+             .half_edges_m = half,
+             .level_m = body.waves_m,
+             .finest_m = std::max(seen.finest_m, seen.pixel_tangent * away_m),
+             .finest_cell_m = seen.finest_cell_m},
+            cancel);
     }
 }
 template void LitObjects::find_caustics(const SeaLight<float>&, const Seen&, const std::atomic<bool>*);

@@ -208,10 +208,9 @@ SeaFacets SeaLight<T>::facets(const SeenSea<T>& seen, std::size_t place) const {
 }
 
 template <class T>
-glm::vec3 SeaLight<T>::slopes_from_afar() const {
-    // Of water without a body nobody has asked for the waves' slopes: Cox and Munk 1954.
-    const auto slopes = static_cast<float>(0.003 + 0.00512 * plan().from->scene.sea.wind_speed_mps);
-    return water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
+glm::vec3 SeaLight<T>::wave_slopes() const {
+    // Water without a body hasn't asked for them; those of any are the spectrum's.
+    return water_.has_body ? water_.waves : make_water(Scene{}, frame().sea().plan().from->spectrum).waves;
 }
 
 template <class T>
@@ -220,7 +219,9 @@ void SeaLight<T>::light_from_afar(std::span<const glm::vec3> to_eye, bool lit,
     Sky sky = sky_;
     if (!lit) sky.sun_radiance = sky.sun_irradiance = glm::vec3(0.0f);
     const Scene& scene = plan().from->scene;
-    glm::vec3 variance = slopes_from_afar();
+    // Of water without a body nobody has asked for the waves' slopes: Cox and Munk 1954.
+    const auto slopes = static_cast<float>(0.003 + 0.00512 * scene.sea.wind_speed_mps);
+    glm::vec3 variance = water_.has_body ? water_.waves : glm::vec3(0.5f * slopes, 0.5f * slopes, 0.0f);
     // A calm sea's glitter would be a point that tables of directions miss, or see as a wide one.
     constexpr float kLeast = 0.01f;
     variance.x = std::max(variance.x, kLeast);

@@ -138,8 +138,8 @@ class SeaLight {
                std::span<SeaRadiance> lit, std::span<const std::uint8_t> wanted = {});
     // Those of such a place that light() has lit; any thread.
     SeaFacets facets(const SeenSea<T>& seen, std::size_t place) const;
-    // Variances xx, yy, xy of the slopes of all its waves, as they are far away.
-    glm::vec3 slopes_from_afar() const;
+    // Variances xx, yy, xy of the slopes of all waves of its frame. Of water without a body some milliseconds.
+    glm::vec3 wave_slopes() const;
     // What comes from the sea in directions to an eye (unit) over all its waves, hidden as they are from far away, without air; `lit`:
     // with the sun.
     void light_from_afar(std::span<const glm::vec3> to_eye, bool lit, std::span<SeaRadiance> light) const;

@@ -339,6 +339,11 @@ TEST(Keys, BodiesCountByTheirMeshesAndNames) {
         EXPECT_EQ(canonical(other, ~key_parts(KeyPart::Objects)),
                   canonical(scene, ~key_parts(KeyPart::Objects)));
     }
+    // What records without it say of a body is said of one whose pattern is off.
+    EXPECT_EQ(text.find("caustics", text.find("objects = [")), std::string::npos) << text;
+    other = scene;
+    other.objects[0].caustics = 0.5;
+    EXPECT_NE(canonical(other).find("caustics = 0.5", text.find("objects = [")), std::string::npos);
     // Set as values, bodies keep the meshes of their files.
     const Key& key = key_of("objects");
     EXPECT_FALSE(set_value(other, key, value_of(scene, key)).has_value());

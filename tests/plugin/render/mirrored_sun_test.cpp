@@ -25,12 +25,12 @@ struct OpenSea {
     glm::vec3 waves{0.0f};
     std::shared_ptr<Frame<float>> frame;
 };
-OpenSea open_sea(double wind_mps, int seed = 1) {
+OpenSea open_sea(double wind_mps, int seed = 1, double choppiness = 0.0) {
     Scene scene;
     scene.sea.wind_speed_mps = wind_mps;
     scene.sea.fetch_m = 2e3;
     scene.shot.seed = static_cast<std::uint64_t>(seed);
-    scene.waves.choppiness = 0.0;  // so that places at rest are as dense as on the sea
+    scene.waves.choppiness = choppiness;  // 0: places at rest are as dense as on the sea
     scene.waves.cascades = {{.size_m = 30.0, .resolution = 256}, {.size_m = 3.0, .resolution = 256}};
     const auto prepared = prepare(scene);
     const Query query = view_query(
@@ -131,7 +131,7 @@ std::vector<double> by_facets(const OpenSea& sea, bool has_waves, const glm::dve
 TEST(MirroredSun, IsThatOfAllFacets) {
     const OpenSea sea = open_sea(4.0);
     for (const double elevation : {20.0, 40.0}) {
-        const MirroredSunWanted wanted = box_over(sea, elevation, {3.0, -2.0, 0.8}, {1.0, 1.0, 0.8});
+        const MirroredSunWanted wanted = box_over(sea, elevation, {3.0, -2.0, 0.8}, {1.0, 1.0, 0.4});
         const MirroredSun pattern = pattern_of(sea, wanted);
         std::vector<glm::dvec3> places;
         const glm::dvec2 across(-wanted.sun.to_sun.y, wanted.sun.to_sun.x);
@@ -159,13 +159,14 @@ TEST(MirroredSun, IsThatOfAllFacets) {
 
 TEST(MirroredSun, KeepsItsMean) {
     // Of seas and places enough that their longest waves count little.
+    std::vector<OpenSea> seas;
+    for (const int seed : {1, 2, 3}) seas.push_back(open_sea(4.0, seed));
     for (const double elevation : {8.0, 20.0, 60.0}) {
         double sum = 0.0, squares = 0.0;
         int count = 0;
-        for (const int seed : {1, 2, 3}) {
-            const OpenSea sea = open_sea(4.0, seed);
-            MirroredSunWanted wanted = box_over(sea, elevation, {0.0, 0.0, 1.5}, {20.0, 20.0, 1.5});
-            wanted.finest_m = 0.5;
+        for (const OpenSea& sea : seas) {
+            MirroredSunWanted wanted = box_over(sea, elevation, {0.0, 0.0, 1.7}, {20.0, 20.0, 1.3});
+            wanted.finest_m = 0.7;
             const MirroredSun pattern = pattern_of(sea, wanted);
             for (const double height : {0.3, 0.8, 1.5, 2.8})
                 for (int y = 0; y < 60; ++y)
@@ -185,7 +186,11 @@ TEST(MirroredSun, KeepsItsMean) {
 
 TEST(MirroredSun, IsEvenOnACalmSeaFarUpAndWithoutASun) {
     const OpenSea calm = open_sea(0.0), sea = open_sea(4.0);
-    const MirroredSun still = pattern_of(calm, box_over(calm, 25.0, {0.0, 0.0, 1.0}, {3.0, 1.0, 1.0}));
+    const auto coarsely = [](const OpenSea& of, MirroredSunWanted wanted, double finest_m) {
+        wanted.finest_m = finest_m;
+        return pattern_of(of, wanted);
+    };
+    const MirroredSun still = coarsely(calm, box_over(calm, 25.0, {0.0, 0.0, 1.0}, {3.0, 1.0, 1.0}), 0.1);
     for (const double height : {0.0, 0.2, 1.1, 1.9})
         EXPECT_NEAR(static_cast<double>(still.at({1.0, 0.5, height})), 1.0, 1e-4) << height;
     const auto contrast = [](const MirroredSun& pattern, double size, double height) {
@@ -197,28 +202,94 @@ TEST(MirroredSun, IsEvenOnACalmSeaFarUpAndWithoutASun) {
         }
         return most;
     };
-    const auto of = [&](double elevation, double size, double bottom, double top) {
-        return contrast(pattern_of(sea, box_over(sea, elevation, {0.0, 0.0, 0.5 * (bottom + top)},
-                                                 {size, size, 0.5 * (top - bottom)})),
+    const auto of = [&](double elevation, double size, double bottom, double top, double finest_m) {
+        return contrast(coarsely(sea,
+                                 box_over(sea, elevation, {0.0, 0.0, 0.5 * (bottom + top)},
+                                          {size, size, 0.5 * (top - bottom)}),
+                                 finest_m),
                         size, 0.5 * (std::max(bottom, 0.0) + top));
     };
-    EXPECT_GT(of(25.0, 2.0, -1.0, 2.0), 0.1);
-    EXPECT_EQ(of(-1.0, 2.0, -1.0, 2.0), 0.0);
-    EXPECT_EQ(of(0.0, 2.0, -1.0, 2.0), 0.0);
-    EXPECT_EQ(of(25.0, 2.0, -3.0, -1.0), 0.0);
-    EXPECT_LT(of(25.0, 2.0, 2e3, 2e3 + 4.0), 0.02);
-    EXPECT_LT(of(25.0, 1e4, -5.0, 1e3), 0.2);
-    for (const double elevation : {1.5, 4.0, 89.0, 90.0}) of(elevation, 3.0, -1.0, 30.0);
-    for (const double size : {1e-6, 1e-3, 1e7}) of(30.0, size, -size, size);
+    EXPECT_GT(of(25.0, 2.0, -1.0, 2.0, 0.05), 0.1);
+    EXPECT_EQ(of(-1.0, 2.0, -1.0, 2.0, 0.05), 0.0);
+    EXPECT_EQ(of(0.0, 2.0, -1.0, 2.0, 0.05), 0.0);
+    EXPECT_EQ(of(25.0, 2.0, -3.0, -1.0, 0.05), 0.0);
+    EXPECT_LT(of(25.0, 2.0, 2e3, 2e3 + 4.0, kFinest_m), 0.02);
+    EXPECT_LT(of(25.0, 1e4, -5.0, 1e3, 200.0), 0.2);
+    for (const double elevation : {1.5, 4.0, 89.0, 90.0})
+        of(elevation, 3.0, -1.0, 30.0, elevation < 10.0 ? 4.0 : 0.3);
+    for (const double size : {1e-6, 1e-3, 1e7}) of(30.0, size, -size, size, 0.05 * size);
     EXPECT_EQ(MirroredSun().at({1.0, 2.0, 3.0}), 1.0f);
+}
+
+// A mast in a low sun: down to the water its light comes from far beside it.
+TEST(MirroredSun, ReachesTheWaterOnWhatIsThin) {
+    const OpenSea sea = open_sea(4.0);
+    MirroredSunWanted wanted = box_over(sea, 8.0, {0.0, 0.0, 6.0}, {0.25, 0.25, 6.5});
+    wanted.finest_m = 0.1;
+    const MirroredSun pattern = pattern_of(sea, wanted);
+    for (const double height : {0.0, 0.05, 0.1, 0.15, 0.3, 0.6}) {
+        double most = 0.0;
+        for (int i = -20; i <= 20; ++i) {
+            const float value = pattern.at({0.012 * i, -0.01 * i, height});
+            EXPECT_NE(value, 1.0f) << height << ' ' << i;
+            most = std::max(most, static_cast<double>(std::abs(value - 1.0f)));
+        }
+        EXPECT_GT(most, 0.05) << height;
+    }
+}
+
+// What lies upside down sends no light, and normals that lie level no endless one.
+TEST(MirroredSun, IsLightWhereWavesFold) {
+    for (const double elevation : {10.0, 40.0}) {
+        const OpenSea sea = open_sea(20.0, 1, 4.0);
+        MirroredSunWanted wanted = box_over(sea, elevation, {0.0, 0.0, 2.0}, {15.0, 15.0, 2.0});
+        wanted.finest_m = 0.35;
+        const MirroredSun pattern = pattern_of(sea, wanted);
+        double sum = 0.0, least = 1.0, most = 0.0;
+        int count = 0;
+        for (const double height : {0.05, 0.3, 0.8, 1.5, 2.8})
+            for (int y = 0; y < 60; ++y)
+                for (int x = 0; x < 60; ++x) {
+                    const auto value =
+                        static_cast<double>(pattern.at({0.5 * x - 14.75, 0.5 * y - 14.75, height}));
+                    ASSERT_TRUE(std::isfinite(value));
+                    least = std::min(least, value);
+                    most = std::max(most, value);
+                    sum += value;
+                    ++count;
+                }
+        EXPECT_GE(least, 0.0) << elevation;
+        EXPECT_NEAR(sum / count, 1.0, 0.05) << elevation << ' ' << least << ' ' << most;
+    }
+}
+
+// A body that heaves keeps its planes.
+TEST(MirroredSun, DoesNotJumpWhereABodyHeaves) {
+    const OpenSea sea = open_sea(4.0);
+    const auto heaved = [&](double up_m) {
+        MirroredSunWanted wanted = box_over(sea, 25.0, {2.0, 1.0, 1.0 + up_m}, {1.0, 0.5, 2.0});
+        wanted.finest_m = 0.06;
+        return pattern_of(sea, wanted);
+    };
+    const MirroredSun still = heaved(0.0);
+    for (const double up_m : {0.1, 0.4, 0.9}) {
+        const MirroredSun other = heaved(up_m);
+        for (int i = -20; i <= 20; ++i)
+            for (const double height : {0.0, 0.3, 1.3, 2.2}) {
+                const glm::dvec3 place(2.0 + 0.04 * i, 1.0 - 0.02 * i, height);
+                EXPECT_NEAR(other.at(place), still.at(place), 1e-5f) << up_m << ' ' << i << ' ' << height;
+            }
+    }
 }
 
 TEST(MirroredSun, IsTheSameOnAnyNumberOfThreadsAndWhateverWasFoundBefore) {
     const OpenSea sea = open_sea(6.0);
-    const MirroredSunWanted wanted = box_over(sea, 15.0, {1e4, -3e3, 1.0}, {4.0, 2.0, 1.0});
+    MirroredSunWanted wanted = box_over(sea, 15.0, {1e4, -3e3, 1.0}, {4.0, 2.0, 1.0}),
+                      other = box_over(sea, 30.0, {0.0, 0.0, 1.0}, {4.0, 2.0, 1.0});
+    wanted.finest_m = other.finest_m = 0.15;
     const MirroredSun many = pattern_of(sea, wanted);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    MirroredSun alone = pattern_of(sea, box_over(sea, 30.0, {0.0, 0.0, 1.0}, {4.0, 2.0, 1.0}));
+    MirroredSun alone = pattern_of(sea, other);
     alone.find(*sea.frame, wanted, nullptr);
     for (int i = -20; i <= 20; ++i) {
         const glm::dvec3 place(1e4 + 0.19 * i, -3e3 + 0.07 * i, 1.0 + 0.04 * i);

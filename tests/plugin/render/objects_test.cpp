@@ -581,7 +581,7 @@ TEST(Objects, AddUpOnAnyNumberOfThreads) {
 
 // The light that waves mirror onto a side has the pattern of mirrored_sun.h, and the mean that it has without; it is the same in a part of the
 // picture.
-TEST(Objects, HaveTheSunsPatternOnTheirSides) {
+Scene scene_with_side() {
     Scene scene = calm_scene();
     scene.camera.resolution = {64, 32};
     scene.sea.wind_speed_mps = 3.0;
@@ -589,6 +589,10 @@ TEST(Objects, HaveTheSunsPatternOnTheirSides) {
     scene.camera.position_m = {0.0, -14.0, 2.0};
     scene.camera.look_at_m = {0.0, 0.0, 1.5};
     scene.objects = {object(box({-6, -1, -2}, {6, 1, 4}))};
+    return scene;
+}
+TEST(Objects, HaveTheSunsPatternOnTheirSides) {
+    Scene scene = scene_with_side();
     const Sky sky = sunny_sky(20.0, 260.0);
     double sum = 0.0, mean = 0.0, squares = 0.0;
     for (const int frame : {1, 40, 80, 120, 160, 200}) {
@@ -626,6 +630,84 @@ TEST(Objects, HaveTheSunsPatternOnTheirSides) {
     }
     EXPECT_NEAR(sum / mean, 0.0, 0.02);
     EXPECT_GT(squares, 10.0);
+}
+
+// Nor does it have another mean where the wind's short waves are gone, and water has no body.
+TEST(Objects, HaveTheSunsPatternOfTheWavesThatAreThere) {
+    Scene scene = scene_with_side();
+    scene.camera.resolution = {32, 16};
+    scene.sea.wind_speed_mps = 8.0;
+    scene.waves.band_gains = {{.from_m = 1e-4, .to_m = 1.0, .gain = 0.0}};
+    const Sky sky = sunny_sky(5.0, 260.0);
+    double mean = 0.0, more = 0.0;
+    for (const int frame : {1, 60, 120, 180}) {
+        std::array<double, 2> sums{};
+        for (const int on : {0, 1}) {
+            scene.objects[0].caustics = on;
+            const Picture picture = picture_of(scene, options_of(scene), sky, frame);
+            for (std::size_t i = 0; i < picture.layers.size(); ++i)
+                if (shows_object(picture, i))
+                    sums[static_cast<std::size_t>(on)] +=
+                        static_cast<double>(vector_of(picture, PictureLayer::Object, i).y);
+        }
+        mean += sums[0];
+        more += sums[1] - sums[0];
+    }
+    EXPECT_NEAR(more / mean, 0.0, 0.02);
+}
+
+// It is as bright 100 km away, where a sea that repeats is the same; on any number of threads; and a holdout has none.
+TEST(Objects, HaveTheSunsPatternFarOutAndBesideHoldouts) {
+    Scene scene = scene_with_side();
+    scene.waves.cascades = {{50.0, 128}, {10.0, 128}};
+    scene.objects = {object(box({-6, -1, -2}, {2, 1, 4}), "hull"),
+                     object(box({3, -1, -2}, {6, 1, 4}), "held")};
+    scene.objects[1].holdout = true;
+    const Sky sky = sunny_sky(20.0, 260.0);
+    const auto picture_with = [&](double caustics, int threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<std::size_t>(threads));
+        for (SceneObject& of : scene.objects) of.caustics = caustics;
+        return picture_of(scene, options_of(scene), sky);
+    };
+    const Picture without = picture_with(0.0, 2), one = picture_with(1.0, 1), two = picture_with(1.0, 2);
+    constexpr double kFar_m = 1e5;
+    scene.camera.position_m.x += kFar_m;
+    scene.camera.look_at_m.x += kFar_m;
+    for (SceneObject& of : scene.objects) of.east_m += kFar_m;
+    const Picture far = picture_with(1.0, 2);
+    double differs = 0.0, pattern = 0.0;
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < one.layers.size(); ++i) {
+        ASSERT_EQ(light_of(one, i), light_of(two, i)) << i;
+        if (!shows_object(without, i)) continue;
+        const glm::vec3 of = vector_of(two, PictureLayer::Object, i);
+        if (light_of(without, i) == glm::vec3(0.0f)) {
+            ++held;
+            ASSERT_EQ(light_of(two, i), glm::vec3(0.0f));
+        }
+        pattern += std::abs(static_cast<double>(of.y - vector_of(without, PictureLayer::Object, i).y));
+        differs += std::abs(static_cast<double>(of.y - vector_of(far, PictureLayer::Object, i).y));
+    }
+    EXPECT_GT(held, 50u);
+    EXPECT_GT(pattern, 10.0);
+    EXPECT_LT(differs, 0.02 * pattern);
+}
+
+// Each has its planes, and one at a time is found.
+TEST(Objects, CountTheSunsPatternInTheirMemory) {
+    Scene scene = scene_with_side();
+    const auto bytes = [&](std::size_t bodies, double caustics) {
+        scene.objects.assign(bodies, scene.objects[0]);
+        for (std::size_t i = 0; i < bodies; ++i) {
+            scene.objects[i].name = "box " + std::to_string(i);
+            scene.objects[i].caustics = caustics;
+        }
+        return render_memory(scene, options_of(scene), std::array{1}, {}, 1).bytes();
+    };
+    const auto of = [&](std::size_t bodies) { return bytes(bodies, 1.0) - bytes(bodies, 0.0); };
+    EXPECT_EQ(of(1), MirroredSun::bytes() + MirroredSun::finding_bytes());
+    EXPECT_EQ(of(5), 5 * MirroredSun::bytes() + MirroredSun::finding_bytes());
 }
 
 // A body that floats follows long waves: where it lies on the water it shows as much above it as in a calm.

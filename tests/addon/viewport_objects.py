@@ -244,6 +244,17 @@ def steps():
             settle()
             assert "objects_in_water" not in drawing.pictures.textures and drawing.pictures.uniforms["in_water_ahead"] == (0.0, 0.0, 0.0)
 
+        with checking("a sun below the horizon: the pictures are finite, and elsewhere the sea is as without bodies"):
+            change(obj, water__body=True, light__sun_elevation_deg=-5.0)
+            full = picture()
+            assert not viewport._preview.problem, viewport._preview.problem
+            assert np.isfinite(texels("mirrored_objects")).all() and np.isfinite(texels("objects_in_water")).all()
+            show(False)
+            plain = picture()
+            print(f"    a mean of {plain.mean():.3f}; {(change_of(full, plain) > 0.05).sum()} pixels show bodies")
+            assert plain.mean() > 0.05 and (change_of(full, plain) > 0.05).sum() > 50
+            compare_elsewhere(full - plain, program)
+
     with checking("nothing is left of them without them"):
         show(False)
         settle()

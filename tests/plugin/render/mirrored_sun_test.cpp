@@ -127,7 +127,7 @@ std::vector<double> by_facets(const OpenSea& sea, bool has_waves, const glm::dve
     return sums;
 }
 
-// Half a million facets, a few centimetres wide.
+// Half a million facets, a few centimetres wide: the only test beside the law itself, of where lines are and how bright.
 TEST(MirroredSun, IsThatOfAllFacets) {
     const OpenSea sea = open_sea(4.0);
     for (const double elevation : {20.0, 40.0}) {
@@ -240,8 +240,9 @@ TEST(MirroredSun, ReachesTheWaterOnWhatIsThin) {
 
 // What lies upside down sends no light, and normals that lie level no endless one.
 TEST(MirroredSun, IsLightWhereWavesFold) {
-    for (const double elevation : {10.0, 40.0}) {
-        const OpenSea sea = open_sea(20.0, 1, 4.0);
+    for (const double choppiness : {1.5, 4.0}) {
+        const double elevation = 25.0;
+        const OpenSea sea = open_sea(20.0, 1, choppiness);
         MirroredSunWanted wanted = box_over(sea, elevation, {0.0, 0.0, 2.0}, {15.0, 15.0, 2.0});
         wanted.finest_m = 0.35;
         const MirroredSun pattern = pattern_of(sea, wanted);
@@ -258,8 +259,9 @@ TEST(MirroredSun, IsLightWhereWavesFold) {
                     sum += value;
                     ++count;
                 }
-        EXPECT_GE(least, 0.0) << elevation;
-        EXPECT_NEAR(sum / count, 1.0, 0.05) << elevation << ' ' << least << ' ' << most;
+        EXPECT_GE(least, 0.0) << choppiness;
+        // Far beyond what folds, slopes are no longer those of the spectrum.
+        EXPECT_NEAR(sum / count, 1.0, choppiness < 2.0 ? 0.1 : 0.5) << choppiness << ' ' << most;
     }
 }
 

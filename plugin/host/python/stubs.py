@@ -37,7 +37,7 @@ RESULTS = {
     "evaluate": f"dict[str, {ARRAY}]", "heights": f"dict[str, {ARRAY}]", "shade": f"dict[str, {ARRAY}]",
     "render": "dict[str, NDArray[Any]]", "read_mesh": "dict[str, NDArray[Any]]", "at": f"tuple[dict[str, {ARRAY}], "
     f"list[dict[str, {ARRAY}]]]", "keys": "list[dict[str, Any]]", "presets": "list[dict[str, Any]]",
-    "uniforms": "dict[str, Any]", "mirror": "dict[str, Any]", "surroundings": "dict[str, Any]", "foam": "dict[str, Any]", "water": "dict[str, Any]", "textures": "dict[str, Any]", "limit": "dict[str, Any]", "take_foam": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
+    "uniforms": "dict[str, Any]", "objects": "dict[str, Any]", "surroundings": "dict[str, Any]", "foam": "dict[str, Any]", "water": "dict[str, Any]", "textures": "dict[str, Any]", "limit": "dict[str, Any]", "take_foam": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
     "object_pose": "NDArray[np.float64]", "object_poses": "NDArray[np.float64]", "object_mesh": "dict[str, Any]", "triangles": "NDArray[np.uint32]", "size": "tuple[int, int]", "at_origin": f"tuple[NDArray[np.uint8], {ARRAY} | None]",
     "products": "tuple[str, ...]", "origin_m": "tuple[float, float]", "resolution": "tuple[int, int]", "shift": "tuple[float, float]",
     "foam_picture": f"{ARRAY} | None", "water_albedo": ARRAY, "water_radiance": ARRAY, "air": f"tuple[dict[str, Any], {ARRAY}]", "progress": "tuple[Any, ...] | None", "result": "Any",

@@ -126,9 +126,9 @@ TEST(Rain, InACalmHasNoPeak) {
 // Shots of before it keep their fingerprints.
 TEST(Rain, IsntSaidWhereItIsDry) {
     Scene scene;
-    EXPECT_EQ(canonical(scene).find("rain"), std::string::npos);
+    EXPECT_EQ(canonical(scene).find("rain_mm"), std::string::npos);
     scene.sea.rain_mm_per_h = 1.0;
-    EXPECT_NE(canonical(scene).find("rain"), std::string::npos);
+    EXPECT_NE(canonical(scene).find("rain_mm"), std::string::npos);
 }
 
 }  // namespace

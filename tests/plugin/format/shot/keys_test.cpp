@@ -236,7 +236,7 @@ class RandomValues {
 // Any scene that validate() accepts comes back from its own shot file, bit by bit, whatever its keys say.
 TEST(ShotKeys, AreWrittenAndReadBack) {
     std::set<std::string> changed;
-    for (unsigned seed = 0; seed < 60; ++seed) {
+    for (unsigned seed = 0; seed < 120; ++seed) {
         RandomValues random(seed);
         Scene scene;
         for (const Key& key : keys()) {

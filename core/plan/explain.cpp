@@ -128,7 +128,7 @@ std::string explain(const Plan& plan) {
         page += format("wind %g m/s towards %g°, spectrum %s, Hs %.3g m", sea.wind_speed_mps,
                        sea.wind_direction_deg, std::string(word_of(sea.spectrum)).c_str(),
                        4.0 * std::sqrt(of.m0()));
-        if (sea.rain_mm_per_h > 0.0) page += format(", rain %g mm/h", sea.rain_mm_per_h);
+        if (sea.rain_mm_h > 0.0) page += format(", rain %g mm/h", sea.rain_mm_h);
         if (!of.is_calm()) page += format(", peak wavelength %.4g m", kTwoPi / of.peak_wavenumber());
     };
     if (const Weather* weather = plan.from->weather.get()) {

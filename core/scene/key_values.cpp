@@ -142,7 +142,7 @@ std::string label_of(std::string_view name, bool has_unit) {
     std::string label(name);
     if (has_unit) {
         for (const std::string_view suffix :
-             {"_mg_m3", "_mps", "_deg", "_px", "_ms", "_mm", "_m", "_s", "_k"})
+             {"_mg_m3", "_mm_h", "_mps", "_deg", "_px", "_ms", "_mm", "_m", "_s", "_k"})
             if (label.ends_with(suffix)) {
                 label.erase(label.size() - suffix.size());
                 break;

@@ -213,14 +213,14 @@ void add_sea(Built& out) {
                                      .range = limits::kGustSize_m,
                                      .soft = SoftRange{10.0, 3000.0, true},
                                      .key_parts = key_parts(KeyPart::Gusts)}),
-        row<&SeaState::rain_mm_per_h>(
-            {.name = "rain_mm_per_h",
+        row<&SeaState::rain_mm_h>(
+            {.name = "rain_mm_h",
              .help =
                  "on the sea: rings of its drops, which dull what the water mirrors, and a wind sea with less of its waves "
                  "below a few metres, in a light wind of nearly all: 2, drizzle; 10, steady rain; 50, a cloudburst. What falls "
                  "through the air isn't drawn",
              .unit = "mm/h",
-             .range = limits::kRain_mm_per_h,
+             .range = limits::kRain_mm_h,
              .soft = SoftRange{0.0, 50.0},
              .key_parts = kWaves,
              .may_have_keys = true}),

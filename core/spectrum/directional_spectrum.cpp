@@ -18,7 +18,7 @@ void rain_on(std::vector<WaveSystem>& systems, const SeaState& sea, const Disper
         return sum;
     };
     const double dry = energy();
-    const RainDamping rain(sea.rain_mm_per_h, sea.wind_speed_mps);
+    const RainDamping rain(sea.rain_mm_h, sea.wind_speed_mps);
     for (WaveSystem& system : systems) system = system.rained_on(rain, dispersion);
     const double left = energy();
     if (sea.significant_height_m && left > 0.0)
@@ -29,12 +29,12 @@ void rain_on(std::vector<WaveSystem>& systems, const SeaState& sea, const Disper
 
 DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains)
     : dispersion_{sea.depth_m}, systems_(WaveSystem::sea(sea, dispersion_)) {
-    if (sea.rain_mm_per_h > 0.0) rain_on(systems_, sea, dispersion_);
+    if (sea.rain_mm_h > 0.0) rain_on(systems_, sea, dispersion_);
     for (const Swell& swell : sea.swell) {
         if (swell.height_m > 0.0)
             systems_.push_back(WaveSystem::swell(swell, dispersion_).directed(sea.directionality));
     }
-    if (sea.rain_mm_per_h > 0.0) systems_.push_back(WaveSystem::rings(sea.rain_mm_per_h, dispersion_));
+    if (sea.rain_mm_h > 0.0) systems_.push_back(WaveSystem::rings(sea.rain_mm_h, dispersion_));
     if (!gains.empty())
         for (WaveSystem& system : systems_) system = system.gained(BandGains(gains), dispersion_);
     add_up();

@@ -1,4 +1,4 @@
-// Rain on the sea: sea.rain_mm_per_h.
+// Rain on the sea: sea.rain_mm_h.
 //
 // Drops make rings, which as a field are waves of some centimetres from all directions alike. Their spectrum, from a tank under
 // artificial rain of R mm/h (Bliven, Sobieski & Craeye 1997; Lemaire, Bliven, Craeye & Sobieski 2002):
@@ -33,10 +33,10 @@ struct RainRings {
     double peak_hz, width_hz;
     double most;  // S at the peak [m² s]
 
-    explicit RainRings(double rain_mm_per_h)
-        : peak_hz(5.772 - 0.0018 * rain_mm_per_h),
-          width_hz(4.42 + 0.0028 * rain_mm_per_h),
-          most(6e-8 * std::pow(rain_mm_per_h, 0.53)) {}
+    explicit RainRings(double rain_mm_h)
+        : peak_hz(5.772 - 0.0018 * rain_mm_h),
+          width_hz(4.42 + 0.0028 * rain_mm_h),
+          most(6e-8 * std::pow(rain_mm_h, 0.53)) {}
 
     // By angular frequency [m² s], at ω > 0 [rad/s].
     double density(double omega) const {
@@ -53,8 +53,7 @@ struct IsotropicSpreading {
 // What rain leaves of the energy of a wind's waves.
 class RainDamping {
   public:
-    RainDamping(double rain_mm_per_h, double wind_speed_mps)
-        : eddies_m2_s_(1e-4 * std::cbrt(rain_mm_per_h / 20.0)) {
+    RainDamping(double rain_mm_h, double wind_speed_mps) : eddies_m2_s_(1e-4 * std::cbrt(rain_mm_h / 20.0)) {
         constexpr double kLeastFriction_mps = 0.05;
         const double friction = std::max(elfouhaily::friction_velocity(wind_speed_mps), kLeastFriction_mps);
         input_m2_s2_ = 0.04 * friction * friction;

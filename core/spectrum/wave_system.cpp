@@ -157,8 +157,8 @@ WaveSystem WaveSystem::swell(const Swell& swell, const Dispersion& dispersion) {
     return {energy, SwellSpreading{energy.omega_p}, swell.direction_deg * kRadiansPerDegree, dispersion};
 }
 
-WaveSystem WaveSystem::rings(double rain_mm_per_h, const Dispersion& dispersion) {
-    return {RainRings(rain_mm_per_h), IsotropicSpreading{}, 0.0, dispersion};
+WaveSystem WaveSystem::rings(double rain_mm_h, const Dispersion& dispersion) {
+    return {RainRings(rain_mm_h), IsotropicSpreading{}, 0.0, dispersion};
 }
 
 std::vector<WaveSystem> WaveSystem::with_short_waves(const SeaState& sea, const EnergyLaw& energy,

@@ -55,7 +55,7 @@ struct Edges {
 class WaveSystem {
   public:
     static WaveSystem swell(const Swell& swell, const Dispersion& dispersion);
-    static WaveSystem rings(double rain_mm_per_h,
+    static WaveSystem rings(double rain_mm_h,
                             const Dispersion& dispersion);  // core/spectrum/rain.h; rain > 0
     // What SeaState has beside its swells: the wind's waves or the measured ones, and the short ones joined to them. Its
     // height is significant_height_m, or what follows from the law, but at most kMostHeightOverDepth times the depth: higher

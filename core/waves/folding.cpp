@@ -378,7 +378,7 @@ std::vector<std::string> still_warnings(const PreparedScene& prepared) {
 // What makes a sea's waves, but for rain.
 std::string dry_waves(const PreparedScene& prepared) {
     Scene scene = prepared.scene;
-    scene.sea.rain_mm_per_h = 0.0;
+    scene.sea.rain_mm_h = 0.0;
     return canonical(scene, key_parts(KeyPart::Waves));
 }
 

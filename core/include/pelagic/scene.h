@@ -129,7 +129,7 @@ struct SeaState {
     double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
     double gust_strength = 0.0;                  // 0 … 1: how much the wind varies over the surface
     double gust_size_m = 300.0;                  // > 0
-    double rain_mm_per_h = 0.0;                  // 0 … 300
+    double rain_mm_h = 0.0;                      // 0 … 300
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File

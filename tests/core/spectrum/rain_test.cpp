@@ -13,10 +13,10 @@
 namespace pelagic {
 namespace {
 
-SeaState rainy(double rain_mm_per_h, double wind_mps) {
+SeaState rainy(double rain_mm_h, double wind_mps) {
     SeaState sea;
     sea.wind_speed_mps = wind_mps;
-    sea.rain_mm_per_h = rain_mm_per_h;
+    sea.rain_mm_h = rain_mm_h;
     return sea;
 }
 
@@ -54,7 +54,7 @@ TEST(Rain, LeavesOfTheWindsWavesWhatTheWindKeepsUp) {
                 calm.depth_m = sea.depth_m;
                 return calm;
             }());
-            sea.rain_mm_per_h = rain;
+            sea.rain_mm_h = rain;
             const DirectionalSpectrum wet(sea);
             double before = 0.0;
             for (const double length_m : {0.1, 0.3, 1.0, 3.0, 10.0, 50.0}) {
@@ -85,7 +85,7 @@ TEST(Rain, FallsOnSwellAndBuoysWavesWithoutTakingFromThem) {
     buoy.measured = oracle::made_up_buoy();
     buoy.short_waves = ShortWaves::None;
     const double dry = whole(buoy).m0;
-    buoy.rain_mm_per_h = 50.0;
+    buoy.rain_mm_h = 50.0;
     EXPECT_NEAR(whole(buoy).m0 - rings, dry, 1e-9 * dry);
 }
 
@@ -106,7 +106,7 @@ TEST(Rain, CalmsTheRipplesThatAreJoinedToABuoysWaves) {
     buoy.spectrum = SpectrumKind::File;
     buoy.measured = oracle::made_up_buoy();
     const DirectionalSpectrum dry(buoy);
-    buoy.rain_mm_per_h = 20.0;
+    buoy.rain_mm_h = 20.0;
     const DirectionalSpectrum wet(buoy);
     EXPECT_LT(wet.omnidirectional(20.0) / dry.omnidirectional(20.0), 0.5);
     EXPECT_EQ(wet.omnidirectional(0.1), dry.omnidirectional(0.1));
@@ -127,7 +127,7 @@ TEST(Rain, InACalmHasNoPeak) {
 TEST(Rain, IsntSaidWhereItIsDry) {
     Scene scene;
     EXPECT_EQ(canonical(scene).find("rain_mm"), std::string::npos);
-    scene.sea.rain_mm_per_h = 1.0;
+    scene.sea.rain_mm_h = 1.0;
     EXPECT_NE(canonical(scene).find("rain_mm"), std::string::npos);
 }
 

@@ -323,14 +323,14 @@ TEST(Weather, HasShowers) {
     Scene scene = rising();
     scene.keyed.clear();
     scene.sea.wind_speed_mps = 6.0;
-    give_keys(scene, "sea.rain_mm_per_h", {{1, 0.0}, {48, 40.0}, {96, 0.0}}, kLinear);
+    give_keys(scene, "sea.rain_mm_h", {{1, 0.0}, {48, 40.0}, {96, 0.0}}, kLinear);
     for (const std::string& warning : sea_warnings(*prepare(scene)))
         EXPECT_EQ(warning.find("faster than waves"), std::string::npos) << warning;
     const auto points = random_points<double>(300.0, 200);
-    const auto slopes = [&](double rain_mm_per_h) {
+    const auto slopes = [&](double rain_mm_h) {
         Scene still = scene;
         still.keyed.clear();
-        still.sea.rain_mm_per_h = rain_mm_per_h;
+        still.sea.rain_mm_h = rain_mm_h;
         return moments(prepare(still)->spectrum, 0.0, std::numeric_limits<double>::infinity());
     };
     auto frame = frame_over_time<double>(scene, {everything()});

@@ -14,7 +14,8 @@
 // (1990) has it. ν goes with the root of three of the rain's energy, as stirring does, so that from 100 mm/h on there is
 // little difference (Peirson et al. 2013 saw none).
 // What feeds these waves has to make up for their losses: β = 0.04 (u*/c)² ω of their energy without rain (Plant 1982), β + γ with
-// it, so that 1/(1 + γ/β) of it stays. That is ours, as is the least of β, which keeps waves that have outrun their wind.
+// it, so that 1/(1 + γ/β) of it stays. That is ours, as is the least of β, at u* = 0.05 m/s, by eye: a wind of 1.7 m/s, so that waves which have
+// outrun their wind stay.
 //
 // Both are means over area. No ring is drawn alone, nor is what falls through the air.
 #pragma once

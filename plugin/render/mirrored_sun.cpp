@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostSide = 256;         // texels of a plane
 constexpr double kMostMirrored = 0.5;  // margin over a plane's side
 constexpr double kTexelsAWay = 128.0;  // of the way of the light: its net has lines some texels wide
-// By how much planes are farther up, one over the other. The least height has texels of its own before it has a pattern.
+// By how much planes are farther up, one over the other: by eye, as is the least height of one, over which light has hardly gathered.
 constexpr double kRise = 1.3, kLowest_m = 0.1, kOfHighest = 1.0 / 64.0;
 
 glm::dvec2 left_of(const glm::dvec2& along) {

@@ -695,7 +695,9 @@ TEST(Objects, HaveTheSunsPatternFarOutAndBesideHoldouts) {
     }
     EXPECT_GT(held, 50u);
     EXPECT_GT(pattern, 10.0);
-    EXPECT_LT(differs, 0.3 * pattern);  // its texels lie otherwise over the waves
+    EXPECT_LT(
+        differs,
+        0.3 * pattern);  // its texels lie otherwise over the waves: 0.11; of other waves it would be some 1.4
 }
 
 // Each has its planes, and one at a time is found.

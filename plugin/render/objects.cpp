@@ -24,6 +24,7 @@ constexpr std::uint32_t kGlossRays = 8, kLeastGlossRays = 2;
 constexpr float kBlur = 0.15f;  // [rad] of the sky, by eye: some of what 32 rays of a hemisphere are apart
 constexpr std::uint32_t kOpenFacets = 4;  // that look at sky and sea, for each that asks what is before them
 constexpr std::uint32_t kLampPlaces = 32, kLeastLampPlaces = 4, kLitPlaces = 16, kLeastLitPlaces = 2;
+constexpr std::uint32_t kMetPlaces = 4;  // of what one ray meets
 constexpr float kMostOfPlace = 16.0f;
 constexpr float kFaintLamp = 1e-3f, kFaintMirrored = 1e-4f;  // beside what else there is
 enum Use : std::uint32_t {
@@ -575,9 +576,12 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
         light += glm::dot(at.normal, to_sun_) * beam_;
     if (has_lamps())
         light += light_of(
-            lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal, 1, 0),
+            lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal, kMetPlaces, 0),
             [&](const glm::vec3& from) { return facing(at.normal, from); },
-            [&](std::uint32_t) { return number; });
+            [&](std::uint32_t k) {
+                constexpr std::array<float, kMetPlaces> kUp{0.0f, 0.5f, 0.25f, 0.75f};
+                return glm::fract(number + glm::vec2(static_cast<float>(k) / kMetPlaces, kUp[k]));
+            });
     return at.look.colour * light / kPi_f + at.look.glow;
 }
 

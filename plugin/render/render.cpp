@@ -705,7 +705,8 @@ class RendererOf final : public Impl {
             if (!may_be_mirrored && !objects_->has_lamps()) return;
             const SampleNumbers numbers = numbers_of(first_row, sample);
             const SeaFacets facets = sea_.facets(batch_.seen, i);
-            const std::uint32_t rays = may_be_mirrored ? numbers.rays(kMirroringFacets, 4) : 0;
+            const std::uint32_t rays =
+                may_be_mirrored ? numbers.rays(kMirroringFacets, kLeastMirroringFacets) : 0;
             LitObjects::LampsInSea lamps;
             if (objects_->has_lamps())
                 lamps = objects_->lamps_in(facets, above_sea(first_row, i), rays, numbers);
@@ -727,7 +728,8 @@ class RendererOf final : public Impl {
         });
     }
 
-    static constexpr std::uint32_t kMirroringFacets = 64;  // of a pixel
+    // Of a pixel, and of a sample at least: each sample has a slope of its own, and with four facets a rough sea's mirror image is grain.
+    static constexpr std::uint32_t kMirroringFacets = 128, kLeastMirroringFacets = 16;
 
     // ray: all but where it goes.
     void mirror_by_rays(const SeaFacets& facets, Ray ray, const glm::vec3& left, const SampleNumbers& numbers,

@@ -19,11 +19,6 @@ inline double luminance(const SeaRadiance& layers) {
 
 struct Rims {
     int silhouette = 0, outside = 0;
-    Rims& operator+=(const Rims& other) {
-        silhouette += other.silhouette;
-        outside += other.outside;
-        return *this;
-    }
 };
 
 // Pixels in front of something else that are by 15 % darker than the darkest, or brighter than the brightest, of

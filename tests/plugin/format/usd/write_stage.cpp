@@ -170,6 +170,54 @@ std::string expected_rest(const pelagic::Faces& faces) {
            json_triangles(faces) + "}}";
 }
 
+// The stage with its variant on. The reader draws neither renderers' prims nor proxies: here both are for everybody.
+constexpr const char* kProxyOn = R"(#usda 1.0
+(
+    defaultPrim = "_3_days_out"
+    endTimeCode = 2
+    framesPerSecond = 23.976
+    metersPerUnit = 1
+    startTimeCode = -2
+    subLayers = [@./3-days-out.usda@]
+    timeCodesPerSecond = 23.976
+    upAxis = "Z"
+)
+
+over "_3_days_out" (
+    variants = {
+        string proxy = "on"
+    }
+)
+{
+    over "Sea"
+    {
+        uniform token purpose = "default"
+    }
+    over "SeaProxy"
+    {
+        uniform token purpose = "default"
+    }
+}
+)";
+
+// Each eighth row and column.
+pelagic::Faces proxy_faces() {
+    pelagic::Faces faces = pelagic::grid_faces(kQuads / 8, kQuads / 8);
+    for (std::int32_t& index : faces.indices)
+        index = 8 * (index / (kQuads / 8 + 1)) * (kQuads + 1) + 8 * (index % (kQuads / 8 + 1));
+    return faces;
+}
+
+// The proxy has the mesh's points at each frame, and faces of its own; so has the mesh. At frame 0.
+std::string expected_proxy(const pelagic::Faces& coarse, const pelagic::Faces& faces, const Mesh& mesh) {
+    const std::string points = "\"points\": " + json_array(mesh.points);
+    return R"json({"prims": {"/_3_days_out/Sea": "Mesh", "/_3_days_out/SeaProxy": "Mesh"},
+"flattened": ["rel proxyPrim = </_3_days_out/SeaProxy>"],
+"frames": {"0": {"/_3_days_out/SeaProxy": {)json" +
+           points + ", \"indices\": " + json_triangles(coarse) + "}, \"/_3_days_out/Sea\": {" + points +
+           ", \"indices\": " + json_triangles(faces) + "}}}}\n";
+}
+
 usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes) {
     usd::Stage stage;
     stage.name = name;
@@ -179,7 +227,7 @@ usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes
     stage.attributes = attributes;
     stage.material.roughness = 0.25;
     stage.material.opacity = 0.875;
-    stage.has_camera = true;
+    stage.has_camera = stage.has_proxy = true;
     stage.sun = usd::Sun{};
     stage.sky = usd::Sky{};
     stage.custom_data = {{"seed", std::int64_t{9007199254740993}},
@@ -512,6 +560,11 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
     usd::Stage stage = stage_of(name, attributes);
     stage.frame_extension = stage.topology_extension = extension;
     save(dir / usd::root_file(name), usd::root_text(stage));
+    const pelagic::Faces coarse = proxy_faces();
+    save(dir / usd::proxy_file(name),
+         usd::proxy_text({.fps = 23.976, .faces = {.counts = coarse.counts, .indices = coarse.indices}}));
+    save(dir / "proxy-on.usda", kProxyOn);
+    save(dir / "proxy-on.json", expected_proxy(coarse, faces, random_mesh(0)));
 
     save(dir / "expected.json", "{" + expected_rest(faces) + ",\n\"sameLayers\": " + layers.twins() +
                                     ",\n\"frames\": {" + frames + "}}\n");

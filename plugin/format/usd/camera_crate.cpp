@@ -109,7 +109,10 @@ Crate camera_layer(const Camera& camera) {
     const auto real32 = [&](double number) {
         return Crate::Fields{{"default", crate.real32(static_cast<float>(number))}};
     };
-    Crate::Fields translate, rotate, focal_length = real32(film.focal_length);
+    // What has samples has the first frame's value as well, for who asks at no time.
+    Crate::Fields translate{{"default", crate.stored(ValueType::Vec3d, course->first.translate)}},
+        rotate{{"default", crate.stored(ValueType::Vec3d, course->first.rotate_xyz_deg)}},
+        focal_length = real32(film.focal_length);
     if (const std::uint64_t count = course->samples.size(); count > 0) {
         const CrateValue times = crate.times(course->frames);
         const std::uint64_t samples =
@@ -119,19 +122,17 @@ Crate camera_layer(const Camera& camera) {
                 writer.flush();
             });
         const auto samples_of = [&](std::function<CrateValue(std::uint64_t)> sample) {
-            return Crate::Fields{{"timeSamples", crate.time_samples(times, count, std::move(sample))}};
+            return std::pair{std::string_view("timeSamples"),
+                             crate.time_samples(times, count, std::move(sample))};
         };
         const auto stored_from = [](std::uint64_t first) {
             return Crate::Stored{.type = ValueType::Vec3d, .first = first, .stride = sizeof(CameraSample)};
         };
-        translate = samples_of(stored_from(samples));
-        rotate = samples_of(stored_from(samples + sizeof(glm::dvec3)));
+        translate.push_back(samples_of(stored_from(samples)));
+        rotate.push_back(samples_of(stored_from(samples + sizeof(glm::dvec3))));
         if (course->zooms)
-            focal_length = samples_of(
-                [course](std::uint64_t index) { return Crate::real32(course->focal_lengths[index]); });
-    } else {
-        translate = {{"default", crate.stored(ValueType::Vec3d, course->first.translate)}};
-        rotate = {{"default", crate.stored(ValueType::Vec3d, course->first.rotate_xyz_deg)}};
+            focal_length.push_back(samples_of(
+                [course](std::uint64_t index) { return Crate::real32(course->focal_lengths[index]); }));
     }
 
     constexpr std::string_view kTranslate = "xformOp:translate", kRotate = "xformOp:rotateXYZ";

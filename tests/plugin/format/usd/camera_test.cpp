@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "plugin/format/usd/crate_layer.h"
+
 namespace pelagic::usd {
 namespace {
 
@@ -137,6 +139,32 @@ TEST(UsdCamera, CamerasThatNoStageCanHaveAreRefused) {
                  std::invalid_argument);
     EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {0.0, 1.0}}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {2.0, 1.0}}), std::invalid_argument);
+}
+
+// Whoever asks at no time gets the shot's first frame, and no fallback of the schema's: a camera at the origin that looks down.
+TEST(UsdCamera, WhatHasSamplesHasADefault) {
+    const std::string bytes =
+        camera_crate({.first_frame = 1, .last_frame = 9, .key_frames = {4, 6}, .pose_at = [](int frame) {
+                          const double at = std::clamp(frame, 4, 6);
+                          CameraPose pose = pose_of({80, 0, 10.0 * at}, {at, 2.0 * at, 7.5});
+                          pose.fov_deg = 30.0 + at;
+                          return pose;
+                      }});
+    const CrateLayer layer(bytes);
+    const CrateLayer::Node camera = layer.prims_of(0).at(0);
+    const auto property = [&](const char* name) {
+        const auto found = layer.property(camera, name);
+        EXPECT_TRUE(found && layer.has(*found, "timeSamples")) << name;
+        return found.value_or(0);
+    };
+    EXPECT_EQ(layer.vector(property("xformOp:translate"), "default"), glm::dvec3(4.0, 8.0, 7.5));
+    const auto angles_deg = layer.vector(property("xformOp:rotateXYZ"), "default");
+    ASSERT_TRUE(angles_deg);
+    EXPECT_LT(glm::distance(*angles_deg, glm::dvec3(80.0, 0.0, 40.0)), kTolerance_deg);
+    const auto focal_length = layer.number(property("focalLength"), "default");
+    ASSERT_TRUE(focal_length);
+    EXPECT_EQ(*focal_length,
+              static_cast<double>(static_cast<float>(film_back(34.0, Camera{}.resolution).focal_length)));
 }
 
 TEST(UsdCamera, SamplesCoverTheFramesBetweenWhichThePoseChanges) {

@@ -443,6 +443,79 @@ TEST(UsdText, CameraIsReferenced) {
               std::string::npos);
 }
 
+// A variant that is off, so that whoever doesn't ask for it has one sea.
+TEST(UsdText, ProxyIsAVariantThatIsOff) {
+    EXPECT_EQ(root_text({}).find("roxy"), std::string::npos);
+    const std::string text =
+        root_text({.name = "a-b", .last_frame = 9, .frame_extension = "usdc", .has_proxy = true});
+    EXPECT_NE(text.find(R"(
+    kind = "component"
+    variants = {
+        string proxy = "off"
+    }
+    prepend variantSets = "proxy"
+)
+{
+    def Mesh "Sea" ()"),
+              std::string::npos)
+        << text;
+    const std::size_t set = text.find("\n    variantSet");
+    ASSERT_NE(set, std::string::npos);
+    EXPECT_EQ(text.substr(0, set).find("purpose"), std::string::npos);
+    EXPECT_EQ(text.substr(set), R"(
+    variantSet "proxy" = {
+        "off" {
+        }
+        "on" {
+            over "Sea"
+            {
+                rel proxyPrim = </a_b/SeaProxy>
+                uniform token purpose = "render"
+            }
+
+            def Mesh "SeaProxy" (
+                clips = {
+                    dictionary default = {
+                        asset manifestAssetPath = @./mesh/a-b.manifest.usda@
+                        string primPath = "/Sea"
+                        string templateAssetPath = "./mesh/a-b.####.usdc"
+                        double templateEndTime = 9
+                        double templateStartTime = 1
+                        double templateStride = 1
+                    }
+                }
+                prepend references = [@./mesh/a-b.proxy.usda@, @./mesh/a-b.topology.usda@]
+            )
+            {
+                color3f[] primvars:displayColor = [(0, 0, 0)] (interpolation = "constant")
+                uniform token purpose = "proxy"
+            }
+        }
+    }
+}
+)");
+}
+
+TEST(UsdText, ProxyIsThisPage) {
+    const std::vector<std::int32_t> counts{4}, indices{0, 2, 8, 6};
+    EXPECT_EQ(proxy_text({.fps = 25.0, .faces = {.counts = counts, .indices = indices}}), R"(#usda 1.0
+(
+    defaultPrim = "Sea"
+    framesPerSecond = 25
+    metersPerUnit = 1
+    timeCodesPerSecond = 25
+    upAxis = "Z"
+)
+
+over "Sea"
+{
+    int[] faceVertexCounts = [4]
+    int[] faceVertexIndices = [0, 2, 8, 6]
+}
+)");
+    EXPECT_THROW(proxy_text({.faces = {.counts = counts, .indices = counts}}), std::invalid_argument);
+}
+
 TEST(UsdText, RootHasOneLengthWhateverTheNumberOfFrames) {
     // Numbers of the same length.
     const auto bytes = [](int last_frame) {

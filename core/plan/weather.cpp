@@ -1,10 +1,13 @@
 #include "core/plan/weather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "core/base/constants.h"
+#include "core/plan/choppiness.h"
 #include "core/plan/effects.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
@@ -47,6 +50,27 @@ std::string numbers_text(const Scene& scene, double frame) {
             text += number.path + " = " +
                     number_text(value_at(number.keys, key_of(number.path).is_angle, frame)) + '\n';
     return text;
+}
+
+// The numbers of the displacement, whose keys change no waves.
+struct DisplacementNumber {
+    std::string_view path;
+    double Waves::*member;
+};
+constexpr std::array kDisplacementNumbers{DisplacementNumber{"waves.choppiness", &Waves::choppiness},
+                                          DisplacementNumber{"waves.lean_deg", &Waves::lean_deg},
+                                          DisplacementNumber{"waves.second_order", &Waves::second_order}};
+
+const KeyedNumber* keyed_of(const Scene& scene, std::string_view path) {
+    const auto found = std::ranges::find(scene.keyed, path, &KeyedNumber::path);
+    return found == scene.keyed.end() ? nullptr : &*found;
+}
+
+// A moment of a shot, displaced as the shot is planned.
+Scene as_planned(Scene moment, const Scene& shot) {
+    for (const DisplacementNumber& number : kDisplacementNumbers)
+        moment.waves.*number.member = shot.waves.*number.member;
+    return moment;
 }
 
 }  // namespace
@@ -103,6 +127,39 @@ double wind_way_m(const PreparedScene& from, double t_s) {
     return std::copysign(way, t_s) * shot.time_scale / shot.fps;
 }
 
+std::optional<DisplacementAt> displacement_at(const PreparedScene& shot, double t_s) {
+    const Scene& scene = shot.scene;
+    const auto is_keyed = [&](const DisplacementNumber& number) { return keyed_of(scene, number.path); };
+    if (!shot.weather || std::ranges::none_of(kDisplacementNumbers, is_keyed)) return std::nullopt;
+    const double frame = frame_at(scene.shot, t_s), frames_per_s = scene.shot.fps / scene.shot.time_scale;
+    struct Now {
+        double value, per_s;
+    };
+    const auto now = [&](const DisplacementNumber& number) -> Now {
+        const KeyedNumber* keyed = keyed_of(scene, number.path);
+        if (!keyed) return {scene.waves.*number.member, 0.0};
+        return {value_at(keyed->keys, false, frame), rate_at(keyed->keys, false, frame) * frames_per_s};
+    };
+    const auto [choppiness, lean, second] = kDisplacementNumbers;
+    DisplacementAt at;
+    // Less than the least would be a displacement gradient of few digits, and is seen as little as none.
+    if (const double most = scene.waves.choppiness; most >= Choppiness::kLeastShown) {
+        const Now of = now(choppiness);
+        at.share = std::max(of.value, Choppiness::kLeastShown) / most;
+        at.share_per_s = of.per_s / most;
+    }
+    if (const double most = scene.waves.second_order; most > 0.0) {
+        const Now of = now(second);
+        at.pairs = of.value / most * at.share;
+        at.pairs_per_s = of.per_s / most * at.share + of.value / most * at.share_per_s;
+    }
+    constexpr double kPerDegree = kPi / 180.0;
+    const Now of = now(lean);
+    at.lean_rad = of.value * kPerDegree;
+    at.lean_rad_per_s = of.per_s * kPerDegree;
+    return at;
+}
+
 std::string weather_text(const PreparedScene& shot, double t_s, double past_s, double ahead_s) {
     if (!shot.weather) return {};
     const Weather& weather = *shot.weather;
@@ -124,6 +181,10 @@ std::string weather_text(const PreparedScene& shot, double t_s, double past_s, d
     // Spray remembers how far the wind has blown.
     if (const auto& wind = weather.keys[blend.first].sea->wind; wind && is_on(Effect::Spray, shot.scene))
         text += "way " + number_text(wind_way_m(*weather.keys[blend.first].sea, t_s)) + '\n';
+    if (const auto at = displacement_at(shot, t_s))
+        for (const double value :
+             {at->share, at->share_per_s, at->pairs, at->pairs_per_s, at->lean_rad, at->lean_rad_per_s})
+            text += "displaced " + number_text(value) + '\n';
     if (blend.first == blend.second) return text;
     return text + numbers_text(shot.scene, weather.keys[blend.second].frame) +
            numbers_text(shot.scene, frame_at(shot.scene.shot, t_s)) + number_text(blend.share) + ' ' +
@@ -135,8 +196,14 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     for (const KeyedNumber& number : scene.keyed)
         weather.is_smooth |= is_of_sea(number) && number.keys.interpolation == CameraInterpolation::Smooth;
     const auto wind = std::ranges::find(scene.keyed, "sea.wind_speed_mps", &KeyedNumber::path);
+    for (const DisplacementNumber& number : kDisplacementNumbers)
+        if (const KeyedNumber* keyed = keyed_of(scene, number.path))
+            scene.waves.*number.member =
+                std::ranges::max_element(keyed->keys.keys, {}, &NumberKeys::Key::value)->value;
     const auto prepared_moment = [&](int frame) {
-        PreparedScene moment = *prepare(scene_at(scene, frame));
+        Scene numbers = scene_at(scene, frame);
+        PreparedScene moment = *prepare(as_planned(numbers, scene));
+        moment.scene = std::move(numbers);
         if (wind != scene.keyed.end()) moment.wind = wind->keys;
         return std::make_shared<const PreparedScene>(std::move(moment));
     };
@@ -145,8 +212,8 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     for (const int frame : frames_of_sea(scene)) {
         std::string numbers = numbers_text(scene, frame);
         const auto sea = numbers == before ? weather.keys.back().sea : prepared_moment(frame);
-        const auto found =
-            first_with.try_emplace(canonical(sea->scene, key_parts(KeyPart::Waves)), weather.keys.size());
+        const auto found = first_with.try_emplace(
+            canonical(as_planned(sea->scene, scene), key_parts(KeyPart::Waves)), weather.keys.size());
         weather.keys.push_back({frame, scene.shot.time_s(frame), sea, found.first->second});
         before = std::move(numbers);
     }

@@ -9,10 +9,14 @@
 //
 // Everything that must not change from frame to frame is planned for the keys' mean spectrum: wave vectors, cascades' sizes, trains and
 // their directions, where breaking is filtered, and what pairs of waves add. The extent is the largest of the keys'.
+//
+// Choppiness, lean and the gain of the second order are no waves: seas are built with the largest of their keys, and each time has its
+// share of that (DisplacementAt), which is the frame's number, with its rate.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +43,15 @@ struct Weather {
     };
     Blend at(double t_s) const;
 };
+
+// What a time has of the displacement that its shot is planned with. Each with its rate.
+struct DisplacementAt {
+    double share = 1.0, share_per_s = 0.0;  // of the horizontal displacement: the choppiness over the plan's
+    double pairs = 1.0, pairs_per_s = 0.0;  // of what pairs of waves add
+    double lean_rad = 0.0, lean_rad_per_s = 0.0;  // Plan::lean_rad in its place
+};
+// None where no key of waves.choppiness, waves.lean_deg or waves.second_order changes it.
+std::optional<DisplacementAt> displacement_at(const PreparedScene& shot, double t_s);
 
 // The frame that shows a time of the sea, also between two; shot.time_scale > 0.
 double frame_at(const Shot& shot, double t_s);

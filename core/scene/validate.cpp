@@ -570,6 +570,11 @@ void check_keyed(SceneChecker& check, const Scene& scene) {
                    is_swell = table_key(number) == "sea.swell" && number.path.ends_with(".direction_deg");
         if ((is_wind || is_swell) && scene.waves.model == WaveModel::Trochoid)
             refuse("changes, and a train keeps its direction", "a number, or waves.model = \"fft\"");
+        const auto has_own = [](const CascadeSize& cascade) { return cascade.choppiness.has_value(); };
+        if (number.path == "waves.choppiness" && scene.waves.model == WaveModel::Fft &&
+            std::ranges::any_of(scene.waves.cascades, has_own))
+            refuse("changes, and waves.cascades[].choppiness is one for the whole shot",
+                   "a number, or cascades without a choppiness of their own");
         if (is_wind && scene.effects.whitecaps && scene.effects.spray)
             refuse("changes, and spray is torn along one wind", "a number, or effects.spray = false");
     }

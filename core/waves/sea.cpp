@@ -137,11 +137,16 @@ SpectralMoments between(SpectralMoments first, SpectralMoments second, double sh
     return (first *= 1.0 - share) += second *= share;
 }
 
-// Of a sea whose moments are these.
-Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const FoamLife& life) {
+// The share of the planned displacement.
+double share_of(const std::optional<DisplacementAt>& displacement) {
+    return displacement ? displacement->share : 1.0;
+}
+
+// Of a sea whose moments are these, and which has this share of the planned displacement.
+Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const FoamLife& life, double share) {
     const bool third = plan.knobs.third_moment;
     const double law = law_coverage(plan.from->scene),
-                 choppiness = mean_choppiness(plan.from->spectrum, plan.breaking);
+                 choppiness = share * mean_choppiness(plan.from->spectrum, plan.breaking);
     Whitecaps found{.threshold = calibrated_threshold(total, law, choppiness, third, life)};
     const auto j = jacobian_moments<double>(0.0, 0.0, 0.0, 0.0,
                                             {total.xxxx, total.xxxy, total.xxyy, total.xyyy, total.yyyy});
@@ -341,26 +346,25 @@ void Sea<T>::raise_heroes() {
 
 template <class T>
 Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
-            std::shared_ptr<const PreparedScene> from)
-    : plan_(first.plan_), loop_s_(first.loop_s_) {
+            std::shared_ptr<const PreparedScene> from, const std::optional<DisplacementAt>& displacement)
+    : plan_(first.plan_), loop_s_(first.loop_s_), displacement_(displacement) {
     plan_.from = std::move(from);
-    if (plan_.trains) {
-        trains_ = blended(first.trains_, second.trains_, share, rate_per_s, *plan_.from, plan_.breaking);
-        total_ = pelagic::total(trains_);
-    } else {
-        total_ = between(first.total_, second.total_, share);
-    }
+    total_ = total_between(first, second, share, rate_per_s, plan_, displacement, &trains_);
+    const double gradients = share_of(displacement) * share_of(displacement);
     whitecaps_ = whitecaps(foam_life(plan_));
     slick_ = between(first.slick_, second.slick_, share);
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
         const QueryStatistics &a = first.statistics_[q], &b = second.statistics_[q];
         QueryStatistics& made = statistics_.emplace_back();
-        made.whole = plan_.queries[q].query.only_cascade ? between(a.whole, b.whole, share) : total_;
+        const auto now = [&](const SpectralMoments& before, const SpectralMoments& after) {
+            return between(before, after, share).scale_gradients(gradients);
+        };
+        made.whole = plan_.queries[q].query.only_cascade ? now(a.whole, b.whole) : total_;
         for (std::size_t i = 0; i < a.resolved.size(); ++i)
-            made.resolved.push_back(between(a.resolved[i], b.resolved[i], share));
+            made.resolved.push_back(now(a.resolved[i], b.resolved[i]));
         for (std::size_t i = 0; i < a.resolved_next.size(); ++i)
-            made.resolved_next.push_back(between(a.resolved_next[i], b.resolved_next[i], share));
-        ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share);
+            made.resolved_next.push_back(now(a.resolved_next[i], b.resolved_next[i]));
+        ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share, gradients);
     }
     for (std::size_t c = 0; c < plan_.cascades.size(); ++c)
         expected_m0_.push_back((1.0 - share) * first.expected_m0_[c] + share * second.expected_m0_[c]);
@@ -383,19 +387,37 @@ Sea<T>::Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from) : Sea(w
 
 template <class T>
 Whitecaps Sea<T>::whitecaps(const FoamLife& life) const {
-    return whitecaps_of(plan_, total_, life);
+    return whitecaps_of(plan_, total_, life, share_of(displacement_));
+}
+
+template <class T>
+SpectralMoments Sea<T>::total_between(const Sea& first, const Sea& second, double share, double rate_per_s,
+                                      const Plan& plan, const std::optional<DisplacementAt>& displacement,
+                                      Trains<T>* made) {
+    const double displaced = share_of(displacement);
+    if (!plan.trains)
+        return between(first.total_, second.total_, share).scale_gradients(displaced * displaced);
+    Trains<T> trains = blended(
+        first.trains_, second.trains_,
+        {.share = share,
+         .rate_per_s = rate_per_s,
+         .choppiness = displaced * plan.choppiness.largest(),
+         .choppiness_per_s = displacement ? displacement->share_per_s * plan.choppiness.largest() : 0.0,
+         .breaking = displaced},
+        plan.from->spectrum.dispersion(), plan.breaking);
+    const SpectralMoments total = pelagic::total(trains);
+    if (made) *made = std::move(trains);
+    return total;
 }
 
 template <class T>
 Whitecaps Sea<T>::whitecaps_between(const Sea& first, const Sea& second, double share,
-                                    std::shared_ptr<const PreparedScene> from) {
+                                    std::shared_ptr<const PreparedScene> from,
+                                    const std::optional<DisplacementAt>& displacement) {
     Plan plan = first.plan_;
     plan.from = std::move(from);
-    const SpectralMoments total =
-        plan.trains
-            ? pelagic::total(blended(first.trains_, second.trains_, share, 0.0, *plan.from, plan.breaking))
-            : between(first.total_, second.total_, share);
-    return whitecaps_of(plan, total, foam_life(plan));
+    const SpectralMoments total = total_between(first, second, share, 0.0, plan, displacement);
+    return whitecaps_of(plan, total, foam_life(plan), share_of(displacement));
 }
 
 template <class T>

@@ -53,18 +53,20 @@ template <class T>
 Whitecaps SeaOverTime<T>::whitecaps(double t_s) const {
     if (!plan_.from->weather) return seas_.front()->whitecaps();
     const Weather::Blend blend = plan_.from->weather->at(t_s);
-    if (blend.first == blend.second) return seas_[blend.first]->whitecaps();
+    const auto displacement = displacement_at(*plan_.from, t_s);
+    if (blend.first == blend.second && !displacement) return seas_[blend.first]->whitecaps();
     return Sea<T>::whitecaps_between(*seas_[blend.first], *seas_[blend.second], blend.share,
-                                     prepared_at(plan_.from, t_s));
+                                     prepared_at(plan_.from, t_s), displacement);
 }
 
 template <class T>
 std::shared_ptr<const Sea<T>> SeaOverTime<T>::at(double t_s) const {
     if (!plan_.from->weather) return seas_.front();
     const Weather::Blend blend = plan_.from->weather->at(t_s);
-    if (blend.first == blend.second) return seas_[blend.first];
+    const auto displacement = displacement_at(*plan_.from, t_s);
+    if (blend.first == blend.second && !displacement) return seas_[blend.first];
     return std::make_shared<const Sea<T>>(*seas_[blend.first], *seas_[blend.second], blend.share,
-                                          blend.rate_per_s, prepared_at(plan_.from, t_s));
+                                          blend.rate_per_s, prepared_at(plan_.from, t_s), displacement);
 }
 
 template class SeaOverTime<float>;

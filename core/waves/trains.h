@@ -87,11 +87,15 @@ template <class T>
 void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const FootprintFilter& filter,
                 const Breaking& breaking, const Dispersion& dispersion);
 
-// The trains between two seas of one plan: energies in shares, that of `second` with its rate [1/s] (core/plan/weather.h).
-// `prepared`: of that time.
+// The trains between two seas of one plan (core/plan/weather.h).
+struct TrainsBetween {
+    double share, rate_per_s;             // of the energies of the second, and its rate [1/s]
+    double choppiness, choppiness_per_s;  // of the time
+    double breaking;                      // over that of `breaking`
+};
 template <class T>
-Trains<T> blended(const Trains<T>& first, const Trains<T>& second, double share, double rate_per_s,
-                  const PreparedScene& prepared, const Breaking& breaking);
+Trains<T> blended(const Trains<T>& first, const Trains<T>& second, const TrainsBetween& between,
+                  const Dispersion& dispersion, const Breaking& breaking);
 
 // The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and
 // include choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's is. Where a

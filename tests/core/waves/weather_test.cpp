@@ -435,6 +435,202 @@ TEST(Weather, BoundsHoldAtEachTime) {
     }
 }
 
+// A steady sea whose displacement changes: from round crests to sharp ones, and back to less.
+Scene pressed(WaveModel model = WaveModel::Fft, bool has_cascades = true) {
+    Scene scene = rising(model, has_cascades);
+    scene.keyed.clear();
+    scene.sea.wind_speed_mps = 13.0;
+    give_keys(scene, "waves.choppiness", {{1, 0.2}, {49, 1.2}, {97, 0.6}}, kLinear);
+    if (model == WaveModel::Fft) {
+        give_keys(scene, "waves.lean_deg", {{1, 0.0}, {97, 40.0}});
+        give_keys(scene, "waves.second_order", {{20, 1.5}, {60, 0.0}}, kLinear);
+    }
+    return scene;
+}
+
+// Of each time that of a sea with the frame's numbers, with what footprints hide and what breaks; velocities as well, where nothing changes.
+TEST(Weather, DisplacementIsThatOfThePlainNumbers) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        const Scene scene = pressed(kind.model, kind.has_cascades);
+        const auto points = random_points<double>(300.0, 300);
+        auto changing = frame_over_time<double>(scene, {everything()});
+        for (const double f : {-9.0, 1.0, 13.0, 49.0, 80.0, 97.0, 130.0}) {
+            const double t = scene.shot.time_s(f);
+            changing.set(t);
+            Frame<double> still(
+                std::make_shared<const Sea<double>>(make_plan(scene_at(scene, f), {everything()})));
+            still.set(t);
+            const auto found = sample(changing, 0, points), said = sample(still, 0, points);
+            EXPECT_NEAR(changing.sea().whitecap_threshold(), still.sea().whitecap_threshold(), 1e-5) << f;
+            double breaking = 0.0, as_said = 0.0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                for (const VectorProduct product :
+                     {VectorProduct(Displacement), VectorProduct(Normal), VectorProduct(SlopeVariance),
+                      VectorProduct(Product::JacobianMoments)})
+                    EXPECT_LT(glm::length(found.vectors(product)[i] - said.vectors(product)[i]), 1e-5) << f;
+                if (f < 0.0 || f > 97.0) {
+                    EXPECT_LT(glm::length(found.vectors(Velocity)[i] - said.vectors(Velocity)[i]), 1e-5) << f;
+                }
+                breaking += found.numbers(Product::Breaking)[i];
+                as_said += said.numbers(Product::Breaking)[i];
+            }
+            EXPECT_NEAR(breaking, as_said, 1e-3 * as_said) << f;
+            EXPECT_GT(as_said, 0.0);
+        }
+    }
+}
+
+TEST(Weather, VelocitiesHoldTheDisplacementsOwnChange) {
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const Kind& kind : kKinds) {
+            SCOPED_TRACE(kind.name);
+            Scene scene = pressed(kind.model, kind.has_cascades);
+            give_keys(scene, "waves.choppiness", {{1, 1.2}, {49, 0.0}, {97, 0.6}}, interpolation);
+            give_keys(scene, "sea.wind_speed_mps", {{1, 8.0}, {97, 16.0}}, interpolation);
+            auto frame = frame_over_time<double>(scene, {filtered(products(Displacement, Velocity), 3.0)});
+            const auto points = random_points<double>(400.0, 300);
+            constexpr double h = 1e-4;
+            const auto at = [&](double t) {
+                frame.set(t);
+                return sample(frame, 0, points);
+            };
+            for (const double t : {0.3, 1.1, 1.98, 2.1, 3.8}) {
+                const auto before = at(t - h), after = at(t + h), now = at(t);
+                double wrong = 0.0, all = 0.0;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const glm::dvec3 rate =
+                        (after.vectors(Displacement)[i] - before.vectors(Displacement)[i]) / (2.0 * h);
+                    const glm::dvec3 off = now.vectors(Velocity)[i] - rate;
+                    wrong += glm::dot(off, off);
+                    all += glm::dot(rate, rate);
+                }
+                EXPECT_LT(std::sqrt(wrong / all), 1e-5) << t;
+            }
+        }
+}
+
+// Through a choppiness of 0, where there is next to no displacement: its velocity is the rate of the choppiness times that of 1.
+TEST(Weather, VelocityIsFiniteWithoutDisplacement) {
+    Scene scene = first_order(pressed());
+    scene.keyed.clear();
+    Scene plain = scene;
+    give_keys(scene, "waves.choppiness", {{1, 0.0}, {25, 1.0}}, kLinear);  // from 0 to 1 s
+    set_value(plain, key_of("waves.choppiness"), 1.0);
+    const auto points = random_points<double>(400.0, 300);
+    auto keyed = frame_over_time<double>(scene, {everything()}),
+         still = frame_over_time<double>(plain, {everything()});
+    constexpr double kSoon_s = 1e-6;  // after the key, of whose two sides this is one
+    keyed.set(kSoon_s);
+    still.set(kSoon_s);
+    const auto found = sample(keyed, 0, points), of_one = sample(still, 0, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec3 velocity = found.vectors(Velocity)[i],
+                         displacement = of_one.vectors(Displacement)[i];
+        EXPECT_LT(glm::length(glm::dvec2(velocity - displacement)),
+                  1e-3 * glm::length(of_one.vectors(Velocity)[i]));
+        EXPECT_LT(glm::length(glm::dvec2(found.vectors(Displacement)[i])),
+                  1.1e-4 * glm::length(glm::dvec2(displacement)));
+    }
+}
+
+TEST(Weather, DisplacementOfAFrameAloneIsThatOfARun) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        Scene scene = pressed(kind.model, kind.has_cascades);
+        const auto points = random_points<float>(300.0, 300);
+        auto run = frame_over_time<float>(scene, {everything()});
+        std::vector<ProductArrays<float>> of_run;
+        const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 9.0};
+        for (const double t : times) {
+            run.set(t);
+            of_run.push_back(sample(run, 0, points));
+        }
+        EXPECT_FALSE(same_samples(of_run[1], of_run[2]));
+        for (const std::size_t i : {3, 1, 4}) {
+            auto alone = frame_over_time<float>(scene, {everything()});
+            alone.set(times[i]);
+            EXPECT_TRUE(same_samples(sample(alone, 0, points), of_run[i])) << times[i];
+        }
+        // Keys that are all the same are the plain number.
+        Scene plain = scene;
+        plain.keyed.clear();
+        plain.waves.choppiness = 0.7;
+        scene = plain;
+        give_keys(scene, "waves.choppiness", {{1, 0.7}, {100, 0.7}});
+        auto a = frame_over_time<float>(plain, {everything()}),
+             b = frame_over_time<float>(scene, {everything()});
+        a.set(2.0);
+        b.set(2.0);
+        EXPECT_TRUE(same_samples(sample(a, 0, points), sample(b, 0, points)));
+    }
+}
+
+// Whatever is planned for the shot holds at each time: no reach beyond the extent, no amplitudes held more than once.
+TEST(Weather, DisplacementIsPlannedForTheLargestOfItsKeys) {
+    Scene scene = pressed();
+    scene.waves.choppiness = 0.1;  // as who fills Scene::keyed by hand leaves it
+    give_keys(scene, "sea.wind_speed_mps", {{1, 16.0}, {97, 8.0}});
+    const auto shot = prepare(scene);
+    for (const double f : {1.0, 25.0, 49.0, 80.0, 97.0}) {
+        const double t = scene.shot.time_s(f);
+        const PreparedScene now = *prepared_at(shot, t);
+        const Extent needed = extent_of(now.scene, now.spectrum, SecondOrder());
+        EXPECT_GE(now.extent.reach_m, needed.reach_m) << f;
+        EXPECT_GE(shot->extent.reach_m, now.extent.reach_m) << f;
+        EXPECT_GE(shot->extent.height_m, now.extent.height_m) << f;
+    }
+    const Scene steady = pressed();
+    Scene plain = steady;
+    plain.keyed.clear();
+    const Plan plan = make_plan(prepare(steady), {everything()});
+    EXPECT_EQ(plan.sea_bytes(), make_plan(prepare(plain), {everything()}).sea_bytes());
+    EXPECT_EQ(plan.choppiness.largest(), 1.2);
+    const SeaOverTime<float> sea(plan);
+    EXPECT_EQ(sea.at(0.7)->cascades().data(), sea.at(2.9)->cascades().data());
+    auto frame = frame_over_time<float>(steady, {unfiltered(products(Displacement))});
+    frame.set(0.0);
+    FrameBounds<float> bounds(frame, 0);
+    const auto points = random_points<float>(200.0, 2000);
+    for (const double t : {0.0, 1.0, 2.0, 3.5}) {
+        frame.set(t);
+        bounds.refresh();
+        const glm::dvec2 most_m = bounds.region({glm::dvec2(-100.0), glm::dvec2(100.0)}, 4096).reach_m();
+        glm::vec2 reach_m(0.0f);
+        for (const auto& at : sample(frame, 0, points).vectors(Displacement))
+            reach_m = glm::max(reach_m, glm::abs(glm::vec2(at)));
+        EXPECT_LE(static_cast<double>(reach_m.x), most_m.x) << t;
+        EXPECT_LE(static_cast<double>(reach_m.y), most_m.y) << t;
+        EXPECT_LT(most_m.x, 4.0 * static_cast<double>(reach_m.x)) << t;  // of this time
+    }
+}
+
+TEST(Weather, DisplacementThatIsOneOrTooFastSaysSo) {
+    Scene scene = pressed();
+    EXPECT_TRUE(problems_of(scene).empty());
+    scene.waves.cascades[1].choppiness = 0.5;
+    const std::vector<Problem> problems = problems_of(scene);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(text_of(problems[0]).find("waves.choppiness = { keys = [[1, 0.2], [49, 1.2], [97, 0.6]]"),
+              std::string::npos);
+    EXPECT_NE(text_of(problems[0]).find("is one for the whole shot"), std::string::npos);
+    const auto pushes = [](std::vector<NumberKeys::Key> keys) {
+        Scene fast = pressed();
+        fast.keyed.clear();
+        give_keys(fast, "waves.choppiness", std::move(keys), kLinear);
+        const std::vector<std::string> warnings = sea_warnings(*prepare(fast));
+        EXPECT_TRUE(std::ranges::none_of(warnings, [](const std::string& warning) {
+            return warning.find("look like weather") != std::string::npos;
+        }));
+        return std::ranges::any_of(warnings, [](const std::string& warning) {
+            return warning.find("waves.choppiness changes within") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(pushes({{1, 0.2}, {49, 1.0}}));
+    EXPECT_FALSE(pushes({{1, 0.2}, {480, 1.0}}));
+    EXPECT_FALSE(pushes({{1, 0.9}, {49, 1.0}}));
+}
+
 // Each key's sea must be one that there can be, with what the other numbers are there.
 TEST(Weather, OfImpossibleWavesIsRefusedWithItsFrame) {
     Scene scene;

@@ -132,7 +132,8 @@ void add_sea(Built& out) {
                                  .range = limits::kDepth_m,
                                  .soft = SoftRange{1.0, 1e4, true},
                                  .key_parts = kWaves,
-                                 .may_be_infinite = true}),
+                                 .may_be_infinite = true,
+                                 .may_have_keys = true}),
         row<&SeaState::depth_file>(
             {.name = "depth_file",
              .help =

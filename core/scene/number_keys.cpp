@@ -122,7 +122,6 @@ void refuse_keys(const Scene& scene, std::string_view table) {
 }
 
 std::string why_no_keys(std::string_view path) {
-    if (path == "sea.depth_m") return ": waves keep their frequencies, and another depth has others";
     if (path == "sea.gust_size_m") return ": patches far away would race over the sea as they grow";
     if (path.find("[]") != std::string_view::npos || path.starts_with("shot.") ||
         path.starts_with("quality.") || path.starts_with("output."))

@@ -307,7 +307,7 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
         };
         want_heights(scratch.waves, moves || plan.lean_rad > 0.0);
         if (second_order_) want_heights(scratch.vertical, moves);
-        if (plan.lean_rad > 0.0 || sea_->displacement()) want_heights(scratch.displaced, moves);
+        if (plan.lean_rad > 0.0 || shot_) want_heights(scratch.displaced, moves);
         if (shot_ && moves) want_heights(scratch.growing, true);
         want({&scratch.lines}, kBlockColumns * line_values_);
         want({&scratch.line}, line_values_);  // allocated last: the check above relies on it
@@ -436,16 +436,20 @@ double Frame<T>::lean_rad() const {
 template <class T>
 void Frame<T>::press(const Block& block, Scratch& at) const {
     const Plan& plan = sea_->plan();
-    const std::vector<std::size_t>& columns = sea_->cascades()[block.cascade].columns;
-    const std::size_t count = columns[block.first_mx + block.columns] - columns[block.first_mx];
-    const T share = static_cast<T>(sea_->displacement()->share),
-            share_per_s = static_cast<T>(sea_->displacement()->share_per_s);
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const std::size_t first = cascade.columns[block.first_mx],
+                      count = cascade.columns[block.first_mx + block.columns] - first;
+    const std::optional<DisplacementAt>& displacement = sea_->displacement();
+    const T share = displacement ? static_cast<T>(displacement->share) : T(1),
+            share_per_s = displacement ? static_cast<T>(displacement->share_per_s) : T(0);
     const Heights& from = leans(plan, block.cascade) ? at.displaced : at.waves;
     Heights& to = at.displaced;
     if (plan.cascades[block.cascade].moves())
         for (std::size_t i = 0; i < count; ++i) {
-            to.rate_re[i] = share * from.rate_re[i] + share_per_s * from.re[i];
-            to.rate_im[i] = share * from.rate_im[i] + share_per_s * from.im[i];
+            const T grows =
+                cascade.widening.empty() ? share_per_s : share_per_s + share * cascade.widening[first + i];
+            to.rate_re[i] = share * from.rate_re[i] + grows * from.re[i];
+            to.rate_im[i] = share * from.rate_im[i] + grows * from.im[i];
         }
     for (std::size_t i = 0; i < count; ++i) {
         to.re[i] = share * from.re[i];
@@ -465,7 +469,7 @@ long Frame<T>::transform_columns(const Block& block) {
     const bool is_leaning = leans(plan, block.cascade);
     if (is_leaning) lean(block, at);
     if (!cascade.growth[0].empty()) grow(block, at);
-    const bool is_pressed = sea_->displacement() && is_displaced(planned);
+    const bool is_pressed = (sea_->displacement() || !cascade.widening.empty()) && is_displaced(planned);
     if (is_pressed) press(block, at);
     const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
     if (has_pairs) add_second_order(block, at);

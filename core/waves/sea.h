@@ -39,6 +39,7 @@ struct Cascade {
     Buffer<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
     // Of amplitudes that change: their rates [m/s], parallel to the four above; empty where they don't, or nobody asks for velocities.
     std::array<Buffer<T>, 4> growth;
+    Buffer<T> widening;  // likewise of chop, over it [1/s]
 
     std::size_t modes() const { return cycles_per_s.size(); }
     std::size_t held_bytes() const {
@@ -84,9 +85,13 @@ class Sea {
     // Of a scene that has the same waves: they are shared.
     Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from);
     // Between two of one plan, which `from` takes the place of the scene of: energies in shares, that of `second` with its rate [1/s];
-    // of another displacement than planned, if there is one.
+    // of another displacement than planned, and over another depth, if there are.
     Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
-        std::shared_ptr<const PreparedScene> from, const std::optional<DisplacementAt>& displacement);
+        std::shared_ptr<const PreparedScene> from, const std::optional<DisplacementAt>& displacement,
+        const OverDepth* over);
+
+    // What its waves have turned by since `before` (nothing: by nothing), over these depths.
+    Turns turned(const Turns* before, std::span<const DepthAt::Part> parts) const;
 
     const Plan& plan() const { return plan_; }
     const std::shared_ptr<const SpectrumTable>& spectrum_table() const { return table_; }
@@ -136,7 +141,7 @@ class Sea {
     // total() of a sea between two, and its trains where it has some.
     static SpectralMoments total_between(const Sea& first, const Sea& second, double share, double rate_per_s,
                                          const Plan& plan, const std::optional<DisplacementAt>& displacement,
-                                         Trains<T>* made = nullptr);
+                                         const OverDepth* over = nullptr, Trains<T>* made = nullptr);
     std::vector<FootprintPair> pairs_of(int cascade, std::vector<QueryStatistics>& breaking);
     void raise_heroes();
     Cascade<T> build(int cascade, std::vector<QueryStatistics>& breaking, Progress&);

@@ -95,12 +95,6 @@ Passing passing(const Trains<T>& trains, const FootprintFilter& filter, double f
     return {first_shorter(filter.n_max * footprint_m), first_shorter(filter.n_min * footprint_m)};
 }
 
-// a·b minus the nearest whole number, without the rounding error of the product.
-double fraction_of_product(double a, double b) {
-    const double product = a * b;
-    return (product - std::round(product)) + std::fma(a, b, -product);
-}
-
 // Where a train goes, and when.
 template <class T>
 void add_way(Trains<T>& trains, double wavelength_m, glm::dvec2 direction, double cycles_per_s,
@@ -287,6 +281,13 @@ Trains<T> blended(const Trains<T>& first, const Trains<T>& second, const TrainsB
     trains.breaking = first.breaking;
     for (std::size_t i = 0; i < first.count(); ++i) {
         const double k = kTwoPi / trains.wavelength_m[i], ratio = dispersion.horizontal_ratio(k);
+        if (between.over) {
+            // Turned so that at this time it is where it has come to.
+            trains.cycles_per_s[i] = dispersion.omega(k) / kTwoPi;
+            const double start = trains.start_cycles[i] + between.over->turns.trains[i] -
+                                 fraction_of_product(trains.cycles_per_s[i], between.over->time_s);
+            trains.start_cycles[i] = start - std::floor(start);
+        }
         const auto energy = [i](const Trains<T>& of) { return 0.5 * of.height_m[i] * of.height_m[i]; };
         const double own = (1.0 - share) * energy(first) + share * energy(second),
                      height_m = std::sqrt(2.0 * own);
@@ -308,8 +309,10 @@ Trains<T> blended(const Trains<T>& first, const Trains<T>& second, const TrainsB
         // ḣ = ∂/∂t √(2E); a train that is as sharp as can be stays so.
         const double grows = height_m > 0.0 ? between.rate_per_s * (energy(second) - energy(first)) / height_m
                                             : 0.0,
+                     slopes = between.over ? between.over->ratio_per_s(k) : 0.0,
                      widens = k * horizontal_m < 1.0 ? between.choppiness * ratio * grows +
-                                                           between.choppiness_per_s * ratio * height_m
+                                                           between.choppiness_per_s * ratio * height_m +
+                                                           between.choppiness * slopes * height_m
                                                      : 0.0;
         trains.growth[0].push_back(static_cast<T>(x * widens));
         trains.growth[1].push_back(static_cast<T>(y * widens));

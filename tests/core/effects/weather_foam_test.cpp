@@ -38,6 +38,13 @@ Scene sharpening_foam(bool rises) {
     return scene;
 }
 
+// And over a floor that rises.
+Scene over_depth_foam() {
+    Scene scene = rising_foam();
+    EXPECT_FALSE(set_value(scene, key_of("sea.depth_m"), NumberKeys{{{750, 60.0}, {900, 14.0}}}));
+    return scene;
+}
+
 template <class T>
 std::shared_ptr<const SeaOverTime<T>> sea_over_time(const Scene& scene) {
     for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
@@ -127,7 +134,8 @@ TEST(WeatherFoam, IsTheSumOfWhatBrokeBefore) {
 }
 
 TEST(WeatherFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
-    for (const Scene& scene : {rising_foam(), sharpening_foam(false), sharpening_foam(true)}) {
+    for (const Scene& scene :
+         {rising_foam(), sharpening_foam(false), sharpening_foam(true), over_depth_foam()}) {
         const auto sea = sea_over_time<float>(scene);
         const auto points = random_points<float>(60.0, 400);
         SeaAtTime<float> run(sea);

@@ -631,6 +631,172 @@ TEST(Weather, DisplacementThatIsOneOrTooFastSaysSo) {
     EXPECT_FALSE(pushes({{1, 0.9}, {49, 1.0}}));
 }
 
+// From water that the longest waves feel a little to water that most of them feel.
+Scene over_depth(WaveModel model = WaveModel::Fft, bool has_cascades = true,
+                 CameraInterpolation interpolation = kSmooth) {
+    Scene scene = first_order(rising(model, has_cascades));
+    scene.keyed.clear();
+    scene.waves.choppiness = 1.0;
+    scene.sea.wind_speed_mps = 9.0;
+    scene.sea.fetch_m = 2e4;
+    give_keys(scene, "sea.depth_m", {{25, 40.0}, {73, 4.0}, {121, 12.0}}, interpolation);
+    return scene;
+}
+
+// ∫ω/2π from 0, less whole turns, by many small steps.
+double turned_by(const Scene& scene, double k, double until_s) {
+    constexpr int kSteps = 40000;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double frame = 1.0 + (i + 0.5) * until_s / kSteps * scene.shot.fps,
+                     depth_m = value_at(scene.keyed[0].keys, false, frame);
+        sum += std::sqrt(9.80665 * k * (1.0 + 7.3e-5 / 9.80665 * k * k) * std::tanh(k * depth_m)) * until_s /
+               kSteps;
+    }
+    return std::remainder(sum / (2.0 * std::numbers::pi), 1.0);
+}
+
+TEST(Weather, OverADepthThatChangesPhasesAreIntegrals) {
+    for (const auto interpolation : {kLinear, kSmooth}) {
+        const Scene tiles = over_depth(WaveModel::Fft, true, interpolation),
+                    sums = over_depth(WaveModel::Trochoid, false, interpolation);
+        const SeaOverTime<double> cascades(make_plan(prepare(tiles), {everything()})),
+            trains(make_plan(prepare(sums), {everything()}));
+        for (const double t : {0.5, 1.7, 2.9, 3.6, 4.4, 5.0, 9.0}) {
+            const auto now = trains.at(t);
+            const auto phases = phases_at(now->trains(), glm::dvec2(0.0), t);
+            for (const std::size_t i : {0, 7, 20}) {
+                const double k = 2.0 * std::numbers::pi / now->trains().wavelength_m[i],
+                             wanted = trains.first()->trains().start_cycles[i] + turned_by(sums, k, t);
+                EXPECT_NEAR(std::remainder(phases[i] - wanted, 1.0), 0.0, 1e-4) << t << ' ' << i;
+            }
+            const auto sea = cascades.at(t);
+            const Cascade<double>&is = sea->cascades()[0], &was = cascades.first()->cascades()[0];
+            for (const int mx : {2, 5, 12})
+                for (const int my : {-4, 0, 3}) {
+                    const std::size_t mode = is.middle(mx) + my;
+                    const double k = 2.0 * std::numbers::pi / is.size_m * std::hypot(mx, my);
+                    const auto cycles = [&](const Cascade<double>& of) {
+                        return std::atan2(of.forward_im[mode], of.forward_re[mode]) /
+                               (2.0 * std::numbers::pi);
+                    };
+                    const double turned = cycles(was) - cycles(is) + is.cycles_per_s[mode] * t;
+                    EXPECT_NEAR(std::remainder(turned - turned_by(tiles, k, t), 1.0), 0.0, 1e-4)
+                        << t << ' ' << mx;
+                }
+        }
+        // As exact after ten weeks: the last key's frequency goes on.
+        constexpr double kLate_s = 6e6, kLater_s = kLate_s + 0.25;
+        const auto late = trains.at(kLate_s), later = trains.at(kLater_s);
+        const auto before = phases_at(late->trains(), glm::dvec2(0.0), kLate_s),
+                   after = phases_at(later->trains(), glm::dvec2(0.0), kLater_s);
+        for (const std::size_t i : {0, 7, 20})
+            EXPECT_NEAR(std::remainder(after[i] - before[i] - 0.25 * late->trains().cycles_per_s[i], 1.0),
+                        0.0, 1e-9);
+    }
+}
+
+TEST(Weather, OverADepthThatChangesVelocitiesAreRates) {
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const Kind& kind : kKinds) {
+            SCOPED_TRACE(kind.name);
+            Scene scene = over_depth(kind.model, kind.has_cascades, interpolation);
+            give_keys(scene, "waves.choppiness", {{30, 0.3}, {80, 1.1}}, interpolation);
+            if (kind.model == WaveModel::Fft) scene.waves.lean_deg = 20.0;
+            auto frame = frame_over_time<double>(scene, {filtered(products(Displacement, Velocity), 3.0)});
+            const auto points = random_points<double>(400.0, 300);
+            constexpr double h = 1e-4;
+            const auto at = [&](double t) {
+                frame.set(t);
+                return sample(frame, 0, points);
+            };
+            for (const double t : {0.5, 1.4, 2.2, 2.9, 3.9, 5.6}) {
+                const auto before = at(t - h), after = at(t + h), now = at(t);
+                double wrong = 0.0, all = 0.0;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const glm::dvec3 rate =
+                        (after.vectors(Displacement)[i] - before.vectors(Displacement)[i]) / (2.0 * h);
+                    const glm::dvec3 off = now.vectors(Velocity)[i] - rate;
+                    wrong += glm::dot(off, off);
+                    all += glm::dot(rate, rate);
+                }
+                EXPECT_LT(std::sqrt(wrong / all), 1e-3) << t;
+            }
+        }
+}
+
+// A frame alone is that of a run; beyond the keys it is a sea of their depth; heights are those of the spectrum between.
+TEST(Weather, OverADepthThatChangesEachTimeIsItsOwn) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        const Scene scene = over_depth(kind.model, kind.has_cascades);
+        const auto points = random_points<float>(300.0, 300);
+        auto run = frame_over_time<float>(scene, {everything()});
+        std::vector<ProductArrays<float>> of_run;
+        const std::vector<double> times{0.5, 1.0, 2.0, 3.0, 3.5, 9.0};
+        std::vector<double> heights;
+        for (const double t : times) {
+            run.set(t);
+            of_run.push_back(sample(run, 0, points));
+            heights.push_back(run.realisation(0).m0 / run.sea().total().m0);
+        }
+        for (const double height : heights) EXPECT_NEAR(std::sqrt(height / heights[0]), 1.0, 0.02);
+        for (const std::size_t i : {4, 2, 0, 5}) {
+            auto alone = frame_over_time<float>(scene, {everything()});
+            alone.set(times[i]);
+            EXPECT_TRUE(same_samples(sample(alone, 0, points), of_run[i])) << times[i];
+        }
+        if (kind.model == WaveModel::Trochoid)
+            continue;  // whose directions are those of the mean of the keys
+        Frame<float> still(
+            std::make_shared<const Sea<float>>(make_plan(scene_at(scene, 1.0), {everything()})));
+        still.set(0.5);
+        const auto as_said = sample(still, 0, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_LT(glm::length(of_run[0].vectors(Displacement)[i] - as_said.vectors(Displacement)[i]),
+                      1e-4f);
+            EXPECT_LT(glm::length(of_run[0].vectors(Velocity)[i] - as_said.vectors(Velocity)[i]), 1e-4f);
+        }
+    }
+}
+
+TEST(Weather, OverADepthThatChangesWhatHasOneDepthIsRefused) {
+    const auto problem = [](const std::function<void(Scene&)>& change) {
+        Scene scene = over_depth();
+        change(scene);
+        std::string texts;
+        for (const Problem& found : validate(scene)) texts += text_of(found) + '\n';
+        return texts;
+    };
+    const auto says = [&](const std::function<void(Scene&)>& change, const char* what) {
+        const std::string found = problem(change);
+        EXPECT_NE(found.find(what), std::string::npos) << what << '\n' << found;
+    };
+    EXPECT_EQ(problem([](Scene&) {}), "");
+    says([](Scene& scene) { scene.waves.second_order = 1.0; }, "what pairs of waves add");
+    says([](Scene& scene) { scene.waves.vessels = {Vessel{}}; }, "wakes are worked out for one depth");
+    says([](Scene& scene) { scene.sea.depth_file = "floor.exr"; }, "the floor of sea.depth_file stays");
+    says([](Scene& scene) { scene.waves.heroes = {HeroWave{}}; }, "hero waves stand in one sea");
+    says([](Scene& scene) { scene.shot.loop_s = 2.0; }, "a loop has no beginning");
+    says(
+        [](Scene& scene) {
+            give_keys(scene, "sea.depth_m", {{1, 2.0}, {50, 40.0}});
+        },
+        "changes more than 16 times from frame 1 to 50");
+    says(
+        [](Scene& scene) {
+            give_keys(scene, "sea.depth_m", {{1, 2.0}, {50, std::numeric_limits<double>::infinity()}});
+        },
+        "no depth is between");
+    says(
+        [](Scene& scene) {
+            scene.objects = {SceneObject{}};
+            scene.objects[0].floats = true;
+            scene.objects[0].buoyancy = Buoyancy::Response;
+        },
+        "answers waves of one depth");
+}
+
 // Each key's sea must be one that there can be, with what the other numbers are there.
 TEST(Weather, OfImpossibleWavesIsRefusedWithItsFrame) {
     Scene scene;

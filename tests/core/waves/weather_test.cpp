@@ -672,10 +672,11 @@ TEST(Weather, OverADepthThatChangesPhasesAreIntegrals) {
             }
             const auto sea = cascades.at(t);
             const Cascade<double>&is = sea->cascades()[0], &was = cascades.first()->cascades()[0];
-            for (const int mx : {2, 5, 12})
+            for (const int mx : {5, 9, 14})
                 for (const int my : {-4, 0, 3}) {
                     const std::size_t mode = is.middle(mx) + my;
                     const double k = 2.0 * std::numbers::pi / is.size_m * std::hypot(mx, my);
+                    ASSERT_NE(was.forward_re[mode] * is.forward_re[mode], 0.0);  // which has no phase
                     const auto cycles = [&](const Cascade<double>& of) {
                         return std::atan2(of.forward_im[mode], of.forward_re[mode]) /
                                (2.0 * std::numbers::pi);

@@ -650,8 +650,8 @@ double turned_by(const Scene& scene, double k, double until_s) {
     for (int i = 0; i < kSteps; ++i) {
         const double frame = 1.0 + (i + 0.5) * until_s / kSteps * scene.shot.fps,
                      depth_m = value_at(scene.keyed[0].keys, false, frame);
-        sum += std::sqrt(9.81 * k * (1.0 + 7.3e-5 / 9.81 * k * k) * std::tanh(k * depth_m)) * until_s /
-               kSteps;
+        sum +=
+            std::sqrt(9.81 * k * (1.0 + 7.3e-5 / 9.81 * k * k) * std::tanh(k * depth_m)) * until_s / kSteps;
     }
     return std::remainder(sum / (2.0 * std::numbers::pi), 1.0);
 }

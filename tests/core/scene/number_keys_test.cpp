@@ -86,7 +86,7 @@ TEST(NumberKeys, AreSmoothAndNeverBeyondTheirValues) {
 
 // Against central differences, also at keys, where straight lines turn, and beyond them.
 TEST(NumberKeys, SayHowFastTheyChange) {
-    constexpr double h = 1e-5;
+    constexpr double h = 1e-6;
     for (const auto interpolation : {kLinear, kSmooth})
         for (const bool is_angle : {false, true}) {
             const NumberKeys number{{{-3, 350.0}, {4, 2.0}, {20, 40.0}, {21, 40.0}, {90, 200.0}},

@@ -26,21 +26,24 @@ Scene rising_foam() {
     return scene;
 }
 
-// The same of crests that sharpen meanwhile, and of them alone.
-Scene sharpening_foam(bool rises) {
-    Scene scene = rising_foam();
-    if (!rises) {
-        scene.keyed.clear();
-        scene.sea.wind_speed_mps = 15.0;
-    }
+// Of crests that sharpen and get rounder meanwhile.
+Scene sharpening_foam(Scene scene) {
     EXPECT_FALSE(
         set_value(scene, key_of("waves.choppiness"), NumberKeys{{{750, 0.3}, {870, 1.3}, {900, 0.6}}}));
     return scene;
 }
 
-// And over a floor that rises.
-Scene over_depth_foam() {
+// The same in a steady wind.
+Scene sharpening_foam_alone() {
     Scene scene = rising_foam();
+    scene.keyed.clear();
+    scene.sea.wind_speed_mps = 15.0;
+    return sharpening_foam(scene);
+}
+
+// With all that changes: over a floor that rises as well.
+Scene changing_foam() {
+    Scene scene = sharpening_foam(rising_foam());
     EXPECT_FALSE(set_value(scene, key_of("sea.depth_m"), NumberKeys{{{750, 60.0}, {900, 14.0}}}));
     return scene;
 }
@@ -130,12 +133,11 @@ void expect_the_sum_of_what_broke_before(const Scene& scene) {
 
 TEST(WeatherFoam, IsTheSumOfWhatBrokeBefore) {
     expect_the_sum_of_what_broke_before(rising_foam());
-    expect_the_sum_of_what_broke_before(sharpening_foam(false));
+    expect_the_sum_of_what_broke_before(sharpening_foam_alone());
 }
 
 TEST(WeatherFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
-    for (const Scene& scene :
-         {rising_foam(), sharpening_foam(false), sharpening_foam(true), over_depth_foam()}) {
+    for (const Scene& scene : {rising_foam(), changing_foam()}) {
         const auto sea = sea_over_time<float>(scene);
         const auto points = random_points<float>(60.0, 400);
         SeaAtTime<float> run(sea);

@@ -175,7 +175,7 @@ def keys_of_sea(obj, settings, bpy_scene):
         path, value = f"pelagic.{number.path}", number.of(settings[PLACE[number.setting.path]])
         curve = curves.get(path)
         if (not number.is_of_sea or curve is None or path in driven or curve.mute or curve.group and curve.group.mute
-                or not isinstance(value, float)):
+                or not isinstance(value, float) or np.isinf(value)):
             continue
         low, high = number.field.key["range"]  # that Blender keeps its properties in
         if not len(curve.keyframe_points) or abs(min(max(curve.evaluate(bpy_scene.frame_current_final), low), high) - value) > 1e-5 * abs(value):

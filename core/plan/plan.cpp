@@ -646,7 +646,12 @@ static std::size_t weather_bytes(const Plan& plan) {
             rates += lattice_modes(cascade.amplitude_radius()) * 4 *
                      (plan.knobs.double_precision ? sizeof(double) : sizeof(float));
     if (seas.size() == 1) return one.sea_bytes();  // that of all frames
-    return (seas.size() + 2) * one.sea_bytes() +
+    std::size_t turns = 0;
+    if (depth_at(*plan.from, 0.0))  // of each key and of a frame
+        for (const CascadePlan& cascade : plan.cascades)
+            turns += lattice_modes(cascade.amplitude_radius()) * (plan.from->weather->keys.size() + 1) *
+                     sizeof(double);
+    return (seas.size() + 2) * one.sea_bytes() + turns +
            2 * rates;  // a frame's sea is made while the one before is there
 }
 

@@ -1,15 +1,19 @@
 #include "core/plan/weather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "core/base/constants.h"
+#include "core/plan/choppiness.h"
 #include "core/plan/effects.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/number_keys.h"
 #include "core/scene/text.h"
+#include "core/spectrum/gauss.h"
 
 namespace pelagic {
 namespace {
@@ -49,6 +53,27 @@ std::string numbers_text(const Scene& scene, double frame) {
     return text;
 }
 
+// The numbers of the displacement, whose keys change no waves.
+struct DisplacementNumber {
+    std::string_view path;
+    double Waves::*member;
+};
+constexpr std::array kDisplacementNumbers{DisplacementNumber{"waves.choppiness", &Waves::choppiness},
+                                          DisplacementNumber{"waves.lean_deg", &Waves::lean_deg},
+                                          DisplacementNumber{"waves.second_order", &Waves::second_order}};
+
+const KeyedNumber* keyed_of(const Scene& scene, std::string_view path) {
+    const auto found = std::ranges::find(scene.keyed, path, &KeyedNumber::path);
+    return found == scene.keyed.end() ? nullptr : &*found;
+}
+
+// A moment of a shot, displaced as the shot is planned.
+Scene as_planned(Scene moment, const Scene& shot) {
+    for (const DisplacementNumber& number : kDisplacementNumbers)
+        moment.waves.*number.member = shot.waves.*number.member;
+    return moment;
+}
+
 }  // namespace
 
 double frame_at(const Shot& shot, double t_s) {
@@ -77,9 +102,11 @@ std::shared_ptr<const PreparedScene> prepared_at(const std::shared_ptr<const Pre
     if (blend.first == blend.second) return weather.keys[blend.first].sea;
     const std::array parts{DirectionalSpectrum::Part{&first.spectrum, 1.0 - blend.share},
                            DirectionalSpectrum::Part{&second.spectrum, blend.share}};
+    Scene moment = scene_at(shot->scene, frame_at(shot->scene.shot, t_s));
+    const Dispersion dispersion{moment.sea.depth_m};
     return std::make_shared<const PreparedScene>(
-        PreparedScene{.scene = scene_at(shot->scene, frame_at(shot->scene.shot, t_s)),
-                      .spectrum = DirectionalSpectrum(parts),
+        PreparedScene{.scene = std::move(moment),
+                      .spectrum = DirectionalSpectrum(parts, dispersion),
                       .second_order = shot->second_order,
                       .extent = blended(first.extent, second.extent, blend.share),
                       .weather = nullptr,
@@ -103,6 +130,91 @@ double wind_way_m(const PreparedScene& from, double t_s) {
     return std::copysign(way, t_s) * shot.time_scale / shot.fps;
 }
 
+std::optional<DisplacementAt> displacement_at(const PreparedScene& shot, double t_s) {
+    const Scene& scene = shot.scene;
+    const auto is_keyed = [&](const DisplacementNumber& number) { return keyed_of(scene, number.path); };
+    if (!shot.weather || std::ranges::none_of(kDisplacementNumbers, is_keyed)) return std::nullopt;
+    const double frame = frame_at(scene.shot, t_s), frames_per_s = scene.shot.fps / scene.shot.time_scale;
+    struct Now {
+        double value, per_s;
+    };
+    const auto now = [&](const DisplacementNumber& number) -> Now {
+        const KeyedNumber* keyed = keyed_of(scene, number.path);
+        if (!keyed) return {scene.waves.*number.member, 0.0};
+        return {value_at(keyed->keys, false, frame), rate_at(keyed->keys, false, frame) * frames_per_s};
+    };
+    const auto [choppiness, lean, second] = kDisplacementNumbers;
+    DisplacementAt at;
+    // Less than the least would be a displacement gradient of few digits, and is seen as little as none.
+    if (const double most = scene.waves.choppiness; most >= Choppiness::kLeastShown) {
+        const Now of = now(choppiness);
+        at.share = std::max(of.value, Choppiness::kLeastShown) / most;
+        at.share_per_s = of.per_s / most;
+    }
+    if (const double most = scene.waves.second_order; most > 0.0) {
+        const Now of = now(second);
+        at.pairs = of.value / most * at.share;
+        at.pairs_per_s = of.per_s / most * at.share + of.value / most * at.share_per_s;
+    }
+    constexpr double kPerDegree = kPi / 180.0;
+    const Now of = now(lean);
+    at.lean_rad = of.value * kPerDegree;
+    at.lean_rad_per_s = of.per_s * kPerDegree;
+    return at;
+}
+
+// From a key on until a time before the next. The integral of the polynomial through ω at Gauss's points, by Legendre's polynomials P:
+// of the one that is 1 at point j, w_j/2 (1 + x + Σ P_m(x_j) (P_{m+1} − P_{m−1})(x)). From key to key, x = 1, that is Gauss's rule.
+static std::vector<DepthAt::Part> depths_after(const PreparedScene& shot, std::size_t key, double t_s) {
+    constexpr std::size_t kPoints = 12;  // of a depth that changes 16 times a frequency is right to 1e-4
+    const KeyedNumber& keyed = *keyed_of(shot.scene, "sea.depth_m");
+    const std::vector<Weather::Key>& keys = shot.weather->keys;
+    const auto depth_m = [&](double frame) { return value_at(keyed.keys, false, frame); };
+    const double first_s = keys[key].time_s, first_m = depth_m(keys[key].frame);
+    if (t_s <= first_s || key + 1 == keys.size() || depth_m(keys[key + 1].frame) == first_m)
+        return {{first_m, t_s - first_s}};
+    const auto legendre = [](double x) {
+        std::array<double, kPoints + 1> p{1.0, x};
+        for (std::size_t m = 2; m < p.size(); ++m) {
+            const auto degree = static_cast<double>(m);
+            p[m] = ((2.0 * degree - 1.0) * x * p[m - 1] - (degree - 1.0) * p[m - 2]) / degree;
+        }
+        return p;
+    };
+    const double lasts_s = keys[key + 1].time_s - first_s, x = 2.0 * (t_s - first_s) / lasts_s - 1.0,
+                 frames = static_cast<double>(keys[key + 1].frame) - keys[key].frame;
+    const auto& rule = GaussLegendre<kPoints>::rule();
+    const auto until = legendre(x);
+    std::vector<DepthAt::Part> parts;
+    for (std::size_t j = 0; j < kPoints; ++j) {
+        const auto here = legendre(rule.node[j]);
+        double sum = 1.0 + x;
+        for (std::size_t m = 1; m < kPoints; ++m) sum += here[m] * (until[m + 1] - until[m - 1]);
+        parts.push_back({depth_m(keys[key].frame + 0.5 * (1.0 + rule.node[j]) * frames),
+                         0.25 * lasts_s * rule.weight[j] * sum});
+    }
+    return parts;
+}
+
+std::vector<DepthAt::Part> depth_until(const PreparedScene& shot, std::size_t key) {
+    return depths_after(shot, key - 1, shot.weather->keys[key].time_s);
+}
+
+std::optional<DepthAt> depth_at(const PreparedScene& shot, double t_s) {
+    const Scene& scene = shot.scene;
+    const KeyedNumber* keyed = shot.weather ? keyed_of(scene, "sea.depth_m") : nullptr;
+    if (!keyed) return std::nullopt;
+    const std::vector<Weather::Key>& keys = shot.weather->keys;
+    const double frame = frame_at(scene.shot, t_s);
+    DepthAt at{.key = 0,
+               .parts = {},
+               .depth_m = value_at(keyed->keys, false, frame),
+               .depth_mps = rate_at(keyed->keys, false, frame) * scene.shot.fps / scene.shot.time_scale};
+    while (at.key + 1 < keys.size() && keys[at.key + 1].time_s <= t_s) ++at.key;
+    at.parts = depths_after(shot, at.key, t_s);
+    return at;
+}
+
 std::string weather_text(const PreparedScene& shot, double t_s, double past_s, double ahead_s) {
     if (!shot.weather) return {};
     const Weather& weather = *shot.weather;
@@ -124,6 +236,16 @@ std::string weather_text(const PreparedScene& shot, double t_s, double past_s, d
     // Spray remembers how far the wind has blown.
     if (const auto& wind = weather.keys[blend.first].sea->wind; wind && is_on(Effect::Spray, shot.scene))
         text += "way " + number_text(wind_way_m(*weather.keys[blend.first].sea, t_s)) + '\n';
+    if (const auto at = displacement_at(shot, t_s))
+        for (const double value :
+             {at->share, at->share_per_s, at->pairs, at->pairs_per_s, at->lean_rad, at->lean_rad_per_s})
+            text += "displaced " + number_text(value) + '\n';
+    // Phases are sums over all that has been.
+    if (const KeyedNumber* depth = keyed_of(shot.scene, "sea.depth_m")) {
+        text += value_text(key_of(depth->path), depth->keys);
+        for (const Weather::Key& key : weather.keys) text += ' ' + std::to_string(key.frame);
+        text += '\n';
+    }
     if (blend.first == blend.second) return text;
     return text + numbers_text(shot.scene, weather.keys[blend.second].frame) +
            numbers_text(shot.scene, frame_at(shot.scene.shot, t_s)) + number_text(blend.share) + ' ' +
@@ -135,8 +257,22 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     for (const KeyedNumber& number : scene.keyed)
         weather.is_smooth |= is_of_sea(number) && number.keys.interpolation == CameraInterpolation::Smooth;
     const auto wind = std::ranges::find(scene.keyed, "sea.wind_speed_mps", &KeyedNumber::path);
+    for (const DisplacementNumber& number : kDisplacementNumbers)
+        if (const KeyedNumber* keyed = keyed_of(scene, number.path))
+            scene.waves.*number.member =
+                std::ranges::max_element(keyed->keys.keys, {}, &NumberKeys::Key::value)->value;
     const auto prepared_moment = [&](int frame) {
-        PreparedScene moment = *prepare(scene_at(scene, frame));
+        Scene numbers = scene_at(scene, frame);
+        PreparedScene moment = *prepare(as_planned(numbers, scene));
+        if (const KeyedNumber* depth = keyed_of(scene, "sea.depth_m")) {
+            // Water goes farthest to the side where it is shallowest.
+            const double least_m =
+                std::ranges::min_element(depth->keys.keys, {}, &NumberKeys::Key::value)->value;
+            const DirectionalSpectrum::Part all{&moment.spectrum, 1.0};
+            moment.extent = extent_of(moment.scene, DirectionalSpectrum({&all, 1}, Dispersion{least_m}),
+                                      moment.second_order);
+        }
+        moment.scene = std::move(numbers);
         if (wind != scene.keyed.end()) moment.wind = wind->keys;
         return std::make_shared<const PreparedScene>(std::move(moment));
     };
@@ -145,8 +281,8 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     for (const int frame : frames_of_sea(scene)) {
         std::string numbers = numbers_text(scene, frame);
         const auto sea = numbers == before ? weather.keys.back().sea : prepared_moment(frame);
-        const auto found =
-            first_with.try_emplace(canonical(sea->scene, key_parts(KeyPart::Waves)), weather.keys.size());
+        const auto found = first_with.try_emplace(
+            canonical(as_planned(sea->scene, scene), key_parts(KeyPart::Waves)), weather.keys.size());
         weather.keys.push_back({frame, scene.shot.time_s(frame), sea, found.first->second});
         before = std::move(numbers);
     }
@@ -156,7 +292,7 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
         parts.push_back({&key.sea->spectrum, 1.0 / static_cast<double>(weather.keys.size())});
         widen(extent, key.sea->extent);
     }
-    DirectionalSpectrum mean(parts);
+    DirectionalSpectrum mean(parts, Dispersion{scene.sea.depth_m});
     const SecondOrder second = is_on(Effect::SecondOrder, scene) ? second_order(mean) : SecondOrder();
     return std::make_shared<const PreparedScene>(
         PreparedScene{.scene = std::move(scene),

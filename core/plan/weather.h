@@ -9,10 +9,17 @@
 //
 // Everything that must not change from frame to frame is planned for the keys' mean spectrum: wave vectors, cascades' sizes, trains and
 // their directions, where breaking is filtered, and what pairs of waves add. The extent is the largest of the keys'.
+//
+// Choppiness, lean and the gain of the second order are no waves: seas are built with the largest of their keys, and each time has its
+// share of that (DisplacementAt), which is the frame's number, with its rate.
+//
+// Over a depth that changes a mode keeps its wavenumber and has the frequency of the depth of now: its phase is ∫ ω(k, d(s)) ds, between two
+// keys by Gauss's rule over points that the keys alone decide (DepthAt). Until the first key it is that of the first key's depth.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +46,28 @@ struct Weather {
     };
     Blend at(double t_s) const;
 };
+
+// What a time has of the displacement that its shot is planned with. Each with its rate.
+struct DisplacementAt {
+    double share = 1.0, share_per_s = 0.0;  // of the horizontal displacement: the choppiness over the plan's
+    double pairs = 1.0, pairs_per_s = 0.0;  // of what pairs of waves add
+    double lean_rad = 0.0, lean_rad_per_s = 0.0;  // Plan::lean_rad in its place
+};
+// None where no key of waves.choppiness, waves.lean_deg or waves.second_order changes it.
+std::optional<DisplacementAt> displacement_at(const PreparedScene& shot, double t_s);
+
+// Where sea.depth_m has keys: waves go on from what they have turned by at a key, by ω(k, depth) × time of each of these parts.
+struct DepthAt {
+    struct Part {
+        double depth_m, time_s;
+    };
+    std::size_t key = 0;
+    std::vector<Part> parts;
+    double depth_m = 0.0, depth_mps = 0.0;  // of the time, and its rate
+};
+std::optional<DepthAt> depth_at(const PreparedScene& shot, double t_s);
+// The parts of all the way to a key from the one before it.
+std::vector<DepthAt::Part> depth_until(const PreparedScene& shot, std::size_t key);
 
 // The frame that shows a time of the sea, also between two; shot.time_scale > 0.
 double frame_at(const Shot& shot, double t_s);

@@ -218,6 +218,7 @@ struct About {
     bool may_be_infinite = false;
     bool may_have_keys = false;
     bool is_angle = false;
+    bool is_silent_off = false;
     bool is_picture = false;
     bool may_be_mesh = false;
     const char* of_picture = "";

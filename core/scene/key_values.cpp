@@ -167,6 +167,7 @@ Key key_about(const About& about, KeyType type) {
     key.may_be_infinite = about.may_be_infinite;
     key.may_have_keys = about.may_have_keys;
     key.is_angle = about.is_angle;
+    key.is_silent_off = about.is_silent_off;
     key.is_picture = about.is_picture;
     key.may_be_mesh = about.may_be_mesh;
     key.of_picture = about.of_picture;
@@ -263,18 +264,18 @@ KeyValue content_value(const Scene& scene, const Key& key) {
         return value_of(named, key);
     }
     KeyValue value = value_of(scene, key);
-    if (key.path != kObjectsKey) return value;
+    if (key.type != KeyType::Entries) return value;
     auto& entries = std::get<std::vector<KeyEntry>>(value);
-    for (std::size_t i = 0; i < entries.size(); ++i)
+    for (const Key& inner : key.entry_keys)
+        for (KeyEntry& entry : entries)
+            if (inner.is_silent_off)
+                std::erase(entry.values, std::pair(std::string_view(inner.name), inner.fallback));
+    for (std::size_t i = 0; key.path == kObjectsKey && i < entries.size(); ++i)
         for (auto& [name, inner] : entries[i].values) {
             const SceneObject& object = scene.objects[i];
             if (name == "name") inner = object.called();
             if (name == "file") inner = object.mesh ? object.mesh->content() : "";
         }
-    // Off it isn't said, as in records of the time before it.
-    for (KeyEntry& entry : entries)
-        std::erase_if(entry.values,
-                      [](const auto& of) { return of.first == "caustics" && of.second == KeyValue(0.0); });
     return value;
 }
 
@@ -425,8 +426,7 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
         (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
         return false;
     if (key.path == kObjectsKey && scene.objects.empty()) return false;
-    if (key.path == kCoastKey && !scene.waves.coast) return false;
-    if (key.path == kRainKey && key.get(scene) == key.fallback) return false;
+    if (key.is_silent_off && key.get(scene) == key.fallback) return false;
     return (key.key_parts & parts).any();
 }
 

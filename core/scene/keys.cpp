@@ -132,7 +132,8 @@ void add_sea(Built& out) {
                                  .range = limits::kDepth_m,
                                  .soft = SoftRange{1.0, 1e4, true},
                                  .key_parts = kWaves,
-                                 .may_be_infinite = true}),
+                                 .may_be_infinite = true,
+                                 .may_have_keys = true}),
         row<&SeaState::depth_file>(
             {.name = "depth_file",
              .help =
@@ -223,7 +224,8 @@ void add_sea(Built& out) {
              .range = limits::kRain_mm_h,
              .soft = SoftRange{0.0, 50.0},
              .key_parts = kWaves,
-             .may_have_keys = true}),
+             .may_have_keys = true,
+             .is_silent_off = true}),
         entries<&SeaState::swell>(
             {.name = "swell",
              .help = "waves of far storms, each a narrow spectrum of its own",
@@ -265,7 +267,8 @@ void add_waves(Built& out) {
                  "sharpness of the crests; 1 is the trochoid's own, 0 leaves them round, as does less than 0.0001",
              .range = limits::kChoppiness,
              .soft = SoftRange{0.0, 2.0},
-             .key_parts = kWaves}),
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         row<&Waves::lean_deg>(
             {.name = "lean_deg",
              .help =
@@ -274,14 +277,16 @@ void add_waves(Built& out) {
              .unit = "degrees",
              .range = limits::kLean_deg,
              .soft = SoftRange{0.0, 40.0},
-             .key_parts = kWaves}),
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         row<&Waves::second_order>(
             {.name = "second_order",
              .help =
                  "of what pairs of waves add to the surface, with fft: 1 is nature's, which raises the groups of high waves so "
                  "that crests are some 10 % higher than troughs are deep; 0, as high. As the displacement, it goes with choppiness",
              .range = limits::kSecondOrder,
-             .key_parts = kWaves}),
+             .key_parts = kWaves,
+             .may_have_keys = true}),
         entries<&Waves::cascades>(
             {.name = "cascades",
              .help = "the tiles; auto: four, from the spectrum's peak down, and none with trochoid. "
@@ -503,6 +508,7 @@ void add_waves(Built& out) {
                  "as high as the depth lets them be, and neither turn nor shorten. Beyond the map waves are those of depth_m again. There is "
                  "no reflection and no run-up, and no crest overturns",
              .key_parts = kWaves,
+             .is_silent_off = true,
              .of_picture = "sea.depth_file"})));
 }
 
@@ -1106,7 +1112,8 @@ void add_objects(Built& out) {
              .help =
                  "how much waves gather the sun's light that they mirror onto it; 1 is as computed, 0 their mean light, and over 1 the mean rises, as no light is less than none",
              .range = limits::kWaterGain,
-             .soft = SoftRange{0.0, 3.0}}),
+             .soft = SoftRange{0.0, 3.0},
+             .is_silent_off = true}),
         row<&SceneObject::holdout>(
             {.name = "holdout",
              .help =

@@ -113,18 +113,19 @@ struct Key {
     std::string help;
     std::string accepted;  // what a shot file may say: "a number, 0 … 80"
 
-    std::optional<Range> range;        // of the number, or of each one
-    std::optional<SoftRange> soft;     // of a number
-    bool may_be_infinite = false;      // besides what is in the range
-    bool may_have_keys = false;        // a number: NumberKeys do as well
-    bool is_angle = false;             // a number of degrees: between keys it turns the short way
-    bool is_optional = false;          // may be left out, and has no default
-    bool is_required = false;          // in an entry: it has no default
-    bool is_picture = false;           // a text: its fallback, or the path of an .exr in its place
-    bool may_be_mesh = false;          // or of an .obj
-    std::string of_picture;            // of a number that means nothing without it: that text's key
-    std::int64_t least = 0;            // of an integer, or each of two: what its member holds
-    std::int64_t largest = 0;          // likewise
+    std::optional<Range> range;     // of the number, or of each one
+    std::optional<SoftRange> soft;  // of a number
+    bool may_be_infinite = false;   // besides what is in the range
+    bool may_have_keys = false;     // a number: NumberKeys do as well
+    bool is_angle = false;          // a number of degrees: between keys it turns the short way
+    bool is_silent_off = false;  // at its fallback nobody says it: files of before it keep their fingerprints
+    bool is_optional = false;    // may be left out, and has no default
+    bool is_required = false;    // in an entry: it has no default
+    bool is_picture = false;     // a text: its fallback, or the path of an .exr in its place
+    bool may_be_mesh = false;    // or of an .obj
+    std::string of_picture;      // of a number that means nothing without it: that text's key
+    std::int64_t least = 0;      // of an integer, or each of two: what its member holds
+    std::int64_t largest = 0;    // likewise
     std::vector<std::string> choices;  // of words
     std::vector<Key> entry_keys;       // of entries
     std::string entry_name;            // of entries: "Swell"
@@ -170,7 +171,7 @@ inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile
                                   kCameraFile = "camera.file";
 // The list of bodies, whose meshes are as well.
 inline constexpr std::string_view kObjectsKey = "objects", kMasksKey = "waves.masks",
-                                  kCoastKey = "waves.coast", kRainKey = "sea.rain_mm_h";
+                                  kCoastKey = "waves.coast";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);

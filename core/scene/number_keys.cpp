@@ -8,38 +8,90 @@
 
 namespace pelagic {
 
+namespace {
+
+// Between a key and the next.
+class Span {
+  public:
+    Span(const NumberKeys& number, bool is_angle, std::size_t from)
+        : keys_(number.keys),
+          is_angle_(is_angle),
+          is_smooth_(number.interpolation == CameraInterpolation::Smooth),
+          from_(from),
+          frames_(frames(from)),
+          whole_(change(from)) {
+        if (!is_smooth_) return;
+        begins_ = slope(from);
+        ends_ = slope(from + 1);
+    }
+    // At the share t of the frames: what has been added to the first key's value, and how fast that grows, a frame.
+    double added(double t) const {
+        const double u = 1.0 - t;
+        if (!is_smooth_) return t * whole_;
+        return t * t * (3.0 - 2.0 * t) * whole_ + t * u * frames_ * (u * begins_ - t * ends_);
+    }
+    double rate(double t) const {
+        const double u = 1.0 - t;
+        if (!is_smooth_) return whole_ / frames_;
+        return 6.0 * t * u * whole_ / frames_ + u * (u - 2.0 * t) * begins_ - t * (2.0 * u - t) * ends_;
+    }
+    double share(double frame) const { return (frame - keys_[from_].frame) / frames_; }
+
+  private:
+    // In double: the difference of two ints may overflow an int.
+    double frames(std::size_t i) const { return static_cast<double>(keys_[i + 1].frame) - keys_[i].frame; }
+    double change(std::size_t i) const {
+        const double plain = keys_[i + 1].value - keys_[i].value;
+        return is_angle_ ? std::remainder(plain, 360.0) : plain;
+    }
+    // The slope at a key that keeps the cubics monotone: the weighted harmonic mean of the lines' beside it, 0 at a turn (Fritsch and
+    // Butland, SIAM J. Sci. Stat. Comput. 5, 1984), and at the ends.
+    double slope(std::size_t i) const {
+        if (i == 0 || i + 1 == keys_.size()) return 0.0;
+        const double h = frames(i - 1), k = frames(i), a = change(i - 1) / h, b = change(i) / k;
+        if (!(a * b > 0.0)) return 0.0;
+        return 3.0 * (h + k) / ((2.0 * k + h) / a + (k + 2.0 * h) / b);
+    }
+
+    const std::vector<NumberKeys::Key>& keys_;
+    bool is_angle_, is_smooth_;
+    std::size_t from_;
+    double frames_, whole_, begins_ = 0.0, ends_ = 0.0;
+};
+
+// The keys that are not after a frame.
+std::size_t keys_until(const NumberKeys& number, double frame) {
+    const auto after = std::upper_bound(number.keys.begin(), number.keys.end(), frame,
+                                        [](double f, const NumberKeys::Key& key) { return f < key.frame; });
+    return static_cast<std::size_t>(after - number.keys.begin());
+}
+
+}  // namespace
+
 double value_at(const NumberKeys& number, bool is_angle, double frame) {
     const auto& keys = number.keys;
-    const auto after = std::upper_bound(keys.begin(), keys.end(), frame,
-                                        [](double f, const NumberKeys::Key& key) { return f < key.frame; });
-    if (after == keys.begin()) return after->value;
-    const auto from = static_cast<std::size_t>(after - keys.begin()) - 1;
-    if (after == keys.end() || frame == keys[from].frame) return keys[from].value;
-    // In double: the difference of two ints may overflow an int.
-    const auto frames = [&](std::size_t i) { return static_cast<double>(keys[i + 1].frame) - keys[i].frame; };
-    const auto change = [&](std::size_t i) {
-        const double plain = keys[i + 1].value - keys[i].value;
-        return is_angle ? std::remainder(plain, 360.0) : plain;
-    };
-    const double t = (frame - keys[from].frame) / frames(from), whole = change(from);
-    double share = t * whole;
-    if (number.interpolation == CameraInterpolation::Smooth) {
-        // The slope at a key that keeps the cubics monotone: the weighted harmonic mean of the lines' beside it, 0 at a turn (Fritsch and
-        // Butland, SIAM J. Sci. Stat. Comput. 5, 1984), and at the ends.
-        const auto slope = [&](std::size_t i) {
-            if (i == 0 || i + 1 == keys.size()) return 0.0;
-            const double h = frames(i - 1), k = frames(i), a = change(i - 1) / h, b = change(i) / k;
-            if (!(a * b > 0.0)) return 0.0;
-            return 3.0 * (h + k) / ((2.0 * k + h) / a + (k + 2.0 * h) / b);
-        };
-        const double u = 1.0 - t, span = frames(from);
-        share = t * t * (3.0 - 2.0 * t) * whole + t * u * span * (u * slope(from) - t * slope(from + 1));
-    }
-    const double value = keys[from].value + share;
+    const std::size_t until = keys_until(number, frame);
+    if (until == 0) return keys.front().value;
+    const std::size_t from = until - 1;
+    if (until == keys.size() || frame == keys[from].frame) return keys[from].value;
+    const Span span(number, is_angle, from);
+    const double value = keys[from].value + span.added(span.share(frame));
     if (is_angle) return value;
     // Rounding must not leave the keys' values, which may be a limit.
-    const auto [low, high] = std::minmax(keys[from].value, keys[from + 1].value);
+    const auto [low, high] = std::minmax(keys[from].value, keys[until].value);
     return std::clamp(value, low, high);
+}
+
+double rate_at(const NumberKeys& number, bool is_angle, double frame) {
+    const std::size_t until = keys_until(number, frame);
+    if (until == 0) return 0.0;
+    const bool is_last = until == number.keys.size();
+    const double after = is_last ? 0.0 : Span(number, is_angle, until - 1).rate(0.0);
+    if (frame == number.keys[until - 1].frame)
+        return 0.5 * (after + (until < 2 ? 0.0 : Span(number, is_angle, until - 2).rate(1.0)));
+    if (is_last) return 0.0;
+    const Span span(number, is_angle, until - 1);
+    return span.rate(span.share(frame));
 }
 
 Scene scene_at(const Scene& scene, double frame) {
@@ -70,10 +122,7 @@ void refuse_keys(const Scene& scene, std::string_view table) {
 }
 
 std::string why_no_keys(std::string_view path) {
-    if (path == "sea.depth_m") return ": waves keep their frequencies, and another depth has others";
     if (path == "sea.gust_size_m") return ": patches far away would race over the sea as they grow";
-    if (path == "waves.choppiness" || path == "waves.lean_deg" || path == "waves.second_order")
-        return ": where waves break, what that leaves and all bounds are those of one displacement";
     if (path.find("[]") != std::string_view::npos || path.starts_with("shot.") ||
         path.starts_with("quality.") || path.starts_with("output."))
         return ": it is one for the whole shot";

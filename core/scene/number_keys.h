@@ -12,6 +12,8 @@ namespace pelagic {
 // on a C1 cubic that stays between their values and stands still at the first and the last key. Of an angle [degrees] by the shorter of
 // the two ways from key to key.
 double value_at(const NumberKeys& number, bool is_angle, double frame);
+// How fast it changes there, a frame; at a corner the mean of both sides.
+double rate_at(const NumberKeys& number, bool is_angle, double frame);
 
 // The scene of a frame, without keys. Those of camera.keys stay: they are poses (core/surface/view.h).
 Scene scene_at(const Scene& scene, double frame);

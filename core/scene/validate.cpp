@@ -552,6 +552,35 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
     }
 }
 
+// What takes one depth for all times.
+template <class Refuse>
+void check_keyed_depth(const Scene& scene, const KeyedNumber& depth, const Refuse& refuse) {
+    constexpr double kMost = 16.0;  // times between two keys, by which ω is still integrated to 1e-4
+    const auto& keys = depth.keys.keys;
+    if (std::ranges::any_of(keys, [](const NumberKeys::Key& key) { return std::isinf(key.value); }))
+        return refuse("goes to water without a floor, and no depth is between",
+                      "keys of finite depths: 1000 is deep for all waves");
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i)
+        if (const auto [low, high] = std::minmax(keys[i].value, keys[i + 1].value); high > kMost * low)
+            refuse("changes more than " + number_text(kMost) + " times from frame " +
+                       std::to_string(keys[i].frame) + " to " + std::to_string(keys[i + 1].frame) +
+                       ", too much for the phases of waves",
+                   "a key between");
+    const Waves& waves = scene.waves;
+    if (waves.second_order > 0.0 && waves.model == WaveModel::Fft)
+        refuse("changes, and what pairs of waves add is worked out for one depth",
+               "a number, or waves.second_order = 0");
+    if (!waves.vessels.empty())
+        refuse("changes, and wakes are worked out for one depth", "a number, or no waves.vessels");
+    if (scene.sea.depth_file != SeaState{}.depth_file)
+        refuse("changes, and the floor of sea.depth_file stays", "a number, or no sea.depth_file");
+    if (std::ranges::any_of(scene.objects, [](const SceneObject& object) {
+            return object.floats && object.buoyancy == Buoyancy::Response;
+        }))
+        refuse("changes, and objects[].buoyancy = \"response\" answers waves of one depth",
+               "a number, or objects[].buoyancy = \"plane\"");
+}
+
 void check_keyed(SceneChecker& check, const Scene& scene) {
     for (const KeyedNumber& number : scene.keyed)
         if (const auto entry = entry_of(number.path))
@@ -570,6 +599,12 @@ void check_keyed(SceneChecker& check, const Scene& scene) {
                    is_swell = table_key(number) == "sea.swell" && number.path.ends_with(".direction_deg");
         if ((is_wind || is_swell) && scene.waves.model == WaveModel::Trochoid)
             refuse("changes, and a train keeps its direction", "a number, or waves.model = \"fft\"");
+        if (number.path == "sea.depth_m") check_keyed_depth(scene, number, refuse);
+        const auto has_own = [](const CascadeSize& cascade) { return cascade.choppiness.has_value(); };
+        if (number.path == "waves.choppiness" && scene.waves.model == WaveModel::Fft &&
+            std::ranges::any_of(scene.waves.cascades, has_own))
+            refuse("changes, and waves.cascades[].choppiness is one for the whole shot",
+                   "a number, or cascades without a choppiness of their own");
         if (is_wind && scene.effects.whitecaps && scene.effects.spray)
             refuse("changes, and spray is torn along one wind", "a number, or effects.spray = false");
     }

@@ -40,8 +40,8 @@ DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea, std::span<const Ba
     add_up();
 }
 
-DirectionalSpectrum::DirectionalSpectrum(std::span<const Part> parts)
-    : dispersion_(parts.front().sea->dispersion()) {
+DirectionalSpectrum::DirectionalSpectrum(std::span<const Part> parts, const Dispersion& dispersion)
+    : dispersion_(dispersion) {
     for (const Part& part : parts)
         for (const WaveSystem& system : part.sea->systems()) systems_.push_back(system.scaled(part.share));
     add_up();

@@ -25,12 +25,12 @@ class DirectionalSpectrum {
     // SeaState that validate() accepts gives a finite spectrum. No wind and no swell: empty().
     explicit DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains = {});
 
-    // The sum of these shares (≥ 0) of seas of one depth; at least one.
+    // The sum of these shares (≥ 0) of seas; at least one. Over this depth: of seas of another one, their frequencies.
     struct Part {
         const DirectionalSpectrum* sea;
         double share;
     };
-    explicit DirectionalSpectrum(std::span<const Part> parts);
+    DirectionalSpectrum(std::span<const Part> parts, const Dispersion& dispersion);
 
     bool empty() const { return systems_.empty(); }
     bool is_calm() const;              // no waves but the rings of rain, whose peaks don't count

@@ -143,12 +143,14 @@ EllipseMoments::EllipseMoments(const Plan& plan, const Query& query)
                       [&](int i) { node(i / (kRatios - 1), i % (kRatios - 1) + 1); });
 }
 
-EllipseMoments::EllipseMoments(const EllipseMoments& first, const EllipseMoments& second, double share)
+EllipseMoments::EllipseMoments(const EllipseMoments& first, const EllipseMoments& second, double share,
+                               double gradients)
     : widths_(first.widths_), values_(first.values_.size()) {
     for (std::size_t i = 0; i < values_.size(); ++i)
         for (std::size_t m = 0; m < values_[i].size(); ++m)
-            values_[i][m] = static_cast<float>((1.0 - share) * static_cast<double>(first.values_[i][m]) +
-                                               share * static_cast<double>(second.values_[i][m]));
+            values_[i][m] = static_cast<float>((m < kUnresolvedSlopes ? 1.0 : gradients) *
+                                               ((1.0 - share) * static_cast<double>(first.values_[i][m]) +
+                                                share * static_cast<double>(second.values_[i][m])));
 }
 
 UnresolvedMoments<double> EllipseMoments::unresolved(double level, double ratio, double direction) const {

@@ -19,8 +19,8 @@ class EllipseMoments {
   public:
     EllipseMoments() = default;  // nothing is unresolved
     EllipseMoments(const Plan& plan, const Query& query);
-    // Between two of one plan and query.
-    EllipseMoments(const EllipseMoments& first, const EllipseMoments& second, double share);
+    // Between two of one plan and query; displacement gradients' times `gradients`.
+    EllipseMoments(const EllipseMoments& first, const EllipseMoments& second, double share, double gradients);
 
     bool empty() const { return values_.empty(); }
     // Linear between the table's nodes (EllipseTable). level: the lower level's number plus the share of the next.

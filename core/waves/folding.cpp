@@ -375,30 +375,40 @@ std::vector<std::string> still_warnings(const PreparedScene& prepared) {
     return warnings;
 }
 
-// What makes a sea's waves, but for rain.
+// What makes a sea's waves, but for rain, and for how far they displace it.
 std::string dry_waves(const PreparedScene& prepared) {
     Scene scene = prepared.scene;
-    scene.sea.rain_mm_h = 0.0;
+    scene.sea.rain_mm_h = scene.waves.choppiness = scene.waves.lean_deg = scene.waves.second_order = 0.0;
     return canonical(scene, key_parts(KeyPart::Waves));
 }
 
 // Of a sea that changes: those of its keys, and keys between which it changes faster than seas do.
 std::vector<std::string> weather_warnings(const Weather& weather) {
-    constexpr double kPeriods =
-        10.0;  // of the longest peak: 6 % of the water's speed is then the amplitudes' own change
+    // Of the longest peak: 6 % of the water's speed is then the amplitudes' own change. Of choppiness that comes from nothing 1, with 16 % of
+    // that to the side.
+    constexpr double kPeriods = 10.0;
     std::vector<std::string> warnings;
     for (const Weather::Key& key : weather.keys)
         for (const std::string& warning : still_warnings(*key.sea))
             warnings.push_back("at frame " + std::to_string(key.frame) + ' ' + warning);
     for (std::size_t i = 0; i + 1 < weather.keys.size(); ++i) {
         const Weather::Key &key = weather.keys[i], &next = weather.keys[i + 1];
-        if (key.waves == next.waves || dry_waves(*key.sea) == dry_waves(*next.sea))
-            continue;  // a shower may be short
         double period_s = 0.0;
         for (const DirectionalSpectrum* of : {&key.sea->spectrum, &next.sea->spectrum})
             if (!of->is_calm())
                 period_s = std::max(period_s, kTwoPi / of->dispersion().omega(of->longest_peak_wavenumber()));
-        const double lasts_s = next.time_s - key.time_s;
+        const double lasts_s = next.time_s - key.time_s, before = key.sea->scene.waves.choppiness,
+                     after = next.sea->scene.waves.choppiness,
+                     enough_s = period_s * std::abs(after - before) /
+                                std::max({before, after, Choppiness::kLeastShown});
+        if (lasts_s < enough_s)
+            warnings.push_back("from frame " + std::to_string(key.frame) + " to " +
+                               std::to_string(next.frame) + " waves.choppiness changes within " +
+                               number_text(std::round(10.0 * lasts_s) / 10.0) +
+                               " s of the sea's time, and water is seen to be pushed aside; keys " +
+                               number_text(std::ceil(enough_s)) + " s apart push it slowly");
+        if (key.waves == next.waves || dry_waves(*key.sea) == dry_waves(*next.sea))
+            continue;  // a shower may be short
         if (lasts_s < kPeriods * period_s)
             warnings.push_back("from frame " + std::to_string(key.frame) + " to " +
                                std::to_string(next.frame) + " the sea changes within " +

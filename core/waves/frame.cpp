@@ -42,11 +42,15 @@ const T* from(const Buffer<T>& buffer, std::size_t at) {
     return buffer.empty() ? nullptr : buffer.data() + at;
 }
 
-// Whether somebody asks for a horizontal field of a cascade whose displacement runs ahead.
-bool leans(const Plan& plan, int cascade) {
-    return plan.lean_rad > 0.0 && !plan.cascades[cascade].vessel &&
-           std::any_of(plan.cascades[cascade].grids.begin(), plan.cascades[cascade].grids.end(),
+// Whether somebody asks for a horizontal field of a cascade.
+bool is_displaced(const CascadePlan& cascade) {
+    return std::any_of(cascade.grids.begin(), cascade.grids.end(),
                        [](const Grid& grid) { return (grid.fields & horizontal_fields()).any(); });
+}
+
+// The same of one whose displacement runs ahead, at some time.
+bool leans(const Plan& plan, int cascade) {
+    return plan.lean_rad > 0.0 && !plan.cascades[cascade].vessel && is_displaced(plan.cascades[cascade]);
 }
 
 // A wave that runs ahead by an angle is cosine times itself plus later() times its rate.
@@ -98,7 +102,7 @@ long sum_of_each(const std::vector<Item>& items, Work&& work) {
 template <class T>
 struct Frame<T>::Scratch {
     // By mode of a block: of the waves, with what pairs of them add, and as their horizontal displacement has them.
-    Heights waves, vertical, leaning;
+    Heights waves, vertical, displaced;
     Heights growing;  // with their amplitudes' rates in the place of their amplitudes
     Buffer<T> through, chop_through;
     Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
@@ -303,7 +307,7 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
         };
         want_heights(scratch.waves, moves || plan.lean_rad > 0.0);
         if (second_order_) want_heights(scratch.vertical, moves);
-        if (plan.lean_rad > 0.0) want_heights(scratch.leaning, moves);
+        if (plan.lean_rad > 0.0 || shot_) want_heights(scratch.displaced, moves);
         if (shot_ && moves) want_heights(scratch.growing, true);
         want({&scratch.lines}, kBlockColumns * line_values_);
         want({&scratch.line}, line_values_);  // allocated last: the check above relies on it
@@ -351,15 +355,15 @@ void Frame<T>::grow(const Block& block, Scratch& at) const {
                       .height_im = at.growing.im.data(),
                       .rate_re = at.growing.rate_re.data(),
                       .rate_im = at.growing.rate_im.data()});
-    const Turned<T> turned = turned_by<T>(sea_->plan().lean_rad);
+    const Turned<T> turned = turned_by<T>(lean_rad());
     const bool is_leaning = leans(sea_->plan(), block.cascade);
     for (std::size_t i = 0; i < count; ++i) {
         at.waves.rate_re[i] += at.growing.re[i];
         at.waves.rate_im[i] += at.growing.im[i];
         if (!is_leaning) continue;
         const T later = turned.later(cascade.cycles_per_s[first + i]);
-        at.leaning.rate_re[i] += turned.cosine * at.growing.re[i] + later * at.growing.rate_re[i];
-        at.leaning.rate_im[i] += turned.cosine * at.growing.im[i] + later * at.growing.rate_im[i];
+        at.displaced.rate_re[i] += turned.cosine * at.growing.re[i] + later * at.growing.rate_re[i];
+        at.displaced.rate_im[i] += turned.cosine * at.growing.im[i] + later * at.growing.rate_im[i];
     }
 }
 
@@ -375,16 +379,22 @@ void Frame<T>::add_second_order(const Block& block, Scratch& at) const {
         std::copy_n(at.waves.rate_re.data(), count, at.vertical.rate_re.data());
         std::copy_n(at.waves.rate_im.data(), count, at.vertical.rate_im.data());
     }
+    const std::optional<DisplacementAt>& displacement = sea_->displacement();
+    const T share = displacement ? static_cast<T>(displacement->pairs) : T(1),
+            share_per_s = displacement ? static_cast<T>(displacement->pairs_per_s) : T(0);
     const int end = std::min(block.first_mx + block.columns, second_order_->radius());
     for (int mx = block.first_mx; mx < end; ++mx) {
         const PairModes<T> pairs = second_order_->column(mx);
         const std::size_t to = cascade.middle(mx) - first - static_cast<std::size_t>(pairs.half_height);
         for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(pairs.half_height) + 1; ++i) {
-            at.vertical.re[to + i] += pairs.height_re[i];
-            at.vertical.im[to + i] += pairs.height_im[i];
+            at.vertical.re[to + i] += share * pairs.height_re[i];
+            at.vertical.im[to + i] += share * pairs.height_im[i];
             if (!pairs.rate_re) continue;
-            at.vertical.rate_re[to + i] += pairs.rate_re[i];
-            at.vertical.rate_im[to + i] += pairs.rate_im[i];
+            at.vertical.rate_re[to + i] += share * pairs.rate_re[i];
+            at.vertical.rate_im[to + i] += share * pairs.rate_im[i];
+            if (share_per_s == T(0)) continue;
+            at.vertical.rate_re[to + i] += share_per_s * pairs.height_re[i];
+            at.vertical.rate_im[to + i] += share_per_s * pairs.height_im[i];
         }
     }
 }
@@ -395,10 +405,10 @@ void Frame<T>::lean(const Block& block, Scratch& at) const {
     const Cascade<T>& cascade = sea_->cascades()[block.cascade];
     const std::size_t first = cascade.columns[block.first_mx];
     const std::size_t count = cascade.columns[block.first_mx + block.columns] - first;
-    const Turned<T> turned = turned_by<T>(sea_->plan().lean_rad);
+    const Turned<T> turned = turned_by<T>(lean_rad());
     const T cosine = turned.cosine, sine = turned.sine;
     const Heights& from = at.waves;
-    Heights& to = at.leaning;
+    Heights& to = at.displaced;
     for (std::size_t i = 0; i < count; ++i) {
         const T omega = static_cast<T>(kTwoPi * cascade.cycles_per_s[first + i]);
         const T later = turned.later(cascade.cycles_per_s[first + i]);
@@ -407,6 +417,43 @@ void Frame<T>::lean(const Block& block, Scratch& at) const {
         if (to.rate_re.empty()) continue;
         to.rate_re[i] = cosine * from.rate_re[i] - sine * omega * from.re[i];
         to.rate_im[i] = cosine * from.rate_im[i] - sine * omega * from.im[i];
+    }
+    const double turns_by = sea_->displacement() ? sea_->displacement()->lean_rad_per_s : 0.0;
+    if (turns_by == 0.0 || to.rate_re.empty()) return;
+    const Turned<T> quarter{T(0), T(1)};  // the angle's own change
+    for (std::size_t i = 0; i < count; ++i) {
+        const T by = static_cast<T>(turns_by), later = quarter.later(cascade.cycles_per_s[first + i]);
+        to.rate_re[i] += by * (cosine * later * from.rate_re[i] - sine * from.re[i]);
+        to.rate_im[i] += by * (cosine * later * from.rate_im[i] - sine * from.im[i]);
+    }
+}
+
+template <class T>
+double Frame<T>::lean_rad() const {
+    return sea_->displacement() ? sea_->displacement()->lean_rad : sea_->plan().lean_rad;
+}
+
+template <class T>
+void Frame<T>::press(const Block& block, Scratch& at) const {
+    const Plan& plan = sea_->plan();
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const std::size_t first = cascade.columns[block.first_mx],
+                      count = cascade.columns[block.first_mx + block.columns] - first;
+    const std::optional<DisplacementAt>& displacement = sea_->displacement();
+    const T share = displacement ? static_cast<T>(displacement->share) : T(1),
+            share_per_s = displacement ? static_cast<T>(displacement->share_per_s) : T(0);
+    const Heights& from = leans(plan, block.cascade) ? at.displaced : at.waves;
+    Heights& to = at.displaced;
+    if (plan.cascades[block.cascade].moves())
+        for (std::size_t i = 0; i < count; ++i) {
+            const T grows =
+                cascade.widening.empty() ? share_per_s : share_per_s + share * cascade.widening[first + i];
+            to.rate_re[i] = share * from.rate_re[i] + grows * from.re[i];
+            to.rate_im[i] = share * from.rate_im[i] + grows * from.im[i];
+        }
+    for (std::size_t i = 0; i < count; ++i) {
+        to.re[i] = share * from.re[i];
+        to.im[i] = share * from.im[i];
     }
 }
 
@@ -422,6 +469,8 @@ long Frame<T>::transform_columns(const Block& block) {
     const bool is_leaning = leans(plan, block.cascade);
     if (is_leaning) lean(block, at);
     if (!cascade.growth[0].empty()) grow(block, at);
+    const bool is_pressed = (sea_->displacement() || !cascade.widening.empty()) && is_displaced(planned);
+    if (is_pressed) press(block, at);
     const bool has_pairs = second_order_ && second_order_->cascade() == block.cascade;
     if (has_pairs) add_second_order(block, at);
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
@@ -454,9 +503,9 @@ long Frame<T>::transform_columns(const Block& block) {
         for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
             if (!grid.fields[f] || grid.along_x[f]) continue;
             // The horizontal displacement has no second order: where points stand at rest is chosen so.
-            const Heights& heights = has_pairs && vertical_fields()[f]      ? at.vertical
-                                     : is_leaning && horizontal_fields()[f] ? at.leaning
-                                                                            : at.waves;
+            const Heights& heights = has_pairs && vertical_fields()[f]                      ? at.vertical
+                                     : (is_leaning || is_pressed) && horizontal_fields()[f] ? at.displaced
+                                                                                            : at.waves;
             for (int column = 0; column < columns; ++column) {
                 const int mx = block.first_mx + column;
                 const std::size_t m = middle(column);

@@ -106,10 +106,13 @@ class Frame {
     void advance(const Block&, Scratch&) const;
     // Adds what pairs of waves add to the heights and their rates, beside those of the waves themselves.
     void add_second_order(const Block&, Scratch&) const;
-    // Turns their phases by Plan::lean_rad for the horizontal displacement.
+    // Turns their phases by lean_rad() for the horizontal displacement.
     void lean(const Block&, Scratch&) const;
+    double lean_rad() const;  // of the time
     // Adds what the amplitudes' own rates are of theirs, leaning where they do.
     void grow(const Block&, Scratch&) const;
+    // Leaves the horizontal displacement the share of the planned one that the sea has, with its rate.
+    void press(const Block&, Scratch&) const;
     // Both return the number of 1-D transforms.
     long transform_columns(const Block&);
     long transform_rows(const Rows&);

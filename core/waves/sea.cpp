@@ -133,15 +133,63 @@ Cascade<T> blended(const Cascade<T>& first, const Cascade<T>& second, double sha
     return cascade;
 }
 
+// Gives modes the frequencies and the displacement of a depth, and turns their amplitudes so that at its time they are where they have come to.
+template <class T>
+void turn(Cascade<T>& cascade, const CascadePlan& planned, const OverDepth& over,
+          const Buffer<double>& turns) {
+    const ModeKernels<T> kernels = mode_kernels<T>();
+    const double step = kTwoPi / cascade.size_m;
+    const bool widens = planned.moves() && !cascade.chop.empty() && over.depth_mps != 0.0;
+    if (widens) cascade.widening = Buffer<T>::uncleared(cascade.modes());
+    tbb::parallel_for(0, cascade.radius, [&](int mx) {
+        const std::size_t at = cascade.columns[mx], end = cascade.columns[mx + 1];
+        const int first_my = -half_height(cascade.radius, mx);
+        kernels.frequencies({.mx = mx,
+                             .first_my = first_my,
+                             .count = end - at,
+                             .step = step,
+                             .dispersion = {over.depth_m},
+                             .loop_s = 0.0,
+                             .choppiness = planned.choppiness,
+                             .cycles_per_s = cascade.cycles_per_s.data() + at,
+                             .chop = cascade.chop.empty() ? nullptr : cascade.chop.data() + at});
+        for (std::size_t i = at; i < end; ++i) {
+            const double angle =
+                kTwoPi * (turns[i] - fraction_of_product(cascade.cycles_per_s[i], over.time_s));
+            const T cosine = static_cast<T>(std::cos(angle)), sine = static_cast<T>(std::sin(angle));
+            const auto turn_one = [&](T& re, T& im, T by) {
+                const T before = re;
+                re = cosine * re - by * im;
+                im = cosine * im + by * before;
+            };
+            turn_one(cascade.forward_re[i], cascade.forward_im[i], -sine);
+            turn_one(cascade.backward_re[i], cascade.backward_im[i], sine);
+            if (!cascade.growth[0].empty()) {
+                turn_one(cascade.growth[0][i], cascade.growth[1][i], -sine);
+                turn_one(cascade.growth[2][i], cascade.growth[3][i], sine);
+            }
+            if (!widens) continue;
+            const double k = step * std::hypot(mx, first_my + static_cast<int>(i - at));
+            cascade.widening[i] =
+                k > 0.0 ? static_cast<T>(over.ratio_per_s(k) * std::tanh(k * over.depth_m)) : T(0);
+        }
+    });
+}
+
 SpectralMoments between(SpectralMoments first, SpectralMoments second, double share) {
     return (first *= 1.0 - share) += second *= share;
 }
 
-// Of a sea whose moments are these.
-Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const FoamLife& life) {
+// The share of the planned displacement.
+double share_of(const std::optional<DisplacementAt>& displacement) {
+    return displacement ? displacement->share : 1.0;
+}
+
+// Of a sea whose moments are these, and which has this share of the planned displacement.
+Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const FoamLife& life, double share) {
     const bool third = plan.knobs.third_moment;
     const double law = law_coverage(plan.from->scene),
-                 choppiness = mean_choppiness(plan.from->spectrum, plan.breaking);
+                 choppiness = share * mean_choppiness(plan.from->spectrum, plan.breaking);
     Whitecaps found{.threshold = calibrated_threshold(total, law, choppiness, third, life)};
     const auto j = jacobian_moments<double>(0.0, 0.0, 0.0, 0.0,
                                             {total.xxxx, total.xxxy, total.xxyy, total.xyyy, total.yyyy});
@@ -341,38 +389,82 @@ void Sea<T>::raise_heroes() {
 
 template <class T>
 Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
-            std::shared_ptr<const PreparedScene> from)
-    : plan_(first.plan_), loop_s_(first.loop_s_) {
+            std::shared_ptr<const PreparedScene> from, const std::optional<DisplacementAt>& displacement,
+            const OverDepth* over)
+    : plan_(first.plan_), loop_s_(first.loop_s_), displacement_(displacement) {
     plan_.from = std::move(from);
-    if (plan_.trains) {
-        trains_ = blended(first.trains_, second.trains_, share, rate_per_s, *plan_.from, plan_.breaking);
-        total_ = pelagic::total(trains_);
-    } else {
-        total_ = between(first.total_, second.total_, share);
-    }
+    total_ = total_between(first, second, share, rate_per_s, plan_, displacement, over, &trains_);
+    const double gradients = share_of(displacement) * share_of(displacement);
     whitecaps_ = whitecaps(foam_life(plan_));
     slick_ = between(first.slick_, second.slick_, share);
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
         const QueryStatistics &a = first.statistics_[q], &b = second.statistics_[q];
         QueryStatistics& made = statistics_.emplace_back();
-        made.whole = plan_.queries[q].query.only_cascade ? between(a.whole, b.whole, share) : total_;
+        const auto now = [&](const SpectralMoments& before, const SpectralMoments& after) {
+            return between(before, after, share).scale_gradients(gradients);
+        };
+        made.whole = plan_.queries[q].query.only_cascade ? now(a.whole, b.whole) : total_;
         for (std::size_t i = 0; i < a.resolved.size(); ++i)
-            made.resolved.push_back(between(a.resolved[i], b.resolved[i], share));
+            made.resolved.push_back(now(a.resolved[i], b.resolved[i]));
         for (std::size_t i = 0; i < a.resolved_next.size(); ++i)
-            made.resolved_next.push_back(between(a.resolved_next[i], b.resolved_next[i], share));
-        ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share);
+            made.resolved_next.push_back(now(a.resolved_next[i], b.resolved_next[i]));
+        ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share, gradients);
     }
     for (std::size_t c = 0; c < plan_.cascades.size(); ++c)
         expected_m0_.push_back((1.0 - share) * first.expected_m0_[c] + share * second.expected_m0_[c]);
-    if (first.cascades_ == second.cascades_) {
+    if (first.cascades_ == second.cascades_ && !over) {
         cascades_ = first.cascades_;
         return;
     }
     std::vector<Cascade<T>> cascades;
-    for (std::size_t c = 0; c < plan_.cascades.size(); ++c)
+    for (std::size_t c = 0; c < plan_.cascades.size(); ++c) {
         cascades.push_back(blended((*first.cascades_)[c], (*second.cascades_)[c], share, rate_per_s,
                                    plan_.cascades[c].moves()));
+        if (over) turn(cascades.back(), plan_.cascades[c], *over, over->turns.modes[c]);
+    }
     cascades_ = std::make_shared<const std::vector<Cascade<T>>>(std::move(cascades));
+}
+
+template <class T>
+Turns Sea<T>::turned(const Turns* before, std::span<const DepthAt::Part> parts) const {
+    Turns turns;
+    const ModeKernels<T> kernels = mode_kernels<T>();
+    for (std::size_t c = 0; c < cascades_->size(); ++c) {
+        const Cascade<T>& cascade = (*cascades_)[c];
+        Buffer<double>& to = turns.modes.emplace_back(cascade.modes());
+        if (before) std::copy_n(before->modes[c].data(), cascade.modes(), to.data());
+        tbb::parallel_for(0, cascade.radius, [&](int mx) {
+            const std::size_t at = cascade.columns[mx], count = cascade.columns[mx + 1] - at;
+            Buffer<double> cycles_per_s(count);
+            for (const DepthAt::Part& part : parts) {
+                kernels.frequencies({.mx = mx,
+                                     .first_my = -half_height(cascade.radius, mx),
+                                     .count = count,
+                                     .step = kTwoPi / cascade.size_m,
+                                     .dispersion = {part.depth_m},
+                                     .loop_s = 0.0,
+                                     .choppiness = 0.0,
+                                     .cycles_per_s = cycles_per_s.data(),
+                                     .chop = nullptr});
+                // The only part may be a long time; one of several is within two keys.
+                if (parts.size() == 1)
+                    for (std::size_t i = 0; i < count; ++i)
+                        to[at + i] += fraction_of_product(cycles_per_s[i], part.time_s);
+                else
+                    for (std::size_t i = 0; i < count; ++i) to[at + i] += cycles_per_s[i] * part.time_s;
+            }
+            for (std::size_t i = at; i < at + count; ++i) to[i] -= std::round(to[i]);
+        });
+    }
+    turns.trains = before ? before->trains : std::vector<double>(trains_.count());
+    for (std::size_t i = 0; i < trains_.count(); ++i) {
+        double& to = turns.trains[i];
+        for (const DepthAt::Part& part : parts)
+            to += fraction_of_product(
+                Dispersion{part.depth_m}.omega(kTwoPi / trains_.wavelength_m[i]) / kTwoPi, part.time_s);
+        to -= std::round(to);
+    }
+    return turns;
 }
 
 template <class T>
@@ -383,19 +475,38 @@ Sea<T>::Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from) : Sea(w
 
 template <class T>
 Whitecaps Sea<T>::whitecaps(const FoamLife& life) const {
-    return whitecaps_of(plan_, total_, life);
+    return whitecaps_of(plan_, total_, life, share_of(displacement_));
+}
+
+template <class T>
+SpectralMoments Sea<T>::total_between(const Sea& first, const Sea& second, double share, double rate_per_s,
+                                      const Plan& plan, const std::optional<DisplacementAt>& displacement,
+                                      const OverDepth* over, Trains<T>* made) {
+    const double displaced = share_of(displacement);
+    if (!plan.trains)
+        return between(first.total_, second.total_, share).scale_gradients(displaced * displaced);
+    Trains<T> trains = blended(
+        first.trains_, second.trains_,
+        {.share = share,
+         .rate_per_s = rate_per_s,
+         .choppiness = displaced * plan.choppiness.largest(),
+         .choppiness_per_s = displacement ? displacement->share_per_s * plan.choppiness.largest() : 0.0,
+         .breaking = displaced,
+         .over = over},
+        plan.from->spectrum.dispersion(), plan.breaking);
+    const SpectralMoments total = pelagic::total(trains);
+    if (made) *made = std::move(trains);
+    return total;
 }
 
 template <class T>
 Whitecaps Sea<T>::whitecaps_between(const Sea& first, const Sea& second, double share,
-                                    std::shared_ptr<const PreparedScene> from) {
+                                    std::shared_ptr<const PreparedScene> from,
+                                    const std::optional<DisplacementAt>& displacement) {
     Plan plan = first.plan_;
     plan.from = std::move(from);
-    const SpectralMoments total =
-        plan.trains
-            ? pelagic::total(blended(first.trains_, second.trains_, share, 0.0, *plan.from, plan.breaking))
-            : between(first.total_, second.total_, share);
-    return whitecaps_of(plan, total, foam_life(plan));
+    const SpectralMoments total = total_between(first, second, share, 0.0, plan, displacement);
+    return whitecaps_of(plan, total, foam_life(plan), share_of(displacement));
 }
 
 template <class T>

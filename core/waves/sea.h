@@ -12,6 +12,7 @@
 #include "core/base/build_watch.h"
 #include "core/plan/extent.h"
 #include "core/plan/plan.h"
+#include "core/plan/weather.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/spectrum/spectrum_table.h"
 #include "core/waves/coast.h"
@@ -38,6 +39,7 @@ struct Cascade {
     Buffer<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
     // Of amplitudes that change: their rates [m/s], parallel to the four above; empty where they don't, or nobody asks for velocities.
     std::array<Buffer<T>, 4> growth;
+    Buffer<T> widening;  // likewise of chop, over it [1/s]
 
     std::size_t modes() const { return cycles_per_s.size(); }
     std::size_t held_bytes() const {
@@ -82,9 +84,14 @@ class Sea {
                  std::shared_ptr<const Coast<T>> coast = nullptr);
     // Of a scene that has the same waves: they are shared.
     Sea(const Sea& waves, std::shared_ptr<const PreparedScene> from);
-    // Between two of one plan, which `from` takes the place of the scene of: energies in shares, that of `second` with its rate [1/s].
+    // Between two of one plan, which `from` takes the place of the scene of: energies in shares, that of `second` with its rate [1/s];
+    // of another displacement than planned, and over another depth, if there are.
     Sea(const Sea& first, const Sea& second, double share, double rate_per_s,
-        std::shared_ptr<const PreparedScene> from);
+        std::shared_ptr<const PreparedScene> from, const std::optional<DisplacementAt>& displacement,
+        const OverDepth* over);
+
+    // What its waves have turned by since `before` (nothing: by nothing), over these depths.
+    Turns turned(const Turns* before, std::span<const DepthAt::Part> parts) const;
 
     const Plan& plan() const { return plan_; }
     const std::shared_ptr<const SpectrumTable>& spectrum_table() const { return table_; }
@@ -99,6 +106,8 @@ class Sea {
                       : coast_foam(*plan_.masks->surf, place_m, height_m, cell_m, plan_.filter);
     }
     double loop_s() const { return loop_s_; }
+    // Where it isn't as planned, which the cascades' chop is: Frame has the share of their horizontal displacement.
+    const std::optional<DisplacementAt>& displacement() const { return displacement_; }
     // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
@@ -114,7 +123,8 @@ class Sea {
     Whitecaps whitecaps(const FoamLife& life) const;
     // What a sea between two, as above, has for its own.
     static Whitecaps whitecaps_between(const Sea& first, const Sea& second, double share,
-                                       std::shared_ptr<const PreparedScene> from);
+                                       std::shared_ptr<const PreparedScene> from,
+                                       const std::optional<DisplacementAt>& displacement);
     double whitecap_threshold() const { return whitecaps_.threshold; }
     const std::optional<Gusts>& gusts() const { return whitecaps_.gusts; }
     double foam_left_per_s() const { return whitecaps_.left_per_s; }
@@ -128,6 +138,10 @@ class Sea {
 
   private:
     class Progress;
+    // total() of a sea between two, and its trains where it has some.
+    static SpectralMoments total_between(const Sea& first, const Sea& second, double share, double rate_per_s,
+                                         const Plan& plan, const std::optional<DisplacementAt>& displacement,
+                                         const OverDepth* over = nullptr, Trains<T>* made = nullptr);
     std::vector<FootprintPair> pairs_of(int cascade, std::vector<QueryStatistics>& breaking);
     void raise_heroes();
     Cascade<T> build(int cascade, std::vector<QueryStatistics>& breaking, Progress&);
@@ -135,6 +149,7 @@ class Sea {
     Plan plan_;
     std::shared_ptr<const SpectrumTable> table_;
     double loop_s_;
+    std::optional<DisplacementAt> displacement_;
     SpectralMoments total_;
     Whitecaps whitecaps_;
     std::shared_ptr<const std::vector<Cascade<T>>> cascades_;

@@ -35,6 +35,27 @@ SeaOverTime<T>::SeaOverTime(Plan plan, const BuildWatch& watch, const SeaOverTim
         own.from = keys[i].sea;
         seas_.push_back(std::make_shared<const Sea<T>>(std::move(own), part, table_of(i)));
     }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        if (i == 0) {
+            // As if the first key's depth had been there before it.
+            const auto first = depth_at(*plan_.from, keys[0].time_s);
+            if (!first) return;
+            const DepthAt::Part until{first->depth_m, keys[0].time_s};
+            turns_.push_back(seas_[0]->turned(nullptr, {&until, 1}));
+            continue;
+        }
+        turns_.push_back(seas_[0]->turned(&turns_.back(), depth_until(*plan_.from, i)));
+    }
+}
+
+template <class T>
+std::optional<OverDepth> SeaOverTime<T>::over_depth(double t_s) const {
+    const auto depth = turns_.empty() ? std::nullopt : depth_at(*plan_.from, t_s);
+    if (!depth) return std::nullopt;
+    return OverDepth{.depth_m = depth->depth_m,
+                     .depth_mps = depth->depth_mps,
+                     .time_s = t_s,
+                     .turns = seas_[0]->turned(&turns_[depth->key], depth->parts)};
 }
 
 template <class T>
@@ -53,18 +74,22 @@ template <class T>
 Whitecaps SeaOverTime<T>::whitecaps(double t_s) const {
     if (!plan_.from->weather) return seas_.front()->whitecaps();
     const Weather::Blend blend = plan_.from->weather->at(t_s);
-    if (blend.first == blend.second) return seas_[blend.first]->whitecaps();
+    const auto displacement = displacement_at(*plan_.from, t_s);
+    if (blend.first == blend.second && !displacement) return seas_[blend.first]->whitecaps();
     return Sea<T>::whitecaps_between(*seas_[blend.first], *seas_[blend.second], blend.share,
-                                     prepared_at(plan_.from, t_s));
+                                     prepared_at(plan_.from, t_s), displacement);
 }
 
 template <class T>
 std::shared_ptr<const Sea<T>> SeaOverTime<T>::at(double t_s) const {
     if (!plan_.from->weather) return seas_.front();
     const Weather::Blend blend = plan_.from->weather->at(t_s);
-    if (blend.first == blend.second) return seas_[blend.first];
+    const auto displacement = displacement_at(*plan_.from, t_s);
+    const auto over = over_depth(t_s);
+    if (blend.first == blend.second && !displacement && !over) return seas_[blend.first];
     return std::make_shared<const Sea<T>>(*seas_[blend.first], *seas_[blend.second], blend.share,
-                                          blend.rate_per_s, prepared_at(plan_.from, t_s));
+                                          blend.rate_per_s, prepared_at(plan_.from, t_s), displacement,
+                                          over ? &*over : nullptr);
 }
 
 template class SeaOverTime<float>;

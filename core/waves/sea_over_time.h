@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/plan/weather.h"
@@ -27,8 +28,11 @@ class SeaOverTime {
     Whitecaps whitecaps(double t_s) const;
 
   private:
+    std::optional<OverDepth> over_depth(double t_s) const;
+
     Plan plan_;
     std::vector<std::shared_ptr<const Sea<T>>> seas_;  // by key; one without weather
+    std::vector<Turns> turns_;                         // by key, where the depth changes
 };
 
 }  // namespace pelagic

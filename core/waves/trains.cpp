@@ -95,12 +95,6 @@ Passing passing(const Trains<T>& trains, const FootprintFilter& filter, double f
     return {first_shorter(filter.n_max * footprint_m), first_shorter(filter.n_min * footprint_m)};
 }
 
-// a·b minus the nearest whole number, without the rounding error of the product.
-double fraction_of_product(double a, double b) {
-    const double product = a * b;
-    return (product - std::round(product)) + std::fma(a, b, -product);
-}
-
 // Where a train goes, and when.
 template <class T>
 void add_way(Trains<T>& trains, double wavelength_m, glm::dvec2 direction, double cycles_per_s,
@@ -274,10 +268,9 @@ void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const Foot
 }
 
 template <class T>
-Trains<T> blended(const Trains<T>& first, const Trains<T>& second, double share, double rate_per_s,
-                  const PreparedScene& prepared, const Breaking& breaking) {
-    const Dispersion& dispersion = prepared.spectrum.dispersion();
-    const double choppiness = Choppiness::asked(prepared.scene).built().largest();
+Trains<T> blended(const Trains<T>& first, const Trains<T>& second, const TrainsBetween& between,
+                  const Dispersion& dispersion, const Breaking& breaking) {
+    const double share = between.share, of_breaking = between.breaking * breaking.choppiness.largest();
     Trains<T> trains;
     trains.kx_cycles_per_m = first.kx_cycles_per_m;
     trains.ky_cycles_per_m = first.ky_cycles_per_m;
@@ -288,34 +281,46 @@ Trains<T> blended(const Trains<T>& first, const Trains<T>& second, double share,
     trains.breaking = first.breaking;
     for (std::size_t i = 0; i < first.count(); ++i) {
         const double k = kTwoPi / trains.wavelength_m[i], ratio = dispersion.horizontal_ratio(k);
+        if (between.over) {
+            // Turned so that at this time it is where it has come to.
+            trains.cycles_per_s[i] = dispersion.omega(k) / kTwoPi;
+            const double start = trains.start_cycles[i] + between.over->turns.trains[i] -
+                                 fraction_of_product(trains.cycles_per_s[i], between.over->time_s);
+            trains.start_cycles[i] = start - std::floor(start);
+        }
         const auto energy = [i](const Trains<T>& of) { return 0.5 * of.height_m[i] * of.height_m[i]; };
         const double own = (1.0 - share) * energy(first) + share * energy(second),
                      height_m = std::sqrt(2.0 * own);
-        const double horizontal_m = limited_m(choppiness, ratio, height_m, k),
+        const double horizontal_m = limited_m(between.choppiness, ratio, height_m, k),
                      x = trains.kx_cycles_per_m[i] * trains.wavelength_m[i],
                      y = trains.ky_cycles_per_m[i] * trains.wavelength_m[i];
-        SpectralMoments alone =
-            add_raised(trains, {.k = k,
-                                .x = x,
-                                .y = y,
-                                .height_m = height_m,
-                                .horizontal_m = horizontal_m,
-                                .breaking_m = limited_m(breaking.choppiness.largest(), ratio, height_m, k),
-                                .omega_of_fields = kTwoPi * trains.cycles_per_s[i],
-                                .omega = dispersion.omega(k),
-                                .energy = own});
+        SpectralMoments alone = add_raised(trains, {.k = k,
+                                                    .x = x,
+                                                    .y = y,
+                                                    .height_m = height_m,
+                                                    .horizontal_m = horizontal_m,
+                                                    .breaking_m = limited_m(of_breaking, ratio, height_m, k),
+                                                    .omega_of_fields = kTwoPi * trains.cycles_per_s[i],
+                                                    .omega = dispersion.omega(k),
+                                                    .energy = own});
         const double most = static_cast<double>(trains.breaking[i]);
         trains.alone.push_back(alone.scale_gradients(most * most));
         trains.unresolved_alone.push_back(unresolved_moments<T>(alone));
         // ḣ = ∂/∂t √(2E); a train that is as sharp as can be stays so.
-        const double grows = height_m > 0.0 ? rate_per_s * (energy(second) - energy(first)) / height_m : 0.0,
-                     widens = k * horizontal_m < 1.0 ? choppiness * ratio * grows : 0.0;
+        const double grows = height_m > 0.0 ? between.rate_per_s * (energy(second) - energy(first)) / height_m
+                                            : 0.0,
+                     slopes = between.over ? between.over->ratio_per_s(k) : 0.0,
+                     widens = k * horizontal_m < 1.0 ? between.choppiness * ratio * grows +
+                                                           between.choppiness_per_s * ratio * height_m +
+                                                           between.choppiness * slopes * height_m
+                                                     : 0.0;
         trains.growth[0].push_back(static_cast<T>(x * widens));
         trains.growth[1].push_back(static_cast<T>(y * widens));
         trains.growth[2].push_back(static_cast<T>(grows));
     }
     SpectralMoments before = first.outside, after = second.outside;
     (trains.outside = before *= 1.0 - share) += after *= share;
+    trains.outside.scale_gradients(between.breaking * between.breaking);
     add_up(trains);
     return trains;
 }
@@ -412,10 +417,10 @@ template void add_heroes(Trains<float>&, std::span<const HeroTrain>, const Footp
                          const Dispersion&);
 template void add_heroes(Trains<double>&, std::span<const HeroTrain>, const FootprintFilter&, const Breaking&,
                          const Dispersion&);
-template Trains<float> blended(const Trains<float>&, const Trains<float>&, double, double,
-                               const PreparedScene&, const Breaking&);
-template Trains<double> blended(const Trains<double>&, const Trains<double>&, double, double,
-                                const PreparedScene&, const Breaking&);
+template Trains<float> blended(const Trains<float>&, const Trains<float>&, const TrainsBetween&,
+                               const Dispersion&, const Breaking&);
+template Trains<double> blended(const Trains<double>&, const Trains<double>&, const TrainsBetween&,
+                                const Dispersion&, const Breaking&);
 template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);

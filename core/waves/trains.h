@@ -8,13 +8,16 @@
 // from the bins' distributions.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/base/buffer.h"
 #include "core/plan/breaking.h"
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
@@ -87,11 +90,37 @@ template <class T>
 void add_heroes(Trains<T>& trains, std::span<const HeroTrain> heroes, const FootprintFilter& filter,
                 const Breaking& breaking, const Dispersion& dispersion);
 
-// The trains between two seas of one plan: energies in shares, that of `second` with its rate [1/s] (core/plan/weather.h).
-// `prepared`: of that time.
+// By how much waves have turned until a time [cycles], less whole turns.
+struct Turns {
+    std::vector<Buffer<double>> modes;  // by cascade
+    std::vector<double> trains;
+};
+// Waves over a depth that changes (DepthAt), at a time.
+struct OverDepth {
+    double depth_m, depth_mps, time_s;
+    Turns turns;
+    // d/dt coth(kd) [1/s]
+    double ratio_per_s(double k) const {
+        const double down = std::sinh(std::min(k * depth_m, 300.0));
+        return -k * depth_mps / (down * down);
+    }
+};
+// a·b minus the nearest whole number, without the rounding error of the product.
+inline double fraction_of_product(double a, double b) {
+    const double product = a * b;
+    return (product - std::round(product)) + std::fma(a, b, -product);
+}
+
+// The trains between two seas of one plan (core/plan/weather.h).
+struct TrainsBetween {
+    double share, rate_per_s;             // of the energies of the second, and its rate [1/s]
+    double choppiness, choppiness_per_s;  // of the time
+    double breaking;                      // over that of `breaking`
+    const OverDepth* over = nullptr;      // where the depth changes
+};
 template <class T>
-Trains<T> blended(const Trains<T>& first, const Trains<T>& second, double share, double rate_per_s,
-                  const PreparedScene& prepared, const Breaking& breaking);
+Trains<T> blended(const Trains<T>& first, const Trains<T>& second, const TrainsBetween& between,
+                  const Dispersion& dispersion, const Breaking& breaking);
 
 // The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and
 // include choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's is. Where a

@@ -44,6 +44,7 @@ bool SeaLight<T>::light_frame(int frame) {
     Scene scene = scene_at(shot, frame);
     light_by(scene, shot.shot.time_s(frame));
     floor_lit_.reset();
+    if (!lit_ || lit_->sea.depth_m != scene.sea.depth_m) floor_rest_m_.reset();
     // The sky that the renderer was given stays where light has no keys.
     const bool is_other = !same_sky(shot, scene) && !(lit_ && same_sky(*lit_, scene));
     if (is_other) sky_ = make_sky(scene);
@@ -105,7 +106,7 @@ template <class T>
 const Floor& SeaLight<T>::floor_below(double rest_m) {
     if (floor_rest_m_ == rest_m) return floor_;
     floor_lit_.reset();
-    floor_ = make_floor(plan().from->scene, rest_m);
+    floor_ = make_floor(lit_ ? *lit_ : plan().from->scene, rest_m);
     floor_rest_m_ = rest_m;
     return floor_;
 }

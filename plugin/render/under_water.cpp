@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/evaluate/surface_above.h"
+#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/footprint_levels.h"
 #include "plugin/render/drawn_sea.h"
@@ -51,7 +52,8 @@ void throw_under_water(const Scene& scene, double frame, double surface_m) {
 
 void refuse_in_floor(const Scene& scene, double frame, const Floor& floor) {
     const glm::dvec3 eye_m = view_at(scene.camera, frame).position_m;
-    const double floor_z_m = -(floor.has_depths() ? floor.depth_m(glm::dvec2(eye_m)) : scene.sea.depth_m);
+    const double floor_z_m =
+        -(floor.has_depths() ? floor.depth_m(glm::dvec2(eye_m)) : scene_at(scene, frame).sea.depth_m);
     if (eye_m.z > floor_z_m) return;
     throw std::invalid_argument(camera_at(scene, frame) + "in the sea's floor: it is at z = " +
                                 metres(eye_m.z) + ", and the floor at z = " + metres(floor_z_m) + " (" +

@@ -87,12 +87,19 @@ with checking("a wind with keyframes: one sea for all frames, and it is the core
 with checking("it is baked and exported as keys, with the light's; what can't have any is named"):
     keyframed(obj, "light.sun_elevation_deg", {1: 40.0, 40: 10.0})
     keyframed(obj, "waves.choppiness", {1: 0.5, 40: 1.0})
+    keyframed(obj, "sea.gust_size_m", {1: 200.0, 40: 300.0})
     keyframed(obj, "sea.gust_strength", {1: 0.0, 40: 0.8})
     shot, remarks = exported(obj)
     assert shot.sea.wind_speed_mps == {"keys": ((1, 6.0), (40, 14.0)), "interpolation": "linear"}, shot.sea.wind_speed_mps
     assert shot.light.sun_elevation_deg["keys"] == ((1, 40.0), (40, 10.0)), shot.light.sun_elevation_deg
     assert shot.sea.gust_strength["keys"] == ((1, 0.0), (40, 0.8)), shot.sea.gust_strength
-    assert [remark for remark in remarks if "waves.choppiness" in remark], remarks
+    assert shot.waves.choppiness["keys"] == ((1, 0.5), (40, 1.0)), shot.waves.choppiness
+    keyframed(obj, "sea.depth_m", {1: 30.0, 40: 5.0})  # of a sea that has a floor
+    assert exported(obj)[0].sea.depth_m == np.inf
+    obj.pelagic.sea.use_depth_m, obj.pelagic.waves.second_order = True, 0.0
+    assert exported(obj)[0].sea.depth_m["keys"] == ((1, 30.0), (40, 5.0)), exported(obj)[0].sea.depth_m
+    assert [remark for remark in remarks if "sea.gust_size_m" in remark], remarks
+    assert not [remark for remark in remarks if "waves.choppiness" in remark], remarks
 
 with checking("the sun stands where its keys have it"):
     for frame in (1, 20, 40):

@@ -26,6 +26,28 @@ Scene rising_foam() {
     return scene;
 }
 
+// Of crests that sharpen and get rounder meanwhile.
+Scene sharpening_foam(Scene scene) {
+    EXPECT_FALSE(
+        set_value(scene, key_of("waves.choppiness"), NumberKeys{{{750, 0.3}, {870, 1.3}, {900, 0.6}}}));
+    return scene;
+}
+
+// The same in a steady wind.
+Scene sharpening_foam_alone() {
+    Scene scene = rising_foam();
+    scene.keyed.clear();
+    scene.sea.wind_speed_mps = 15.0;
+    return sharpening_foam(scene);
+}
+
+// With all that changes: over a floor that rises as well.
+Scene changing_foam() {
+    Scene scene = sharpening_foam(rising_foam());
+    EXPECT_FALSE(set_value(scene, key_of("sea.depth_m"), NumberKeys{{{750, 60.0}, {900, 14.0}}}));
+    return scene;
+}
+
 template <class T>
 std::shared_ptr<const SeaOverTime<T>> sea_over_time(const Scene& scene) {
     for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
@@ -55,8 +77,7 @@ bool same_foam(const ProductArrays<T>& a, const ProductArrays<T>& b) {
 }
 
 // As the definition has it: (left per second of breaking) ∫ Φ(y) e^{−a/τ} da, with y, the waves and what breaking leaves of t − a.
-TEST(WeatherFoam, IsTheSumOfWhatBrokeBefore) {
-    const Scene scene = rising_foam();
+void expect_the_sum_of_what_broke_before(const Scene& scene) {
     const auto sea = sea_over_time<double>(scene);
     const FoamPlan& foam = *sea->plan().foam;
     constexpr double kTime_s = 36.0;
@@ -110,18 +131,25 @@ TEST(WeatherFoam, IsTheSumOfWhatBrokeBefore) {
     EXPECT_NEAR(got / wanted, 1.0, 0.06);
 }
 
+TEST(WeatherFoam, IsTheSumOfWhatBrokeBefore) {
+    expect_the_sum_of_what_broke_before(rising_foam());
+    expect_the_sum_of_what_broke_before(sharpening_foam_alone());
+}
+
 TEST(WeatherFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
-    const auto sea = sea_over_time<float>(rising_foam());
-    const auto points = random_points<float>(60.0, 400);
-    SeaAtTime<float> run(sea);
-    for (const double t : {34.0, 34.2, 34.4}) foam_at(run, t, points);
-    const auto of_run = foam_at(run, 35.0, points);
-    for (const std::size_t threads : {1, 2}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        SeaAtTime<float> alone(sea_over_time<float>(rising_foam()));
-        EXPECT_TRUE(same_foam(foam_at(alone, 35.0, points), of_run));
+    for (const Scene& scene : {rising_foam(), changing_foam()}) {
+        const auto sea = sea_over_time<float>(scene);
+        const auto points = random_points<float>(60.0, 400);
+        SeaAtTime<float> run(sea);
+        for (const double t : {34.0, 34.2, 34.4}) foam_at(run, t, points);
+        const auto of_run = foam_at(run, 35.0, points);
+        for (const std::size_t threads : {1, 2}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            SeaAtTime<float> alone(sea_over_time<float>(scene));
+            EXPECT_TRUE(same_foam(foam_at(alone, 35.0, points), of_run));
+        }
+        EXPECT_FALSE(same_foam(foam_at(run, 36.0, points), of_run));
     }
-    EXPECT_FALSE(same_foam(foam_at(run, 36.0, points), of_run));
 }
 
 // While neither the sea nor its past has changed yet: that of the plain number, which drifts with its own wind.

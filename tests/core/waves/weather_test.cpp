@@ -435,6 +435,369 @@ TEST(Weather, BoundsHoldAtEachTime) {
     }
 }
 
+// A steady sea whose displacement changes: from round crests to sharp ones, and back to less.
+Scene pressed(WaveModel model = WaveModel::Fft, bool has_cascades = true) {
+    Scene scene = rising(model, has_cascades);
+    scene.keyed.clear();
+    scene.sea.wind_speed_mps = 13.0;
+    give_keys(scene, "waves.choppiness", {{1, 0.2}, {49, 1.2}, {97, 0.6}}, kLinear);
+    if (model == WaveModel::Fft) {
+        give_keys(scene, "waves.lean_deg", {{1, 0.0}, {97, 40.0}});
+        give_keys(scene, "waves.second_order", {{20, 1.5}, {60, 0.0}}, kLinear);
+    }
+    return scene;
+}
+
+// Of each time that of a sea with the frame's numbers, with what footprints hide and what breaks; velocities as well, where nothing changes.
+TEST(Weather, DisplacementIsThatOfThePlainNumbers) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        const Scene scene = pressed(kind.model, kind.has_cascades);
+        const auto points = random_points<double>(300.0, 300);
+        auto changing = frame_over_time<double>(scene, {everything()});
+        for (const double f : {-9.0, 1.0, 13.0, 49.0, 80.0, 97.0, 130.0}) {
+            const double t = scene.shot.time_s(f);
+            changing.set(t);
+            Frame<double> still(
+                std::make_shared<const Sea<double>>(make_plan(scene_at(scene, f), {everything()})));
+            still.set(t);
+            const auto found = sample(changing, 0, points), said = sample(still, 0, points);
+            EXPECT_NEAR(changing.sea().whitecap_threshold(), still.sea().whitecap_threshold(), 1e-5) << f;
+            double breaking = 0.0, as_said = 0.0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                for (const VectorProduct product :
+                     {VectorProduct(Displacement), VectorProduct(Normal), VectorProduct(SlopeVariance),
+                      VectorProduct(Product::JacobianMoments)})
+                    EXPECT_LT(glm::length(found.vectors(product)[i] - said.vectors(product)[i]), 1e-5) << f;
+                if (f < 0.0 || f > 97.0) {
+                    EXPECT_LT(glm::length(found.vectors(Velocity)[i] - said.vectors(Velocity)[i]), 1e-5) << f;
+                }
+                breaking += found.numbers(Product::Breaking)[i];
+                as_said += said.numbers(Product::Breaking)[i];
+            }
+            EXPECT_NEAR(breaking, as_said, 1e-3 * as_said) << f;
+            EXPECT_GT(as_said, 0.0);
+        }
+    }
+}
+
+TEST(Weather, VelocitiesHoldTheDisplacementsOwnChange) {
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const Kind& kind : kKinds) {
+            SCOPED_TRACE(kind.name);
+            Scene scene = pressed(kind.model, kind.has_cascades);
+            give_keys(scene, "waves.choppiness", {{1, 1.2}, {49, 0.0}, {97, 0.6}}, interpolation);
+            give_keys(scene, "sea.wind_speed_mps", {{1, 8.0}, {97, 16.0}}, interpolation);
+            auto frame = frame_over_time<double>(scene, {filtered(products(Displacement, Velocity), 3.0)});
+            const auto points = random_points<double>(400.0, 300);
+            constexpr double h = 1e-4;
+            const auto at = [&](double t) {
+                frame.set(t);
+                return sample(frame, 0, points);
+            };
+            for (const double t : {0.3, 1.1, 1.98, 2.1, 3.8}) {
+                const auto before = at(t - h), after = at(t + h), now = at(t);
+                double wrong = 0.0, all = 0.0;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const glm::dvec3 rate =
+                        (after.vectors(Displacement)[i] - before.vectors(Displacement)[i]) / (2.0 * h);
+                    const glm::dvec3 off = now.vectors(Velocity)[i] - rate;
+                    wrong += glm::dot(off, off);
+                    all += glm::dot(rate, rate);
+                }
+                EXPECT_LT(std::sqrt(wrong / all), 1e-5) << t;
+            }
+        }
+}
+
+// Through a choppiness of 0, where there is next to no displacement: its velocity is the rate of the choppiness times that of 1.
+TEST(Weather, VelocityIsFiniteWithoutDisplacement) {
+    Scene scene = first_order(pressed());
+    scene.keyed.clear();
+    Scene plain = scene;
+    give_keys(scene, "waves.choppiness", {{1, 0.0}, {25, 1.0}}, kLinear);  // from 0 to 1 s
+    set_value(plain, key_of("waves.choppiness"), 1.0);
+    const auto points = random_points<double>(400.0, 300);
+    auto keyed = frame_over_time<double>(scene, {everything()}),
+         still = frame_over_time<double>(plain, {everything()});
+    constexpr double kSoon_s = 1e-6;  // after the key, of whose two sides this is one
+    keyed.set(kSoon_s);
+    still.set(kSoon_s);
+    const auto found = sample(keyed, 0, points), of_one = sample(still, 0, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec3 velocity = found.vectors(Velocity)[i],
+                         displacement = of_one.vectors(Displacement)[i];
+        EXPECT_LT(glm::length(glm::dvec2(velocity - displacement)),
+                  1e-3 * glm::length(of_one.vectors(Velocity)[i]));
+        EXPECT_LT(glm::length(glm::dvec2(found.vectors(Displacement)[i])),
+                  1.1e-4 * glm::length(glm::dvec2(displacement)));
+    }
+}
+
+TEST(Weather, DisplacementOfAFrameAloneIsThatOfARun) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        Scene scene = pressed(kind.model, kind.has_cascades);
+        const auto points = random_points<float>(300.0, 300);
+        auto run = frame_over_time<float>(scene, {everything()});
+        std::vector<ProductArrays<float>> of_run;
+        const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 9.0};
+        for (const double t : times) {
+            run.set(t);
+            of_run.push_back(sample(run, 0, points));
+        }
+        EXPECT_FALSE(same_samples(of_run[1], of_run[2]));
+        for (const std::size_t i : {3, 1, 4}) {
+            auto alone = frame_over_time<float>(scene, {everything()});
+            alone.set(times[i]);
+            EXPECT_TRUE(same_samples(sample(alone, 0, points), of_run[i])) << times[i];
+        }
+        // Keys that are all the same are the plain number.
+        Scene plain = scene;
+        plain.keyed.clear();
+        plain.waves.choppiness = 0.7;
+        scene = plain;
+        give_keys(scene, "waves.choppiness", {{1, 0.7}, {100, 0.7}});
+        auto a = frame_over_time<float>(plain, {everything()}),
+             b = frame_over_time<float>(scene, {everything()});
+        a.set(2.0);
+        b.set(2.0);
+        EXPECT_TRUE(same_samples(sample(a, 0, points), sample(b, 0, points)));
+    }
+}
+
+// Whatever is planned for the shot holds at each time: no reach beyond the extent, no amplitudes held more than once.
+TEST(Weather, DisplacementIsPlannedForTheLargestOfItsKeys) {
+    Scene scene = pressed();
+    scene.waves.choppiness = 0.1;  // as who fills Scene::keyed by hand leaves it
+    give_keys(scene, "sea.wind_speed_mps", {{1, 16.0}, {97, 8.0}});
+    const auto shot = prepare(scene);
+    for (const double f : {1.0, 25.0, 49.0, 80.0, 97.0}) {
+        const double t = scene.shot.time_s(f);
+        const PreparedScene now = *prepared_at(shot, t);
+        const Extent needed = extent_of(now.scene, now.spectrum, SecondOrder());
+        EXPECT_GE(now.extent.reach_m, needed.reach_m) << f;
+        EXPECT_GE(shot->extent.reach_m, now.extent.reach_m) << f;
+        EXPECT_GE(shot->extent.height_m, now.extent.height_m) << f;
+    }
+    const Scene steady = pressed();
+    Scene plain = steady;
+    plain.keyed.clear();
+    const Plan plan = make_plan(prepare(steady), {everything()});
+    EXPECT_EQ(plan.sea_bytes(), make_plan(prepare(plain), {everything()}).sea_bytes());
+    EXPECT_EQ(plan.choppiness.largest(), 1.2);
+    const SeaOverTime<float> sea(plan);
+    EXPECT_EQ(sea.at(0.7)->cascades().data(), sea.at(2.9)->cascades().data());
+    auto frame = frame_over_time<float>(steady, {unfiltered(products(Displacement))});
+    frame.set(0.0);
+    FrameBounds<float> bounds(frame, 0);
+    const auto points = random_points<float>(200.0, 2000);
+    for (const double t : {0.0, 1.0, 2.0, 3.5}) {
+        frame.set(t);
+        bounds.refresh();
+        const glm::dvec2 most_m = bounds.region({glm::dvec2(-100.0), glm::dvec2(100.0)}, 4096).reach_m();
+        glm::vec2 reach_m(0.0f);
+        for (const auto& at : sample(frame, 0, points).vectors(Displacement))
+            reach_m = glm::max(reach_m, glm::abs(glm::vec2(at)));
+        EXPECT_LE(static_cast<double>(reach_m.x), most_m.x) << t;
+        EXPECT_LE(static_cast<double>(reach_m.y), most_m.y) << t;
+        EXPECT_LT(most_m.x, 4.0 * static_cast<double>(reach_m.x)) << t;  // of this time
+    }
+}
+
+TEST(Weather, DisplacementThatIsOneOrTooFastSaysSo) {
+    Scene scene = pressed();
+    EXPECT_TRUE(problems_of(scene).empty());
+    scene.waves.cascades[1].choppiness = 0.5;
+    const std::vector<Problem> problems = problems_of(scene);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(text_of(problems[0]).find("waves.choppiness = { keys = [[1, 0.2], [49, 1.2], [97, 0.6]]"),
+              std::string::npos);
+    EXPECT_NE(text_of(problems[0]).find("is one for the whole shot"), std::string::npos);
+    const auto pushes = [](std::vector<NumberKeys::Key> keys) {
+        Scene fast = pressed();
+        fast.keyed.clear();
+        give_keys(fast, "waves.choppiness", std::move(keys), kLinear);
+        const std::vector<std::string> warnings = sea_warnings(*prepare(fast));
+        EXPECT_TRUE(std::ranges::none_of(warnings, [](const std::string& warning) {
+            return warning.find("look like weather") != std::string::npos;
+        }));
+        return std::ranges::any_of(warnings, [](const std::string& warning) {
+            return warning.find("waves.choppiness changes within") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(pushes({{1, 0.2}, {49, 1.0}}));
+    EXPECT_FALSE(pushes({{1, 0.2}, {480, 1.0}}));
+    EXPECT_FALSE(pushes({{1, 0.9}, {49, 1.0}}));
+}
+
+// From water that the longest waves feel a little to water that most of them feel.
+Scene over_depth(WaveModel model = WaveModel::Fft, bool has_cascades = true,
+                 CameraInterpolation interpolation = kSmooth) {
+    Scene scene = first_order(rising(model, has_cascades));
+    scene.keyed.clear();
+    scene.waves.choppiness = 1.0;
+    scene.sea.wind_speed_mps = 9.0;
+    scene.sea.fetch_m = 2e4;
+    give_keys(scene, "sea.depth_m", {{25, 40.0}, {73, 4.0}, {121, 12.0}}, interpolation);
+    return scene;
+}
+
+// ∫ω/2π from 0, less whole turns, by many small steps.
+double turned_by(const Scene& scene, double k, double until_s) {
+    constexpr int kSteps = 40000;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double frame = 1.0 + (i + 0.5) * until_s / kSteps * scene.shot.fps,
+                     depth_m = value_at(scene.keyed[0].keys, false, frame);
+        sum +=
+            std::sqrt(9.81 * k * (1.0 + 7.3e-5 / 9.81 * k * k) * std::tanh(k * depth_m)) * until_s / kSteps;
+    }
+    return std::remainder(sum / (2.0 * std::numbers::pi), 1.0);
+}
+
+TEST(Weather, OverADepthThatChangesPhasesAreIntegrals) {
+    for (const auto interpolation : {kLinear, kSmooth}) {
+        const Scene tiles = over_depth(WaveModel::Fft, true, interpolation),
+                    sums = over_depth(WaveModel::Trochoid, false, interpolation);
+        const SeaOverTime<double> cascades(make_plan(prepare(tiles), {everything()})),
+            trains(make_plan(prepare(sums), {everything()}));
+        for (const double t : {0.5, 1.7, 2.9, 3.6, 4.4, 5.0, 9.0}) {
+            const auto now = trains.at(t);
+            const auto phases = phases_at(now->trains(), glm::dvec2(0.0), t);
+            for (const std::size_t i : {0, 7, 20}) {
+                const double k = 2.0 * std::numbers::pi / now->trains().wavelength_m[i],
+                             wanted = trains.first()->trains().start_cycles[i] + turned_by(sums, k, t);
+                EXPECT_NEAR(std::remainder(phases[i] - wanted, 1.0), 0.0, 1e-4) << t << ' ' << i;
+            }
+            const auto sea = cascades.at(t);
+            const Cascade<double>&is = sea->cascades()[0], &was = cascades.first()->cascades()[0];
+            for (const int mx : {5, 9, 14})
+                for (const int my : {-4, 0, 3}) {
+                    const std::size_t mode = is.middle(mx) + my;
+                    const double k = 2.0 * std::numbers::pi / is.size_m * std::hypot(mx, my);
+                    ASSERT_NE(was.forward_re[mode] * is.forward_re[mode], 0.0);  // which has no phase
+                    const auto cycles = [&](const Cascade<double>& of) {
+                        return std::atan2(of.forward_im[mode], of.forward_re[mode]) /
+                               (2.0 * std::numbers::pi);
+                    };
+                    const double turned = cycles(was) - cycles(is) + is.cycles_per_s[mode] * t;
+                    EXPECT_NEAR(std::remainder(turned - turned_by(tiles, k, t), 1.0), 0.0, 1e-4)
+                        << t << ' ' << mx;
+                }
+        }
+        // As exact after ten weeks: the last key's frequency goes on.
+        constexpr double kLate_s = 6e6, kLater_s = kLate_s + 0.25;
+        const auto late = trains.at(kLate_s), later = trains.at(kLater_s);
+        const auto before = phases_at(late->trains(), glm::dvec2(0.0), kLate_s),
+                   after = phases_at(later->trains(), glm::dvec2(0.0), kLater_s);
+        for (const std::size_t i : {0, 7, 20})
+            EXPECT_NEAR(std::remainder(after[i] - before[i] - 0.25 * late->trains().cycles_per_s[i], 1.0),
+                        0.0, 1e-9);
+    }
+}
+
+TEST(Weather, OverADepthThatChangesVelocitiesAreRates) {
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const Kind& kind : kKinds) {
+            SCOPED_TRACE(kind.name);
+            Scene scene = over_depth(kind.model, kind.has_cascades, interpolation);
+            give_keys(scene, "waves.choppiness", {{30, 0.3}, {80, 1.1}}, interpolation);
+            if (kind.model == WaveModel::Fft) scene.waves.lean_deg = 20.0;
+            auto frame = frame_over_time<double>(scene, {filtered(products(Displacement, Velocity), 3.0)});
+            const auto points = random_points<double>(400.0, 300);
+            constexpr double h = 1e-4;
+            const auto at = [&](double t) {
+                frame.set(t);
+                return sample(frame, 0, points);
+            };
+            for (const double t : {0.5, 1.4, 2.2, 2.9, 3.9, 5.6}) {
+                const auto before = at(t - h), after = at(t + h), now = at(t);
+                double wrong = 0.0, all = 0.0;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const glm::dvec3 rate =
+                        (after.vectors(Displacement)[i] - before.vectors(Displacement)[i]) / (2.0 * h);
+                    const glm::dvec3 off = now.vectors(Velocity)[i] - rate;
+                    wrong += glm::dot(off, off);
+                    all += glm::dot(rate, rate);
+                }
+                EXPECT_LT(std::sqrt(wrong / all), 1e-3) << t;
+            }
+        }
+}
+
+// A frame alone is that of a run; beyond the keys it is a sea of their depth; heights are those of the spectrum between.
+TEST(Weather, OverADepthThatChangesEachTimeIsItsOwn) {
+    for (const Kind& kind : kKinds) {
+        SCOPED_TRACE(kind.name);
+        const Scene scene = over_depth(kind.model, kind.has_cascades);
+        const auto points = random_points<float>(300.0, 300);
+        auto run = frame_over_time<float>(scene, {everything()});
+        std::vector<ProductArrays<float>> of_run;
+        const std::vector<double> times{0.5, 1.0, 2.0, 3.0, 3.5, 9.0};
+        std::vector<double> heights;
+        for (const double t : times) {
+            run.set(t);
+            of_run.push_back(sample(run, 0, points));
+            heights.push_back(run.realisation(0).m0 / run.sea().total().m0);
+        }
+        for (const double height : heights) EXPECT_NEAR(std::sqrt(height / heights[0]), 1.0, 0.02);
+        for (const std::size_t i : {4, 2, 0, 5}) {
+            auto alone = frame_over_time<float>(scene, {everything()});
+            alone.set(times[i]);
+            EXPECT_TRUE(same_samples(sample(alone, 0, points), of_run[i])) << times[i];
+        }
+        if (kind.model == WaveModel::Trochoid)
+            continue;  // whose directions are those of the mean of the keys
+        Frame<float> still(
+            std::make_shared<const Sea<float>>(make_plan(scene_at(scene, 1.0), {everything()})));
+        still.set(0.5);
+        const auto as_said = sample(still, 0, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_LT(glm::length(of_run[0].vectors(Displacement)[i] - as_said.vectors(Displacement)[i]),
+                      1e-4f);
+            EXPECT_LT(glm::length(of_run[0].vectors(Velocity)[i] - as_said.vectors(Velocity)[i]), 1e-4f);
+        }
+    }
+}
+
+TEST(Weather, OverADepthThatChangesWhatHasOneDepthIsRefused) {
+    const auto problem = [](const std::function<void(Scene&)>& change) {
+        Scene scene = over_depth();
+        change(scene);
+        std::string texts;
+        for (const Problem& found : validate(scene)) texts += text_of(found) + '\n';
+        return texts;
+    };
+    const auto says = [&](const std::function<void(Scene&)>& change, const char* what) {
+        const std::string found = problem(change);
+        EXPECT_NE(found.find(what), std::string::npos) << what << '\n' << found;
+    };
+    EXPECT_EQ(problem([](Scene&) {}), "");
+    says([](Scene& scene) { scene.waves.second_order = 1.0; }, "what pairs of waves add");
+    says([](Scene& scene) { scene.waves.vessels = {Vessel{}}; }, "wakes are worked out for one depth");
+    says([](Scene& scene) { scene.sea.depth_file = "floor.exr"; }, "the floor of sea.depth_file stays");
+    says([](Scene& scene) { scene.waves.heroes = {HeroWave{}}; }, "hero waves stand in one sea");
+    says([](Scene& scene) { scene.shot.loop_s = 2.0; }, "a loop has no beginning");
+    says(
+        [](Scene& scene) {
+            give_keys(scene, "sea.depth_m", {{1, 2.0}, {50, 40.0}});
+        },
+        "changes more than 16 times from frame 1 to 50");
+    says(
+        [](Scene& scene) {
+            give_keys(scene, "sea.depth_m", {{1, 2.0}, {50, std::numeric_limits<double>::infinity()}});
+        },
+        "no depth is between");
+    says(
+        [](Scene& scene) {
+            scene.objects = {SceneObject{}};
+            scene.objects[0].floats = true;
+            scene.objects[0].buoyancy = Buoyancy::Response;
+        },
+        "answers waves of one depth");
+}
+
 // Each key's sea must be one that there can be, with what the other numbers are there.
 TEST(Weather, OfImpossibleWavesIsRefusedWithItsFrame) {
     Scene scene;

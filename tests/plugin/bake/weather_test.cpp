@@ -74,6 +74,7 @@ TEST_F(WeatherBakes, OfAFrameAloneIsThatOfARun) {
     scene.effects.foam_decay_s = 1.0;
     scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
     give(scene, {{1, 8.0}, {12, 20.0}});
+    ASSERT_FALSE(set_value(scene, key_of("waves.choppiness"), NumberKeys{{{1, 0.0}, {12, 1.4}}}));
     const auto run = baked(scene, {6, 7, 8}), alone = baked(scene, {7});
     ASSERT_EQ(run.size(), 3u);
     for (const auto& [path, file] : alone.at(7)) {
@@ -113,6 +114,22 @@ TEST_F(WeatherBakes, AKeyChangesTheFilesThatItCan) {
             if (second_order == 0.0 && decay_s == 0.0) {
                 EXPECT_EQ(kept, 8);  // of frames 1 … 5 and 10 … 12
             }
+        }
+}
+
+// Velocities know how fast it changes, at a key on either side.
+TEST_F(WeatherBakes, AKeyOfTheDisplacementChangesTheFilesThatItCan) {
+    Scene scene = shot(), other = scene;
+    for (Scene* each : {&scene, &other}) each->effects.foam_decay_s = each->waves.second_order = 0.0;
+    const Key& key = key_of("waves.choppiness");
+    ASSERT_FALSE(set_value(scene, key, NumberKeys{{{2, 0.4}, {5, 1.2}, {8, 0.7}, {10, 0.8}}}));
+    ASSERT_FALSE(set_value(other, key, NumberKeys{{{2, 0.4}, {5, 1.2}, {8, 0.9}, {10, 0.8}}}));
+    const auto a = baked(scene), b = baked(other);
+    for (const auto& [frame, files] : a)
+        for (const auto& [path, file] : files) {
+            const File& there = b.at(frame).at(path);
+            EXPECT_EQ(file.fingerprint == there.fingerprint, file.content == there.content) << frame;
+            EXPECT_EQ(file.fingerprint == there.fingerprint, frame < 5 || frame > 10) << frame;
         }
 }
 

@@ -112,7 +112,7 @@ TEST_F(KeyedPictures, AreThoseOfThePlainNumbers) {
     pictured.light.sky = sky;
     const std::string in_daylight = shown(shot(), {2}, 2), under_picture = shown(pictured, {2}, 2);
     for (const Key& key : keys()) {
-        if (!key.may_have_keys || key.path.starts_with("sea.")) continue;
+        if (!key.may_have_keys || key.path.starts_with("sea.") || key.path.starts_with("waves.")) continue;
         SCOPED_TRACE(key.path);
         const bool is_daylight = key.path.starts_with("light.sun_") || key.path == "light.turbidity";
         Scene plain = is_daylight ? shot() : pictured;
@@ -178,6 +178,22 @@ TEST_F(KeyedPictures, OfASeaThatChangesStandForThemselves) {
     other[2].value = 12.0;
     for (const int frame : {1, 5, 10}) EXPECT_EQ(made_of(keys, frame), made_of(other, frame)) << frame;
     for (const int frame : {11, 20, 25}) EXPECT_NE(made_of(keys, frame), made_of(other, frame)) << frame;
+}
+
+// Under a calm, where no wave could tell: of each frame that of its depth.
+TEST_F(KeyedPictures, OfAFloorThatRisesAreThoseOfTheFramesDepth) {
+    Scene plain = shot();
+    plain.light.sky = sky_picture();
+    plain.sea.wind_speed_mps = plain.waves.second_order = plain.water.caustics = 0.0;
+    plain.sea.depth_m = 6.0;
+    Scene scene = plain;
+    const std::string deeper = shown(plain, {2}, 2);
+    ASSERT_FALSE(set_value(scene, key_of("sea.depth_m"), NumberKeys{{{1, 6.0}, {3, 2.0}}}));
+    plain.sea.depth_m = 4.0;
+    const std::string second = shown(plain, {2}, 2);
+    EXPECT_FALSE(second == deeper);
+    EXPECT_TRUE(shown(scene, {1, 2}, 2) == second) << "of a run";
+    EXPECT_TRUE(shown(scene, {2}, 2) == second) << "alone";
 }
 
 // Spray is the moment's: a frame alone is that of a run, and a key before it shows in it, by how far the wind has blown.

@@ -49,8 +49,8 @@ class Scene(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "has keys, and this shows one moment"):
                 make(scene)
         pelagic.Sky(scene.at(3))
-        with self.assertRaisesRegex(ValueError, "sea.depth_m"):
-            scene.sea.depth_m = {"keys": [(1, 8.0), (9, 22.0)]}
+        with self.assertRaisesRegex(ValueError, "sea.gust_size_m"):
+            scene.sea.gust_size_m = {"keys": [(1, 200.0), (9, 300.0)]}
         with self.assertRaisesRegex(ValueError, "smooth"):
             scene.light.turbidity = {"keys": [(1, 2.0)], "interpolation": "smoth"}
         for bad in ({"key": [(1, 2.0)]}, {"keys": [(1, 2.0, 3.0)]}, {"keys": [("a", 2.0)]}):

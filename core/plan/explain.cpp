@@ -177,9 +177,10 @@ std::string explain(const Plan& plan) {
     page += "\nEffects, and what a frame of the bake would do and hold less without each\n";
     for (const EffectRow& row : effect_table()) {
         const bool is_on = row.is_on(scene);
-        page += format("  %s%s: %s%s\n", is_on ? "" : "no ", row.name,
-                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str(),
-                       is_on && row.about ? ("; " + row.about(plan)).c_str() : "");
+        const std::string about = is_on && row.about ? row.about(plan) : "";
+        page += format("  %s%s: %s%s%s\n", is_on ? "" : "no ", row.name,
+                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str(), about.empty() ? "" : "; ",
+                       about.c_str());
     }
 
     if (plan.trains && plan.trains->count > 0) page += "\nWave trains\n" + trains_text(plan);

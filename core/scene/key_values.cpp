@@ -427,6 +427,7 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
     if (key.path == kObjectsKey && scene.objects.empty()) return false;
     if (key.path == kCoastKey && !scene.waves.coast) return false;
     if (key.path == kRainKey && key.get(scene) == key.fallback) return false;
+    if (key.path == kFrontsKey && scene.sea.gust_fronts.empty()) return false;
     return (key.key_parts & parts).any();
 }
 

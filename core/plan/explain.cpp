@@ -99,7 +99,9 @@ std::string cost_text(const Plan& plan, const EffectRow& row) {
     const auto from = std::make_shared<PreparedScene>(*plan.from);
     row.turn_off(from->scene);
     if (!is_on(Effect::SecondOrder, from->scene)) from->second_order = {};
-    if (!from->weather) from->extent = extent_of(from->scene, from->spectrum, from->second_order);
+    from->masks = masks_of(from->scene, from->spectrum);
+    if (!from->weather)
+        from->extent = extent_of(from->scene, from->spectrum, from->second_order, from->masks);
     std::vector<Query> queries;
     for (const PlannedQuery& planned : plan.queries)
         queries.push_back(with_effects(from->scene, planned.query));

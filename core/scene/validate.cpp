@@ -836,7 +836,7 @@ void check_fronts(SceneChecker& check, const Scene& scene) {
     if (!(scene.shot.sea_loop_s() > 0.0)) return;
     for (std::size_t i = 0; i < scene.sea.gust_fronts.size(); ++i)
         if (const double speed_mps = scene.sea.gust_fronts[i].speed_mps; speed_mps > 0.0)
-            check.refuse({indexed(kFrontsKey, i) + ".speed_mps", number_text(speed_mps),
+            check.refuse({indexed(std::string(kFrontsKey), i) + ".speed_mps", number_text(speed_mps),
                           "takes it away, and in a loop it would have to be back", "0, or shot.loop_s = 0"});
 }
 

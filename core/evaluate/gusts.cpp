@@ -76,7 +76,8 @@ void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
         GustSum<N> sum{};
         for (std::size_t w = 0; w < GustsPlan::kWaves; ++w) {
             const GustsPlan::Wave& wave = args.gusts->plan.waves[w];
-            const N cycles = x * N(wave.cycles_per_m.x) + y * N(wave.cycles_per_m.y) + N(args.phases->cycles[w]);
+            const N cycles =
+                x * N(wave.cycles_per_m.x) + y * N(wave.cycles_per_m.y) + N(args.phases->cycles[w]);
             const N length =
                 square_root(length2_along(width, axis_x, axis_y, N(wave.along.x), N(wave.along.y)));
             const N weight = footprint_weight(N(wave.shortest_m) / length, n_min, per_range);

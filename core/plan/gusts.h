@@ -43,8 +43,10 @@ struct GustsPlan {
 
         glm::dvec2 middle_at(double time_s_) const { return middle_m + velocity_mps * (time_s_ - time_s); }
     };
-    std::vector<Front> fronts;              // those that change something
-    double weakest = 1.0, strongest = 1.0;  // of fronts' winds, and of nowhere a front: where they overlap no less and no more
+    std::vector<Front> fronts;  // those that change something
+    double weakest = 1.0,
+           strongest =
+               1.0;  // of fronts' winds, and of nowhere a front: where they overlap no less and no more
 
     // From each front's middle to a place [m].
     using FromFronts = std::array<glm::dvec2, limits::kGustFronts>;

@@ -246,12 +246,11 @@ void add_sea(Built& out) {
                                         .unit = "m/s",
                                         .range = limits::kFrontSpeed_mps,
                                         .soft = SoftRange{0.0, 25.0}}),
-            row<&GustFront::length_m>(
-                {.name = "length_m",
-                 .help = "along its way, of the ellipse within which the wind is whole",
-                 .unit = "m",
-                 .range = limits::kFrontSize_m,
-                 .soft = SoftRange{10.0, 2000.0, true}}),
+            row<&GustFront::length_m>({.name = "length_m",
+                                       .help = "along its way, of the ellipse within which the wind is whole",
+                                       .unit = "m",
+                                       .range = limits::kFrontSize_m,
+                                       .soft = SoftRange{10.0, 2000.0, true}}),
             row<&GustFront::width_m>({.name = "width_m",
                                       .help = "across",
                                       .unit = "m",
@@ -262,10 +261,9 @@ void add_sea(Built& out) {
                                      .unit = "m",
                                      .range = limits::kFrontEdge_m,
                                      .soft = SoftRange{1.0, 500.0, true}}),
-            row<&GustFront::wind>(
-                {.name = "wind",
-                 .help = "times the sea's wind: more than 1 is a gust, less a lull",
-                 .range = limits::kFrontWind})),
+            row<&GustFront::wind>({.name = "wind",
+                                   .help = "times the sea's wind: more than 1 is a gust, less a lull",
+                                   .range = limits::kFrontWind})),
         row<&SeaState::rain_mm_h>(
             {.name = "rain_mm_h",
              .help =

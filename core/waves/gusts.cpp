@@ -136,9 +136,8 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
         });
         const auto values = likely_values(resolved_amplitudes(plan, std::exp2(octave)));
         at_kept[i] = solve(-0.5, 0.5, mean, [&](double more) {
-            return mean_of(values, [&](double value) {
-                return coverage_at(threshold_of(level_of(value)) + more);
-            });
+            return mean_of(values,
+                           [&](double value) { return coverage_at(threshold_of(level_of(value)) + more); });
         });
     }
     gusts.of_kept = polynomial(kept, at_kept);

@@ -242,13 +242,13 @@ class Calls {
             camera_ = made.value();
         Sized<pelagic_vessel> vessel(numbers_, {});
         const std::size_t which = numbers_.below(3);
-        if (asked_for(vessel, [&](auto* to, auto* error) {
-                return pelagic_vessel_at(of, which, at, to, error);
-            }) == PELAGIC_OK &&
+        if (asked_for(vessel,
+                      [&](auto* to, auto* error) { return pelagic_vessel_at(of, which, at, to, error); }) ==
+                PELAGIC_OK &&
             vessel.is_whole()) {
             const pelagic_vessel there = vessel.value();
-            for (const double value : {there.position_m[0], there.position_m[1], there.ahead[0], there.port[1],
-                                       there.velocity_mps[0]})
+            for (const double value : {there.position_m[0], there.position_m[1], there.ahead[0],
+                                       there.port[1], there.velocity_mps[0]})
                 hold(std::isfinite(value), "where a vessel is is finite");
         }
     }

@@ -112,13 +112,14 @@ struct MeasuredSpectrum {
 
 // A patch of another wind that crosses the sea, as a cat's paw or a squall line (core/plan/gusts.h): an ellipse with a ragged edge.
 struct GustFront {
-    double frame = 1.0;                        // when it is there, on the shot's own clock
-    double east_m = 0.0, north_m = 0.0;        // its middle, then
-    double direction_deg = 0.0;                // travelling towards, counter-clockwise from +x
-    double speed_mps = 6.0;                    // ≥ 0
-    double length_m = 100.0, width_m = 300.0;  // > 0, of the ellipse, where it blows whole: along its way and across
-    double edge_m = 60.0;                      // > 0: round the ellipse, where it fades
-    double wind = 2.0;                         // 0 … 4, times the sea's wind
+    double frame = 1.0;                  // when it is there, on the shot's own clock
+    double east_m = 0.0, north_m = 0.0;  // its middle, then
+    double direction_deg = 0.0;          // travelling towards, counter-clockwise from +x
+    double speed_mps = 6.0;              // ≥ 0
+    double length_m = 100.0,
+           width_m = 300.0;  // > 0, of the ellipse, where it blows whole: along its way and across
+    double edge_m = 60.0;    // > 0: round the ellipse, where it fades
+    double wind = 2.0;       // 0 … 4, times the sea's wind
 };
 
 // [sea]

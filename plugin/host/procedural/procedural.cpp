@@ -58,8 +58,7 @@ void check_frame(double frame) {
 pelagic_vessel vessel_of(const Scene& scene, std::size_t index, double frame) {
     const Vessel& vessel = scene.waves.vessels[index];
     const ObjectPose pose = object_pose(scene, {.vessel = static_cast<int>(index) + 1}, frame);
-    const glm::dvec2 velocity_mps =
-        path_of(scene.shot, vessel).velocity_mps(scene.shot.time_s(frame));
+    const glm::dvec2 velocity_mps = path_of(scene.shot, vessel).velocity_mps(scene.shot.time_s(frame));
     pelagic_vessel out{};
     for (int axis = 0; axis < 3; ++axis) {
         out.position_m[axis] = pose.place_m[axis];

@@ -207,9 +207,8 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
         EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;
         // Wave trains have no lean and no pairs; bodies and fronts that aren't there, a coast that isn't felt and no rain are no line.
         const std::size_t without = key.path == "waves.model" ? 2 : 0;
-        const bool is_added =
-            key.is_optional || key.path == kObjectsKey || key.path == kCoastKey || key.path == kRainKey ||
-            key.path == kFrontsKey;
+        const bool is_added = key.is_optional || key.path == kObjectsKey || key.path == kCoastKey ||
+                              key.path == kRainKey || key.path == kFrontsKey;
         EXPECT_EQ(described(changed, key.key_parts).size() + without,
                   described(Scene{}, key.key_parts).size() + (is_added ? 1u : 0u))
             << key.path;

@@ -319,7 +319,8 @@ TEST(Procedural, AVesselIsWhereItsPathSays) {
     for (const double frame : {-20.0, 30.25, 71.5, 200.0}) {
         constexpr double kStep = 1e-3;
         const pelagic_vessel here = at(0, frame), before = at(0, frame - kStep), after = at(0, frame + kStep);
-        const double step_s = 0.5 * kStep / 24.0, speed_mps = std::hypot(here.velocity_mps[0], here.velocity_mps[1]);
+        const double step_s = 0.5 * kStep / 24.0,
+                     speed_mps = std::hypot(here.velocity_mps[0], here.velocity_mps[1]);
         for (int axis = 0; axis < 2; ++axis) {
             EXPECT_NEAR((after.position_m[axis] - before.position_m[axis]) / (2.0 * step_s),
                         here.velocity_mps[axis], 1e-5);

@@ -185,9 +185,9 @@ PELAGIC_API pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double fr
  * pelagic_water_at() of position_m + x ahead + y port. The wake is in it. */
 typedef struct pelagic_vessel {
     size_t size;
-    double position_m[3]; /* the middle of the hull at the water, whose z is 0 */
-    double ahead[3], port[3], up[3]; /* unit vectors in the world: to the bow, to port, upwards */
-    double velocity_mps[3];          /* per second of the sea */
+    double position_m[3];               /* the middle of the hull at the water, whose z is 0 */
+    double ahead[3], port[3], up[3];    /* unit vectors in the world: to the bow, to port, upwards */
+    double velocity_mps[3];             /* per second of the sea */
     double length_m, beam_m, draught_m; /* of the hull in the water */
 } pelagic_vessel;
 /* The vessel'th, from 0, at a frame of the shot, which may lie between frames and outside its range. */

@@ -209,8 +209,8 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      .name = "gusts",
      .is_asked_for =
          [](const Scene& scene) {
-             const SeaState& sea = scene.sea;
-             return (sea.gust_strength > 0.0 || has_fronts(sea)) && sea.wind_speed_mps > 0.0;
+             return (scene.sea.gust_strength > 0.0 || has_fronts(scene.sea)) &&
+                    scene.sea.wind_speed_mps > 0.0;
          },
      .why_not = "sea.gust_strength is 0 without sea.gust_fronts, or there is no wind",
      .turn_off =

@@ -35,7 +35,7 @@ inline T ragged_share(T share, T level) {
 template <class T>
 inline T front_wind(T x, T y, T along_x, T along_y, T inner_u, T inner_v, T outer_u, T outer_v, T wind,
                     T level) {
-    const MaskShare<T> at =
+    MaskShare<T> at =
         mask_share(x * along_x + y * along_y, y * along_x - x * along_y, inner_u, inner_v, outer_u, outer_v);
     return T(1) + (wind - T(1)) * ragged_share(at.share, level);
 }

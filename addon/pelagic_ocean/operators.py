@@ -182,7 +182,7 @@ class ListOperator(NeedsOcean):
 
 
 class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
-    """Add an entry; of a hero wave, at the 3D cursor in the current frame; of a mask, a calm at the 3D cursor; of a vessel, a course across it"""
+    """Add an entry; of a hero wave and a gust's front, at the 3D cursor in the current frame; of a mask, a calm at the 3D cursor; of a vessel, a course across it"""
 
     bl_idname = "pelagic.list_add"
     bl_label = "Add"
@@ -195,9 +195,12 @@ class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
             row.east_m, row.north_m, row.waves = at.x, at.y, 0.5
         if self.path == "waves.vessels":  # for a start: across the cursor, along +x
             row.path = f"{context.scene.frame_start} {at.x - 50.0:.9g} {at.y:.9g}, {context.scene.frame_start + 480} {at.x + 50.0:.9g} {at.y:.9g}"
+        if self.path in ("waves.heroes", "sea.gust_fronts"):
+            row.frame, row.east_m, row.north_m = context.scene.frame_current_final, at.x, at.y
+        if self.path == "sea.gust_fronts":  # for a start: along the wind
+            row.direction_deg = obj.pelagic.sea.wind_direction_deg
         if self.path == "waves.heroes":
             simulation = play.simulation_of(obj)
-            row.frame, row.east_m, row.north_m = context.scene.frame_current_final, at.x, at.y
             if simulation.sea and simulation.significant_height_m > 0.0:  # of crests one in three thousand is as high
                 row.height_m = simulation.significant_height_m
         obj.update_tag()

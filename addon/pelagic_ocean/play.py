@@ -154,7 +154,7 @@ class Simulation:
         except (ValueError, OSError) as error:
             self._refuse(None, str(error))
             return None
-        clock = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if keys or settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] or settings[PLACE["waves.vessels"]] else ()
+        clock = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if keys or settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] or settings[PLACE["waves.vessels"]] or settings[PLACE["sea.gust_fronts"]] else ()
         velocity = wants_velocity(obj, bpy_scene)
         drops = tuple(settings[place] for place in DROPS_FIELDS) if settings[PLACE["effects.spray_drops"]] else ()  # they are the sea's
         key = (tuple(settings[place] for place in SEA_FIELDS), clock, surface_key, velocity, drops, repr(keys))

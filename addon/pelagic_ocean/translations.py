@@ -25,7 +25,7 @@ GERMAN = {
     "Wind speed": "Windgeschwindigkeit", "Wind direction": "Windrichtung", "Fetch": "Streichlänge", "Depth": "Wassertiefe",
     "Spectrum": "Spektrum", "Growth": "Wachstum", "Sky rotation": "Himmelsdrehung", "Sky gain": "Himmelsverstärkung", "Height and peak": "Höhe und Spektralgipfel", "Short waves": "Kurze Wellen", "Significant height": "Signifikante Wellenhöhe",
     "Spreading": "Richtungsverteilung", "Directionality": "Richtungsbündelung", "Gust strength": "Böenstärke",
-    "Gust size": "Böengröße", "Rain": "Regen", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
+    "Gust size": "Böengröße", "Gust fronts": "Böenfronten", "Speed": "Geschwindigkeit", "Rain": "Regen", "Swell": "Dünung", "Height": "Höhe", "Period": "Periode", "Direction": "Richtung",
     "Spectrum file": "Spektrumsdatei", "Spectrum time": "Zeit des Spektrums", "Model": "Modell", "Choppiness": "Zuspitzung",
     "Lean": "Vorneigung", "Second order": "Zweite Ordnung",
     "Cascades": "Kaskaden", "Size": "Größe", "Resolution": "Auflösung", "Tiling": "Kachelung", "Band gains": "Bandverstärkungen", "Heroes": "Einzelwellen", "Masks": "Masken", "Picture": "Bild", "Vessels": "Schiffe", "Path": "Pfad", "Interpolation": "Interpolation", "Beam": "Breite", "Draught": "Tiefgang", "Linear": "Linear", "Smooth": "Weich", "Edge": "Rand", "Ripples": "Kräuselwellen", "Foam": "Schaum", "East": "Osten", "North": "Norden",

@@ -349,11 +349,19 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
                          which == 0 ? aged.data() : next_age.data());
     });
     const auto& masks = sea_->plan().masks;
-    for (std::size_t i = 0; masks && i < foam.size(); ++i) {
+    const Gusts* const gusts =
+        sea_->gusts() && !sea_->gusts()->plan.fronts.empty() ? &*sea_->gusts() : nullptr;
+    for (std::size_t i = 0; (masks || gusts) && i < foam.size(); ++i) {
         if (part.level[i] + 1 < FoamPlan::kLevels) continue;
-        // Beyond all tiles masks leave as much of the mean.
-        const MaskGains<double> gains = masks->at(locate.rest_m(first + i));
-        const auto gain = static_cast<float>(gains.foam * masked_breaking(gains.waves, breaking_deviate_));
+        // Beyond all tiles masks leave as much of the mean, and fronts make as much of it, where they are now.
+        const glm::dvec2 place_m = locate.rest_m(first + i);
+        double gained = 1.0;
+        if (masks) {
+            const MaskGains<double> gains = masks->at(place_m);
+            gained = gains.foam * masked_breaking(gains.waves, breaking_deviate_);
+        }
+        if (gusts) gained *= gusts->foam_of(gusts->plan.fronts_wind(place_m, time_s_));
+        const auto gain = static_cast<float>(gained);
         next[i] *= gain;
         next_age[i] *= gain;
         if (part.level[i] < FoamPlan::kLevels) continue;

@@ -33,6 +33,7 @@ HWY_INLINE Pack<D> cosine_of_cycles(Pack<D> cycles) {
 }
 
 #include "core/plan/filter.inl"
+#include "core/plan/masks.inl"
 #include "core/waves/gusts.inl"
 
 template <class N, class Terms>
@@ -42,6 +43,20 @@ HWY_INLINE N ValueOf(const Terms& terms, N x) {
     return sum;
 }
 
+template <class T, class N>
+HWY_INLINE N FrontsWind(const GustArgs<T>& args, N x, N y, N level) {
+    const GustsPlan& plan = args.gusts->plan;
+    N wind(1);
+    for (std::size_t f = 0; f < plan.fronts.size(); ++f) {
+        const GustsPlan::Front& front = plan.fronts[f];
+        const glm::dvec2 from = args.phases->from_fronts[f];
+        wind = wind * front_wind(x + N(from.x), y + N(from.y), N(front.along.x), N(front.along.y),
+                                 N(front.inner_per_m.x), N(front.inner_per_m.y), N(front.outer_per_m.x),
+                                 N(front.outer_per_m.y), N(front.wind), level);
+    }
+    return minimum(maximum(wind, N(plan.weakest)), N(plan.strongest));
+}
+
 template <class T>
 void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
     using D = hn::ScalableTag<T>;
@@ -49,6 +64,7 @@ void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
     const D d;
     const FootprintFilter filter;
     const N n_min(filter.n_min), per_range(1.0 / (filter.n_max - filter.n_min));
+    const bool has_fronts = !args.gusts->plan.fronts.empty();
     for (std::size_t i = 0; i < args.padded; i += hn::Lanes(d)) {
         const N x(hn::Load(d, args.rest_x + i)), y(hn::Load(d, args.rest_y + i));
         const N width(hn::Load(d, chunk.width_m.data() + i));
@@ -60,15 +76,21 @@ void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
         GustSum<N> sum{};
         for (std::size_t w = 0; w < GustsPlan::kWaves; ++w) {
             const GustsPlan::Wave& wave = args.gusts->plan.waves[w];
-            const N cycles = x * N(wave.cycles_per_m.x) + y * N(wave.cycles_per_m.y) + N((*args.phases)[w]);
+            const N cycles =
+                x * N(wave.cycles_per_m.x) + y * N(wave.cycles_per_m.y) + N(args.phases->cycles[w]);
             const N length =
                 square_root(length2_along(width, axis_x, axis_y, N(wave.along.x), N(wave.along.y)));
             const N weight = footprint_weight(N(wave.shortest_m) / length, n_min, per_range);
             sum = with_gust(sum, N(wave.amplitude), cycles, weight);
         }
         const N level = gust_level(sum.resolved);
-        hn::Store((N(1) + N(args.gusts->plan.strength) * level).v, d, chunk.factor.data() + i);
-        hn::Store((ValueOf(args.gusts->of_level, level) + ValueOf(args.gusts->of_kept, sum.kept)).v, d,
+        N factor = N(1) + N(args.gusts->plan.strength) * level, at = level;
+        if (has_fronts) {
+            factor = factor * FrontsWind(args, x, y, level);
+            at = (factor - N(args.gusts->middle)) * N(1.0 / args.gusts->half);
+        }
+        hn::Store(factor.v, d, chunk.factor.data() + i);
+        hn::Store((ValueOf(args.gusts->of_level, at) + ValueOf(args.gusts->of_kept, sum.kept)).v, d,
                   chunk.whitecap_threshold.data() + i);
     }
 }
@@ -99,6 +121,10 @@ void gusts_at(const GustArgs<double>& args, GustChunk<double>& chunk) {
     HWY_DYNAMIC_DISPATCH(GustsOfDouble)(args, chunk);
 }
 
+GustPhases gust_phases(const GustsPlan& plan, glm::dvec2 origin_m, double time_within_loop_s) {
+    return {plan.cycles_at(origin_m, time_within_loop_s), plan.from_fronts(origin_m, time_within_loop_s)};
+}
+
 template <class T>
 void GustChunk<T>::take(const Points<T>& points, T only_m, std::size_t first, std::size_t count) {
     constexpr std::size_t kLongest = Chunk<T>::kLongestVector;
@@ -124,7 +150,7 @@ void GustChunk<T>::take(const Points<T>& points, T only_m, std::size_t first, st
 template <class T>
 void whitecap_thresholds(const Gusts& gusts, double time_within_loop_s, const Points<T>& points,
                          double pixel_m, std::span<float> thresholds) {
-    const GustPhases phases = gusts.plan.cycles_at(points.origin_m, time_within_loop_s);
+    const GustPhases phases = gust_phases(gusts.plan, points.origin_m, time_within_loop_s);
     Chunk<T> chunk;
     GustChunk<T> of;
     for (std::size_t first = 0; first < points.count; first += Chunk<T>::kPoints) {

@@ -25,8 +25,12 @@ struct GustChunk {
     void take(const Points<T>& points, T only_m, std::size_t first, std::size_t count);
 };
 
-// The phases of the pattern's waves at the points' origin.
-using GustPhases = std::array<double, GustsPlan::kWaves>;
+// The phases of the pattern's waves at the points' origin, and where that is from the middles of fronts [m].
+struct GustPhases {
+    std::array<double, GustsPlan::kWaves> cycles{};
+    GustsPlan::FromFronts from_fronts{};
+};
+GustPhases gust_phases(const GustsPlan& plan, glm::dvec2 origin_m, double time_within_loop_s);
 
 // Of the chunk's points at rest, up to `padded`.
 template <class T>

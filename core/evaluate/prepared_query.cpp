@@ -257,7 +257,7 @@ typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m)
     }
     if (has_trains_)
         place.start_cycles = phases_at(frame_->sea().trains(), origin_m, frame_->time_within_loop_s());
-    if (gusts_) place.gusts = gusts_->plan.cycles_at(origin_m, frame_->time_within_loop_s());
+    if (gusts_) place.gusts = gust_phases(gusts_->plan, origin_m, frame_->time_within_loop_s());
     return place;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/plan/memory.h"
@@ -40,6 +42,17 @@ std::string about_whitecaps(const Plan& plan) {
                 ? ""
                 : ", as a choppiness of " + number_text(plan.breaking.choppiness.largest()) +
                       " would press them");
+}
+
+std::string about_gusts(const Plan& plan) {
+    const std::vector<GustsPlan::Front>& fronts = plan.gusts->fronts;
+    if (fronts.empty()) return {};
+    std::string about;
+    for (const GustsPlan::Front& front : fronts)
+        about += "a front of " + rough_text(front.wind) + " times the wind that goes at " +
+                 rough_text(glm::length(front.velocity_mps)) + " m/s, at " + number_text(front.middle_m.x) +
+                 ", " + number_text(front.middle_m.y) + " m after " + rough_text(front.time_s) + " s; ";
+    return about + "waves that are shown don't feel fronts";
 }
 
 std::size_t mask_picture_bytes(const Plan& plan) {
@@ -195,13 +208,21 @@ const std::array kEffectTable = std::to_array<EffectRow>({
     {.effect = Effect::Gusts,
      .name = "gusts",
      .is_asked_for =
-         [](const Scene& scene) { return scene.sea.gust_strength > 0.0 && scene.sea.wind_speed_mps > 0.0; },
-     .why_not = "sea.gust_strength is 0, or there is no wind",
-     .turn_off = [](Scene& scene) { key_of("sea.gust_strength").set(scene, 0.0); },
+         [](const Scene& scene) {
+             return (scene.sea.gust_strength > 0.0 || has_fronts(scene.sea)) &&
+                    scene.sea.wind_speed_mps > 0.0;
+         },
+     .why_not = "sea.gust_strength is 0 without sea.gust_fronts, or there is no wind",
+     .turn_off =
+         [](Scene& scene) {
+             key_of("sea.gust_strength").set(scene, 0.0);
+             scene.sea.gust_fronts.clear();
+         },
      .plan = [](Plan& plan) { plan.gusts = plan_gusts(plan.from->scene); },
      .key_parts = key_parts(KeyPart::Gusts),
      .shapes =
-         [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); }},
+         [](const Query& query) { return !query.only_cascade && (query.products & gusty_products()).any(); },
+     .about = about_gusts},
     {.effect = Effect::Masks,
      .name = "calm and rough places",
      .is_asked_for =

@@ -99,7 +99,9 @@ std::string cost_text(const Plan& plan, const EffectRow& row) {
     const auto from = std::make_shared<PreparedScene>(*plan.from);
     row.turn_off(from->scene);
     if (!is_on(Effect::SecondOrder, from->scene)) from->second_order = {};
-    if (!from->weather) from->extent = extent_of(from->scene, from->spectrum, from->second_order);
+    from->masks = masks_of(from->scene, from->spectrum);
+    if (!from->weather)
+        from->extent = extent_of(from->scene, from->spectrum, from->second_order, from->masks);
     std::vector<Query> queries;
     for (const PlannedQuery& planned : plan.queries)
         queries.push_back(with_effects(from->scene, planned.query));
@@ -177,9 +179,10 @@ std::string explain(const Plan& plan) {
     page += "\nEffects, and what a frame of the bake would do and hold less without each\n";
     for (const EffectRow& row : effect_table()) {
         const bool is_on = row.is_on(scene);
-        page += format("  %s%s: %s%s\n", is_on ? "" : "no ", row.name,
-                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str(),
-                       is_on && row.about ? ("; " + row.about(plan)).c_str() : "");
+        const std::string about = is_on && row.about ? row.about(plan) : "";
+        page += format("  %s%s: %s%s%s\n", is_on ? "" : "no ", row.name,
+                       (is_on ? cost_text(plan, row) : row.why_off(scene)).c_str(), about.empty() ? "" : "; ",
+                       about.c_str());
     }
 
     if (plan.trains && plan.trains->count > 0) page += "\nWave trains\n" + trains_text(plan);

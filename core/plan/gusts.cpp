@@ -1,10 +1,12 @@
 #include "core/plan/gusts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
+#include "core/plan/masks.h"
 
 namespace pelagic {
 
@@ -19,6 +21,27 @@ std::array<double, GustsPlan::kWaves> GustsPlan::cycles_at(glm::dvec2 origin_m,
                    within(wave.cycles_per_s * time_within_loop_s) + wave.start_cycles);
     }
     return cycles;
+}
+
+GustsPlan::FromFronts GustsPlan::from_fronts(glm::dvec2 origin_m, double time_s) const {
+    FromFronts from{};
+    for (std::size_t i = 0; i < fronts.size(); ++i) from[i] = origin_m - fronts[i].middle_at(time_s);
+    return from;
+}
+
+double GustsPlan::fronts_wind(glm::dvec2 place_m, double time_s) const {
+    const FromFronts from = from_fronts(place_m, time_s);
+    double wind = 1.0;
+    for (std::size_t i = 0; i < fronts.size(); ++i) {
+        const Front& front = fronts[i];
+        wind *= front_wind(from[i].x, from[i].y, front.along.x, front.along.y, front.inner_per_m.x,
+                           front.inner_per_m.y, front.outer_per_m.x, front.outer_per_m.y, front.wind, 0.0);
+    }
+    return std::clamp(wind, weakest, strongest);
+}
+
+bool has_fronts(const SeaState& sea) {
+    return std::ranges::any_of(sea.gust_fronts, [](const GustFront& front) { return front.wind != 1.0; });
 }
 
 GustsPlan plan_gusts(const Scene& scene) {
@@ -64,6 +87,22 @@ GustsPlan plan_gusts(const Scene& scene) {
         variance += 0.5 * wave.amplitude * wave.amplitude;
     }
     for (GustsPlan::Wave& wave : plan.waves) wave.amplitude /= std::sqrt(variance);
+    for (const GustFront& front : sea.gust_fronts) {
+        if (front.wind == 1.0) continue;
+        const double turn = front.direction_deg * kPi / 180.0;
+        const glm::dvec2 way(std::cos(turn), std::sin(turn)),
+            half_m(0.5 * front.length_m, 0.5 * front.width_m);
+        plan.fronts.push_back({.middle_m = {front.east_m, front.north_m},
+                               .along = way,
+                               .velocity_mps = loop_s > 0.0 ? glm::dvec2(0.0) : front.speed_mps * way,
+                               .inner_per_m = 1.0 / half_m,
+                               .outer_per_m = 1.0 / (half_m + front.edge_m),
+                               .time_s = scene.shot.time_s(front.frame),
+                               .reach_m = std::max(half_m.x, half_m.y) + front.edge_m,
+                               .wind = front.wind});
+        plan.weakest = std::min(plan.weakest, front.wind);
+        plan.strongest = std::max(plan.strongest, front.wind);
+    }
     return plan;
 }
 

@@ -24,6 +24,22 @@ inline MaskShare<T> mask_share(T u, T v, T inner_u, T inner_v, T outer_u, T oute
                         rate * (v1_rate * q2 + (q1 - T(1)) * v2_rate - t * (v1_rate - v2_rate)));
 }
 
+// The share of a gust's front (core/plan/gusts.h): the level of gusts, −1 … 1, takes the edge nearer or farther, and beyond and within it
+// nothing. Its strength, 4, is by eye: half of the edge is patches that hold or don't.
+template <class T>
+inline T ragged_share(T share, T level) {
+    return smooth_rise(minimum(maximum(share + T(4) * level * share * (T(1) - share), T(0)), T(1)));
+}
+
+// The wind of a front, times the sea's. The place: from its middle [m].
+template <class T>
+inline T front_wind(T x, T y, T along_x, T along_y, T inner_u, T inner_v, T outer_u, T outer_v, T wind,
+                    T level) {
+    MaskShare<T> at =
+        mask_share(x * along_x + y * along_y, y * along_x - x * along_y, inner_u, inner_v, outer_u, outer_v);
+    return T(1) + (wind - T(1)) * ragged_share(at.share, level);
+}
+
 // Quadratic B-splines of the three cells round a place, which add up to 1, and how they change from one cell to the next. From the middle
 // of the cell that it is in, −½ … ½ cells.
 template <class T>

@@ -411,7 +411,9 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.breaking = breaking_of(scene, plan.filter);
-    plan.masks = plan_masks(scene, prepared.spectrum);  // before the queries: a slick is one of their levels
+    // Before the queries: a slick is one of their levels. Depths that nobody has read are refused.
+    plan.masks = scene.waves.coast && !scene.waves.coast_depths ? plan_masks(scene, prepared.spectrum)
+                                                                : prepared.masks;
     // In pictures the edge of what breaks is as wide as a breaker's roller is thick, and the foam's pattern tears it: to a pixel it would be cut.
     // Two thirds of the height are by eye; a mean over footprints stays.
     constexpr double kRollerOverHeight = 2.0 / 3.0;

@@ -28,12 +28,19 @@ std::shared_ptr<const PreparedScene> prepare(Scene scene) {
     DirectionalSpectrum spectrum(scene.sea, scene.waves.band_gains);
     const SecondOrder second =
         is_on(Effect::SecondOrder, scene) ? pelagic::second_order(spectrum) : SecondOrder();
-    const Extent extent = extent_of(scene, spectrum, second);
+    std::optional<MasksPlan> masks = masks_of(scene, spectrum);
+    const Extent extent = extent_of(scene, spectrum, second, masks);
     return std::make_shared<const PreparedScene>(
-        PreparedScene{std::move(scene), std::move(spectrum), second, extent});
+        PreparedScene{std::move(scene), std::move(spectrum), second, extent, std::move(masks)});
 }
 
-Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const SecondOrder& second) {
+std::optional<MasksPlan> masks_of(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    const bool is_read = !scene.waves.coast || scene.waves.coast_depths;
+    return is_read ? plan_masks(scene, spectrum) : plan_masks(scene);
+}
+
+Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const SecondOrder& second,
+                 const std::optional<MasksPlan>& masks) {
     const Choppiness choppiness = Choppiness::asked(scene);
     Extent extent = expected_extent(spectrum, choppiness);
     // Of a value x deviations high, a skewness s makes one of x + s (x² − 1)/6 (Cornish and Fisher 1938).
@@ -48,9 +55,7 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
         extent.height_m = std::hypot(extent.height_m, hero_m);
         extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);
     }
-    // Depths that nobody has read yet are refused by whoever plans.
-    const bool is_read = !scene.waves.coast || scene.waves.coast_depths;
-    if (const std::optional<MasksPlan> masks = is_read ? plan_masks(scene, spectrum) : plan_masks(scene)) {
+    if (masks) {
         extent.height_m *= masks->largest();
         extent.reach_m *= masks->largest();
         for (double& deviation_m : extent.unresolved.deviation_m) deviation_m *= masks->largest();

@@ -109,6 +109,7 @@ std::shared_ptr<const PreparedScene> prepared_at(const std::shared_ptr<const Pre
                       .spectrum = DirectionalSpectrum(parts, dispersion),
                       .second_order = shot->second_order,
                       .extent = blended(first.extent, second.extent, blend.share),
+                      .masks = shot->masks,
                       .weather = nullptr,
                       .wind = first.wind});
 }
@@ -294,11 +295,13 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     }
     DirectionalSpectrum mean(parts, Dispersion{scene.sea.depth_m});
     const SecondOrder second = is_on(Effect::SecondOrder, scene) ? second_order(mean) : SecondOrder();
+    std::optional<MasksPlan> masks = masks_of(scene, mean);
     return std::make_shared<const PreparedScene>(
         PreparedScene{.scene = std::move(scene),
                       .spectrum = std::move(mean),
                       .second_order = second,
                       .extent = extent,
+                      .masks = std::move(masks),
                       .weather = std::make_shared<const Weather>(std::move(weather)),
                       .wind = std::nullopt});
 }

@@ -425,7 +425,6 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts) {
     if (scene.waves.model == WaveModel::Trochoid &&
         (key.path == "waves.lean_deg" || key.path == "waves.second_order"))
         return false;
-    if (key.path == kObjectsKey && scene.objects.empty()) return false;
     if (key.is_silent_off && key.get(scene) == key.fallback) return false;
     return (key.key_parts & parts).any();
 }

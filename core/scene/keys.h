@@ -171,7 +171,7 @@ inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile
                                   kCameraFile = "camera.file";
 // The list of bodies, whose meshes are as well.
 inline constexpr std::string_view kObjectsKey = "objects", kMasksKey = "waves.masks",
-                                  kCoastKey = "waves.coast";
+                                  kCoastKey = "waves.coast", kFrontsKey = "sea.gust_fronts";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);

@@ -47,6 +47,11 @@ inline constexpr Range kSignificantHeight_m{0.0, 50.0};
 inline constexpr Range kDirectionality{0.01, 20.0};  // from all directions alike to needles
 inline constexpr Range kGustStrength{0.0, 1.0};
 inline constexpr Range kGustSize_m{1.0, 1e5};
+inline constexpr int kGustFronts = 8;  // each is looked at for every point
+inline constexpr Range kFrontSpeed_mps{0.0, 100.0};
+inline constexpr Range kFrontSize_m{1.0, 1e5};
+inline constexpr Range kFrontEdge_m{1.0, 1e5};
+inline constexpr Range kFrontWind{0.0, 4.0};
 inline constexpr Range kRain_mm_h{0.0, 300.0};
 inline constexpr Range kDepth_m{0.01, 1e6};  // or infinite
 inline constexpr int kSwells = 64;           // each is a spectrum of its own in every integral

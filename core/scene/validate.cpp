@@ -866,6 +866,15 @@ void check_masks(SceneChecker& check, const Scene& scene) {
                       "false, or no waves.masks"});
 }
 
+// Fronts that move leave a loop. A sea that stands still has none to leave.
+void check_fronts(SceneChecker& check, const Scene& scene) {
+    if (!(scene.shot.sea_loop_s() > 0.0)) return;
+    for (std::size_t i = 0; i < scene.sea.gust_fronts.size(); ++i)
+        if (const double speed_mps = scene.sea.gust_fronts[i].speed_mps; speed_mps > 0.0)
+            check.refuse({indexed(std::string(kFrontsKey), i) + ".speed_mps", number_text(speed_mps),
+                          "takes it away, and in a loop it would have to be back", "0, or shot.loop_s = 0"});
+}
+
 void check_output(SceneChecker& check, const Scene& scene) {
     const Effects& effects = scene.effects;
     const Output& output = scene.output;
@@ -970,6 +979,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_budget(check, scene.quality);
     check_tiles(check, scene.output, scene.waves);
     check_masks(check, scene);
+    check_fronts(check, scene);
     check_coast(check, scene);
     check_vessels(check, scene);
     check_objects(check, scene);

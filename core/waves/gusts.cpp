@@ -85,15 +85,32 @@ double value_of(std::span<const double> terms, double x) {
 
 }  // namespace
 
+double Gusts::foam_of(double fronts_wind) const {
+    return std::min(std::pow(fronts_wind, exponent), most_foam);
+}
+
 Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold, double exponent) {
-    Gusts gusts{.plan = plan};
+    Gusts gusts{.plan = plan, .half = plan.strength, .exponent = exponent};
     gusts.of_level[0] = threshold;
+    const bool has_fronts = !plan.fronts.empty();
+    if (has_fronts) {
+        const double least = (1.0 - plan.strength) * plan.weakest,
+                     largest = (1.0 + plan.strength) * plan.strongest;
+        gusts.middle = 0.5 * (least + largest);
+        gusts.half = 0.5 * (largest - least);
+    }
     if (!std::isfinite(threshold)) return gusts;
     const double mean = balance.coverage_at(threshold);
     const auto coverage_at = [&](double at) { return balance.coverage_at(at); };
     const double highest = balance.highest_threshold(), most = std::min(kMostCoverage, coverage_at(highest));
     // Scaled so that the mean over the whole pattern is the sea's. The coverage is nowhere above `most`.
+    gusts.most_foam = mean > 0.0 ? most / mean : 1.0;
+    // Without fronts.
     const auto share = [&](double level) { return std::pow(1.0 + plan.strength * level, exponent); };
+    const auto threshold_of = [&](double level) {
+        return value_of(gusts.of_level,
+                        has_fronts ? (1.0 + plan.strength * level - gusts.middle) / gusts.half : level);
+    };
     const auto whole = likely_values(resolved_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;
     const double scale = solve(0.0, kMostScale, mean, [&](double by) {
@@ -103,7 +120,8 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     std::array<double, Gusts::kLevelTerms> level{}, at_level{};
     for (std::size_t i = 0; i < level.size(); ++i) {
         level[i] = std::cos(kPi * (static_cast<double>(i) + 0.5) / Gusts::kLevelTerms);  // Chebyshev's nodes
-        at_level[i] = solve(0.0, highest, std::min(scale * share(level[i]), most), coverage_at);
+        const double foam = std::pow(gusts.middle + gusts.half * level[i], exponent);
+        at_level[i] = solve(0.0, highest, std::min(scale * foam, most), coverage_at);
     }
     gusts.of_level = polynomial(level, at_level);
 
@@ -118,9 +136,8 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
         });
         const auto values = likely_values(resolved_amplitudes(plan, std::exp2(octave)));
         at_kept[i] = solve(-0.5, 0.5, mean, [&](double more) {
-            return mean_of(values, [&](double value) {
-                return coverage_at(value_of(gusts.of_level, level_of(value)) + more);
-            });
+            return mean_of(values,
+                           [&](double value) { return coverage_at(threshold_of(level_of(value)) + more); });
         });
     }
     gusts.of_kept = polynomial(kept, at_kept);

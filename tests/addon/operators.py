@@ -163,6 +163,17 @@ with checking("a hero wave stands at the cursor in the current frame"):
     later = (numbers(sea.data)[:, 2])[near].max()
     assert later < 0.8 * hero.height_m, later
 
+with checking("a gust's front is at the cursor in the current frame, and goes along the wind"):
+    sea, scene = add_ocean(), bpy.context.scene
+    sea.location, sea.pelagic.sea.wind_direction_deg = (5.0, 2.0, 0.0), 40.0
+    bpy.context.view_layer.update()
+    scene.frame_set(30)
+    scene.cursor.location = (16.0, -9.0, 3.0)
+    bpy.ops.pelagic.list_add(path="sea.gust_fronts")
+    front, = ocean.scene_of(sea, scene).sea.gust_fronts
+    assert (front.frame, front.direction_deg, front.wind) == (30, 40.0, 2.0), front
+    assert abs(front.east_m - 11.0) < 1e-5 and abs(front.north_m + 11.0) < 1e-5, front
+
 with checking("a calm place stands at the cursor"):
     sea, scene = add_ocean(), bpy.context.scene
     sea.location, sea.rotation_euler[2] = (5.0, 2.0, 0.0), 0.5

@@ -240,6 +240,17 @@ class Calls {
                 PELAGIC_OK &&
             made.is_whole())
             camera_ = made.value();
+        Sized<pelagic_vessel> vessel(numbers_, {});
+        const std::size_t which = numbers_.below(3);
+        if (asked_for(vessel,
+                      [&](auto* to, auto* error) { return pelagic_vessel_at(of, which, at, to, error); }) ==
+                PELAGIC_OK &&
+            vessel.is_whole()) {
+            const pelagic_vessel there = vessel.value();
+            for (const double value : {there.position_m[0], there.position_m[1], there.ahead[0],
+                                       there.port[1], there.velocity_mps[0]})
+                hold(std::isfinite(value), "where a vessel is is finite");
+        }
     }
 
     void create() {

@@ -110,6 +110,18 @@ struct MeasuredSpectrum {
     std::string file = {};  // where it was read; what a shot depends on is the content
 };
 
+// A patch of another wind that crosses the sea, as a cat's paw or a squall line (core/plan/gusts.h): an ellipse with a ragged edge.
+struct GustFront {
+    double frame = 1.0;                  // when it is there, on the shot's own clock
+    double east_m = 0.0, north_m = 0.0;  // its middle, then
+    double direction_deg = 0.0;          // travelling towards, counter-clockwise from +x
+    double speed_mps = 6.0;              // ≥ 0
+    double length_m = 100.0,
+           width_m = 300.0;  // > 0, of the ellipse, where it blows whole: along its way and across
+    double edge_m = 60.0;    // > 0: round the ellipse, where it fades
+    double wind = 2.0;       // 0 … 4, times the sea's wind
+};
+
 // [sea]
 struct SeaState {
     double wind_speed_mps = 10.0;                              // 10 m above the sea, 0 … 80
@@ -129,6 +141,7 @@ struct SeaState {
     double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
     double gust_strength = 0.0;                  // 0 … 1: how much the wind varies over the surface
     double gust_size_m = 300.0;                  // > 0
+    std::vector<GustFront> gust_fronts;          // where they overlap, their winds multiply
     double rain_mm_h = 0.0;                      // 0 … 300
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;

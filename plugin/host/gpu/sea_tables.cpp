@@ -67,13 +67,29 @@ std::vector<std::array<float, 4>> rows_of(const Gusts& gusts, glm::dvec2 origin_
     return rows;
 }
 
+std::array<float, 4> row(double a, double b, double c, double d) {
+    return {static_cast<float>(a), static_cast<float>(b), static_cast<float>(c), static_cast<float>(d)};
+}
+
+// Those of its fronts.
+std::vector<std::array<float, 4>> front_rows_of(const Gusts& gusts, glm::dvec2 origin_m, double time_s) {
+    const GustsPlan::FromFronts from = gusts.plan.from_fronts(origin_m, time_s);
+    std::vector<std::array<float, 4>> rows;
+    for (std::size_t i = 0; i < gusts.plan.fronts.size(); ++i) {
+        const GustsPlan::Front& front = gusts.plan.fronts[i];
+        rows.push_back(row(from[i].x, from[i].y, front.along.x, front.along.y));
+        rows.push_back(
+            row(front.inner_per_m.x, front.inner_per_m.y, front.outer_per_m.x, front.outer_per_m.y));
+        rows.push_back(row(front.wind, front.reach_m, 0.0, 0.0));
+    }
+    rows.push_back(row(gusts.plan.weakest, gusts.plan.strongest, gusts.middle, 1.0 / gusts.half));
+    rows.push_back(row(gusts.exponent, gusts.most_foam, 0.0, 0.0));
+    return rows;
+}
+
 // Those of masks.glsl.
 std::vector<std::array<float, 4>> rows_of(const MasksPlan& plan, const SpectralMoments& slick,
                                           glm::dvec2 origin_m) {
-    const auto row = [](double a, double b, double c, double d) {
-        return std::array{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c),
-                          static_cast<float>(d)};
-    };
     std::vector<std::array<float, 4>> rows;
     int first_row = 0;
     for (const MasksPlan::Mask& mask : plan.masks) {
@@ -159,6 +175,7 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
             *sea_->plan().cascades[static_cast<std::size_t>(sea_cascades() + v)].vessel;
         append(rows_of(vessel, origin_m, time_within_loop_s));
     }
+    if (fronts() > 0) append(front_rows_of(*sea_->gusts(), origin_m, time_within_loop_s));
     return block;
 }
 

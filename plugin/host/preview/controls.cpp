@@ -524,8 +524,8 @@ const std::vector<PanelSection>& panel_sections() {
     static const std::vector<PanelSection> sections{
         {"Wind and waves",
          {"sea.wind_speed_mps", "sea.wind_direction_deg", "sea.fetch_m", "sea.depth_m", "sea.spectrum",
-          "sea.spreading", "sea.directionality", "sea.gust_strength", "sea.gust_size_m", "sea.rain_mm_h",
-          "waves.choppiness", "waves.tiling", "shot.seed", "sea.swell"}},
+          "sea.spreading", "sea.directionality", "sea.gust_strength", "sea.gust_size_m", "sea.gust_fronts",
+          "sea.rain_mm_h", "waves.choppiness", "waves.tiling", "shot.seed", "sea.swell"}},
         {"Foam",
          {"effects.whitecaps", "effects.whitecap_law", "effects.sea_minus_air_c", "effects.whitecap_amount",
           "effects.breaking_from_m", "effects.foam_decay_s", "effects.foam_drift", "effects.foam_structure",

@@ -17,7 +17,9 @@
 #include <vector>
 
 #include "core/scene/budget.h"
+#include "core/scene/course.h"
 #include "core/scene/limits.h"
+#include "core/scene/object_pose.h"
 #include "core/surface/earth.h"
 #include "core/surface/view.h"
 #include "core/waves/folding.h"
@@ -46,6 +48,29 @@ Scene scene_of(const pelagic_source& source) {
         return without_budget(parse_shot({source.text, length}, name_of(source), check_scene));
     }
     return without_budget(load_shot(&required(source.path, "source.path"), check_scene));
+}
+
+void check_frame(double frame) {
+    if (!limits::kFrame.holds(frame))
+        throw std::invalid_argument("frame is outside the range; accepted: " + text_of(limits::kFrame));
+}
+
+pelagic_vessel vessel_of(const Scene& scene, std::size_t index, double frame) {
+    const Vessel& vessel = scene.waves.vessels[index];
+    const ObjectPose pose = object_pose(scene, {.vessel = static_cast<int>(index) + 1}, frame);
+    const glm::dvec2 velocity_mps = path_of(scene.shot, vessel).velocity_mps(scene.shot.time_s(frame));
+    pelagic_vessel out{};
+    for (int axis = 0; axis < 3; ++axis) {
+        out.position_m[axis] = pose.place_m[axis];
+        out.ahead[axis] = pose.turn[0][axis];
+        out.port[axis] = pose.turn[1][axis];
+        out.up[axis] = pose.turn[2][axis];
+        out.velocity_mps[axis] = axis < 2 ? velocity_mps[axis] : 0.0;
+    }
+    out.length_m = vessel.length_m;
+    out.beam_m = vessel.beam_m;
+    out.draught_m = vessel.draught_m;
+    return out;
 }
 
 View view_of(const pelagic_camera& camera) {
@@ -257,6 +282,7 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
         about.finest_pixel_m = shot.query().pixel_m.front();
         about.frame_bytes = plan.frame_bytes();
         about.foam_bytes = plan.foam_history_bytes();
+        about.vessels = shot.scene.waves.vessels.size();
         give(about, info, "info");
         return PELAGIC_OK;
     });
@@ -266,8 +292,7 @@ pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, doubl
                                      pelagic_error* error) {
     return guarded(error, [&] {
         const Shot& shot = required(sea, "sea").shot->scene.shot;
-        if (!limits::kFrame.holds(frame))
-            throw std::invalid_argument("frame is outside the range; accepted: " + text_of(limits::kFrame));
+        check_frame(frame);
         // Not reduced to the first round of a loop: a shutter may lie across its seam.
         required(time_s, "time_s") = shot.time_offset_s + shot.time_scale * ((frame - 1.0) / shot.fps);
         return PELAGIC_OK;
@@ -278,9 +303,22 @@ pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double frame, pelagic
                                    pelagic_error* error) {
     return guarded(error, [&] {
         const Scene& scene = required(sea, "sea").shot->scene;
-        if (!limits::kFrame.holds(frame))
-            throw std::invalid_argument("frame is outside the range; accepted: " + text_of(limits::kFrame));
+        check_frame(frame);
         give(camera_of(view_at(scene.camera, frame)), camera, "camera");
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_vessel_at(const pelagic_sea* sea, size_t vessel, double frame, pelagic_vessel* at,
+                                 pelagic_error* error) {
+    return guarded(error, [&] {
+        const Scene& scene = required(sea, "sea").shot->scene;
+        const std::size_t count = scene.waves.vessels.size();
+        if (vessel >= count)
+            throw std::invalid_argument("vessel is " + std::to_string(vessel) + "; accepted: below " +
+                                        std::to_string(count) + ", as many as waves.vessels has");
+        check_frame(frame);
+        give(vessel_of(scene, vessel, frame), at, "at");
         return PELAGIC_OK;
     });
 }

@@ -725,6 +725,39 @@ TEST(LivingFoam, OfGustsIsAsMuchAndWhereTheyBlew) {
     EXPECT_GT(spread(gusty), 1.5 * spread(even));
 }
 
+// A front that crosses leaves its foam where it was, asked at each past time: alone as in a run; beyond all tiles there is as much more.
+TEST(LivingFoam, OfAFrontIsWhereItWas) {
+    Scene scene = scene_of(3.0);
+    const Scene plain = scene;
+    scene.sea.gust_size_m = 20.0;
+    scene.sea.gust_fronts = {{.frame = 1.0,
+                              .east_m = -540.0,
+                              .speed_mps = 60.0,
+                              .length_m = 60.0,
+                              .width_m = 4000.0,
+                              .edge_m = 20.0,
+                              .wind = 2.2}};
+    const auto points = square(64, 4.0);  // from its middle, where it is after 9 s, to 256 m ahead
+    const auto sea = sea_of(scene, 4.0), without = sea_of(plain, 4.0);
+    Shown<> alone(sea), run(sea), of_plain(without);
+    for (const double t_s : {8.0, 10.0, 11.0}) run.at(t_s, points);
+    const Foam here = alone.at(14.0, points), later = run.at(14.0, points), even = of_plain.at(14.0, points);
+    EXPECT_EQ(here.total, later.total);
+    EXPECT_EQ(here.age_s, later.age_s);
+    const auto mean = [](const std::vector<float>& of) {
+        return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(of.size());
+    };
+    // It has gone.
+    EXPECT_NEAR(mean(here.active) / mean(even.active), 1.0, 0.02);
+    EXPECT_GT(mean(here.residual()), 1.5 * mean(even.residual()));
+
+    scene.sea.gust_fronts = {{.east_m = 0.0, .speed_mps = 0.0, .length_m = 1e5, .width_m = 1e5, .wind = 1.5}};
+    Shown<> broad(sea_of(scene, 3000.0)), broad_plain(sea_of(plain, 3000.0));
+    const auto far = square(8, 2000.0);
+    EXPECT_NEAR(mean(broad.at(5.0, far).residual()) / mean(broad_plain.at(5.0, far).residual()),
+                std::pow(1.5, 3.52), 0.15);  // the exponent of the first edition's law
+}
+
 TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
     Scene scene = scene_of(4.0);
     scene.effects.foam_drift = 0.1;

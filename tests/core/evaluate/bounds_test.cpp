@@ -53,6 +53,7 @@ Scene hero() {
 }
 Scene masked() {
     Scene scene;
+    scene.sea.gust_fronts = {{}};  // which move nothing
     scene.waves.masks = {{.length_m = 90.0, .width_m = 60.0, .edge_m = 40.0, .waves = 1.8},
                          {.east_m = 60.0, .width_m = 30.0, .edge_m = 50.0, .waves = 0.3, .ripples = 0.2},
                          {.north_m = 30.0,

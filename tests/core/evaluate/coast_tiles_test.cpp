@@ -421,6 +421,15 @@ TEST(CoastTiles, BoundsAndExtentsHoldWhatTheyReach) {
     EXPECT_NEAR(prepared->extent.height_m / plain->extent.height_m, most, 1e-9);
 }
 
+// By a prepared scene, for all plans of it, those of foam's levels among them.
+TEST(CoastTiles, AreWorkedOutOnce) {
+    const auto prepared = prepare(tiles(bed_of(plane_beach)));
+    ASSERT_TRUE(prepared->masks && prepared->masks->surf);
+    const Plan plan = make_plan(prepared, {filtered(products(Position), 1.0)});
+    EXPECT_EQ(plan.masks->surf, prepared->masks->surf);
+    EXPECT_EQ(plan_of_foam_level(plan, 2.0).masks->surf, prepared->masks->surf);
+}
+
 TEST(CoastTiles, SayTheirBytesAndLeaveOthersAlone) {
     const Scene scene = tiles(bed_of(plane_beach));
     const Plan plan = make_plan(scene, {unfiltered(products(Position))}),

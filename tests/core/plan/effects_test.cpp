@@ -118,6 +118,16 @@ TEST(Effects, ThePageListsEachWithItsCostOrWhyItIsOff) {
     EXPECT_NE(all.find("\n  gusts: no transform and no memory\n"), std::string::npos) << all;
 }
 
+TEST(Effects, ThePageSaysWhereFrontsAre) {
+    Scene scene = with_all();
+    scene.sea.gust_fronts = {{.frame = 25.0, .east_m = 30.0, .speed_mps = 8.0, .wind = 1.5}};
+    EXPECT_NE(page_of(scene).find(
+                  "; a front of 1.5 times the wind that goes at 8 m/s, at 30, 0 m after 1 s; waves that are "
+                  "shown don't feel fronts\n"),
+              std::string::npos)
+        << page_of(scene);
+}
+
 TEST(Effects, TheGainOfSlopesStandsUnderTheirVariance) {
     const std::string page = page_of(with_all());
     const std::size_t line = page.find("\n", page.find("    slope variance ")) + 1;

@@ -207,7 +207,7 @@ TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
         EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;
         // Wave trains have no lean and no pairs; bodies that aren't there are no line, nor is what nobody says off.
         const std::size_t without = key.path == "waves.model" ? 2 : 0;
-        const bool is_added = key.is_optional || key.path == kObjectsKey || key.is_silent_off;
+        const bool is_added = key.is_optional || key.is_silent_off;
         EXPECT_EQ(described(changed, key.key_parts).size() + without,
                   described(Scene{}, key.key_parts).size() + (is_added ? 1u : 0u))
             << key.path;

@@ -84,6 +84,18 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) {
              s.waves.cascades = {{400.0, 64, v}};
          }},
+        {"sea.gust_fronts[0].frame", limits::kFrame,
+         [](Scene& s, double v) { s.sea.gust_fronts = {{.frame = v}}; }},
+        {"sea.gust_fronts[0].speed_mps", limits::kFrontSpeed_mps,
+         [](Scene& s, double v) { s.sea.gust_fronts = {{.speed_mps = v}}; }},
+        {"sea.gust_fronts[0].length_m", limits::kFrontSize_m,
+         [](Scene& s, double v) { s.sea.gust_fronts = {{.length_m = v}}; }},
+        {"sea.gust_fronts[0].width_m", limits::kFrontSize_m,
+         [](Scene& s, double v) { s.sea.gust_fronts = {{.width_m = v}}; }},
+        {"sea.gust_fronts[0].edge_m", limits::kFrontEdge_m,
+         [](Scene& s, double v) { s.sea.gust_fronts = {{.edge_m = v}}; }},
+        {"sea.gust_fronts[0].wind", limits::kFrontWind,
+         [](Scene& s, double v) { s.sea.gust_fronts = {{.wind = v}}; }},
         {"waves.heroes[0].frame", limits::kFrame,
          [](Scene& s, double v) { s.waves.heroes = {{.frame = v}}; }},
         {"waves.heroes[0].height_m", limits::kHeroHeight_m,

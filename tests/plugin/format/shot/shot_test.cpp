@@ -750,7 +750,7 @@ TEST(Shot, AllProblemsInTheOrderOfTheFile) {
         "s.toml:5:1: sea.fetch = 3: is an unknown key, the nearest is sea.fetch_m; accepted: in sea the keys "
         "wind_speed_mps, wind_direction_deg, fetch_m, depth_m, depth_file, depth_size_m, depth_east_m, "
         "depth_north_m, spectrum, growth, short_waves, significant_height_m, "
-        "spreading, directionality, gust_strength, gust_size_m, rain_mm_h, swell, spectrum_file, spectrum_time\n"
+        "spreading, directionality, gust_strength, gust_size_m, gust_fronts, rain_mm_h, swell, spectrum_file, spectrum_time\n"
         "s.toml:6:12: sea.spectrum = 1: is an integer; accepted: one of \"pierson-moskowitz\" \"jonswap\" "
         "\"jonswap-1973\" \"tma\" \"elfouhaily\" \"omega-2\" \"phillips\" \"file\"\n"
         "s.toml:8:7: shot.fps = 0: is outside the range; accepted: 0.001 … 10000");

@@ -162,8 +162,8 @@ TEST(Panel, HasTheWholeWeather) {
     for (const PanelSection& section : panel_sections())
         for (const std::string_view path : section.paths) all += std::string(path) + ' ';
     for (const char* path : {"shot.seed", "sea.depth_m", "sea.spectrum", "sea.spreading", "sea.swell",
-                             "sea.gust_strength", "sea.gust_size_m", "waves.tiling", "effects.whitecaps",
-                             "effects.foam_decay_s", "effects.foam_drift"})
+                             "sea.gust_strength", "sea.gust_size_m", "sea.gust_fronts", "waves.tiling",
+                             "effects.whitecaps", "effects.foam_decay_s", "effects.foam_drift"})
         EXPECT_NE(all.find(path), std::string::npos) << path;
 }
 

@@ -383,6 +383,32 @@ TEST(QueryOnTheGpu, OfGustsIsEvaluates) {
                 {.origin_m = {far_m, -far_m}, .time_s = far_m > 0.0 ? 1e5 : 12.5, .unresolved_mss = 2e-4f});
         }
 }
+// Across their edges and where two of them overlap, also far away.
+TEST(QueryOnTheGpu, OfGustsFrontsIsEvaluates) {
+    for (const auto& [strength, far_m] : {std::pair(0.6, 0.0), std::pair(0.0, 1e6)}) {
+        Scene scene = scene_of_model(WaveModel::Fft);
+        scene.sea.gust_strength = strength;
+        scene.sea.gust_size_m = 40.0;
+        scene.sea.gust_fronts = {{.frame = 1.0,
+                                  .east_m = far_m,
+                                  .north_m = -far_m,
+                                  .direction_deg = 30.0,
+                                  .speed_mps = 0.5,
+                                  .length_m = 40.0,
+                                  .width_m = 200.0,
+                                  .edge_m = 60.0,
+                                  .wind = 2.5},
+                                 {.frame = 1.0,
+                                  .east_m = far_m,
+                                  .north_m = -far_m,
+                                  .direction_deg = 120.0,
+                                  .speed_mps = 0.0,
+                                  .edge_m = 30.0,
+                                  .wind = 0.4}};
+        compare(scene, picture_query(),
+                {.origin_m = {far_m, -far_m}, .time_s = 12.5, .unresolved_mss = 5e-5f}, 5000);
+    }
+}
 TEST(QueryOnTheGpu, WithOneFootprintForAllIsEvaluates) {
     Query query = picture_query();
     query.cell_m = query.pixel_m = {0.8};
@@ -396,6 +422,8 @@ TEST(SeaTables, OfSizesChosenForTheSceneFitEverywhere) {
     scenes[2].sea.wind_speed_mps = 3.0;
     scenes[2].sea.fetch_m = 500.0;
     scenes[3].sea.gust_strength = 0.5;
+    scenes[3].sea.gust_fronts.resize(limits::kGustFronts);
+    scenes[3].waves.masks.resize(limits::kMasks, {.waves = 0.5});
     scenes[4].sea.swell = {{3.0, 20.0, 0.0}};
     for (const Scene& scene : scenes)
         for (const double finest_m : {0.0, 1e-3, 0.01, 1.0}) {

@@ -285,6 +285,67 @@ TEST(Procedural, AFrameOutlivesItsSeasHandle) {
     EXPECT_TRUE(std::isfinite(ask(frame, rests).position[0].z));
 }
 
+// Along its path, as bodies of it lie there; and the water under its hull has its wake.
+TEST(Procedural, AVesselIsWhereItsPathSays) {
+    const std::string text = kShot +
+                             "[shot]\ntime_scale = 0.5\ntime_offset_s = 3.0\n"
+                             "[[waves.vessels]]\npath = \"1 10 -20, 49 10 -14, 97 2 -8\"\nlength_m = 12.0\n"
+                             "[[waves.vessels]]\npath = \"1 0 0, 49 3 4\"\ninterpolation = \"linear\"\n"
+                             "length_m = 9.0\nbeam_m = 3.0\ndraught_m = 1.0\n";
+    const SeaHandle sea = open_text(text);
+    pelagic_info info = PELAGIC_INIT(pelagic_info);
+    ASSERT_EQ(pelagic_get_info(sea.get(), &info, nullptr), PELAGIC_OK);
+    ASSERT_EQ(info.vessels, 2u);
+    pelagic_error error;
+    const auto at = [&](std::size_t vessel, double frame) {
+        pelagic_vessel found = PELAGIC_INIT(pelagic_vessel);
+        EXPECT_EQ(pelagic_vessel_at(sea.get(), vessel, frame, &found, &error), PELAGIC_OK) << error.message;
+        return found;
+    };
+    // 5 m in a second of the sea, two on the screen.
+    const pelagic_vessel straight = at(1, 25.0);
+    const double place[3] = {1.5, 2.0, 0.0}, ahead[3] = {0.6, 0.8, 0.0}, port[3] = {-0.8, 0.6, 0.0};
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(straight.position_m[axis], place[axis], 1e-12);
+        EXPECT_NEAR(straight.ahead[axis], ahead[axis], 1e-12);
+        EXPECT_NEAR(straight.port[axis], port[axis], 1e-12);
+        EXPECT_EQ(straight.up[axis], axis == 2 ? 1.0 : 0.0);
+        EXPECT_NEAR(straight.velocity_mps[axis], 5.0 * ahead[axis], 1e-12);
+    }
+    EXPECT_EQ(straight.length_m, 9.0);
+    EXPECT_EQ(straight.beam_m, 3.0);
+    EXPECT_EQ(straight.draught_m, 1.0);
+    // In a turn: ahead is where it goes, and its velocity is how its place changes.
+    for (const double frame : {-20.0, 30.25, 71.5, 200.0}) {
+        constexpr double kStep = 1e-3;
+        const pelagic_vessel here = at(0, frame), before = at(0, frame - kStep), after = at(0, frame + kStep);
+        const double step_s = 0.5 * kStep / 24.0,
+                     speed_mps = std::hypot(here.velocity_mps[0], here.velocity_mps[1]);
+        for (int axis = 0; axis < 2; ++axis) {
+            EXPECT_NEAR((after.position_m[axis] - before.position_m[axis]) / (2.0 * step_s),
+                        here.velocity_mps[axis], 1e-5);
+            EXPECT_NEAR(here.ahead[axis] * speed_mps, here.velocity_mps[axis], 1e-9);
+        }
+    }
+    // The hull is in its own waves.
+    double open_s = 0.0;
+    ASSERT_EQ(pelagic_time_of_frame(sea.get(), 49.0, &open_s, nullptr), PELAGIC_OK);
+    const FrameHandle frame = frame_of(sea, open_s, open_s);
+    const SeaHandle empty_sea = open_text(kShot + "[shot]\ntime_scale = 0.5\ntime_offset_s = 3.0\n");
+    const FrameHandle empty = frame_of(empty_sea, open_s, open_s);
+    const pelagic_vessel hull = at(0, 49.0);
+    double wake_m = 0.0;
+    for (const double x_m : {-5.0, 0.0, 5.0}) {
+        const double point_m[2] = {hull.position_m[0] + x_m * hull.ahead[0],
+                                   hull.position_m[1] + x_m * hull.ahead[1]};
+        pelagic_water with = PELAGIC_INIT(pelagic_water), without = with;
+        ASSERT_EQ(pelagic_water_at(frame.get(), point_m, 1, hull.beam_m / 6.0, &with, &error), PELAGIC_OK);
+        ASSERT_EQ(pelagic_water_at(empty.get(), point_m, 1, hull.beam_m / 6.0, &without, &error), PELAGIC_OK);
+        wake_m = std::max(wake_m, static_cast<double>(std::abs(with.height_m - without.height_m)));
+    }
+    EXPECT_GT(wake_m, 0.01);
+}
+
 // Of every function: nothing, or nonsense, in place of each argument.
 TEST(Procedural, NonsenseIsRefusedWithASentence) {
     const SeaHandle sea = open_text(kShot);
@@ -326,6 +387,8 @@ TEST(Procedural, NonsenseIsRefusedWithASentence) {
     far_out.origin_m[1] = 1e12;
     pelagic_values values = PELAGIC_INIT(pelagic_values);
     pelagic_info info = PELAGIC_INIT(pelagic_info), small_info{};
+    pelagic_vessel vessel = PELAGIC_INIT(pelagic_vessel);
+    const SeaHandle of_one = open_text(kShot + "[waves]\nvessels = [ { path = \"1 0 0, 48 10 0\" } ]\n");
     double time_s = 0.0;
     struct Case {
         const char* name;
@@ -347,6 +410,11 @@ TEST(Procedural, NonsenseIsRefusedWithASentence) {
         {"camera of no sea", [&] { return pelagic_shot_camera(nullptr, 1.0, &camera, &error); }},
         {"camera of no frame", [&] { return pelagic_shot_camera(sea.get(), inf, &camera, &error); }},
         {"camera nowhere", [&] { return pelagic_shot_camera(sea.get(), 1.0, nullptr, &error); }},
+        {"vessel of no sea", [&] { return pelagic_vessel_at(nullptr, 0, 1.0, &vessel, &error); }},
+        {"a vessel too many", [&] { return pelagic_vessel_at(of_one.get(), 1, 1.0, &vessel, &error); }},
+        {"a vessel of none", [&] { return pelagic_vessel_at(sea.get(), SIZE_MAX, 1.0, &vessel, &error); }},
+        {"vessel at no frame", [&] { return pelagic_vessel_at(of_one.get(), 0, nan, &vessel, &error); }},
+        {"vessel nowhere", [&] { return pelagic_vessel_at(of_one.get(), 0, 1.0, nullptr, &error); }},
         {"frame of no sea", [&] { return pelagic_frame_create(nullptr, 0.0, 0.0, &no_frame, &error); }},
         {"frame nowhere", [&] { return pelagic_frame_create(sea.get(), 0.0, 0.0, nullptr, &error); }},
         {"a shutter that closes first",
@@ -683,7 +751,7 @@ TEST(Procedural, LaterVersionsStructuresAreUnderstood) {
 
 // Also one so large that the end of it lies before its beginning, which has nothing behind it to be looked at.
 TEST(Procedural, SizesOfNoVersionAreRefused) {
-    const SeaHandle sea = open_text(kShot);
+    const SeaHandle sea = open_text(kShot + "[waves]\nvessels = [ { path = \"1 0 0, 48 10 0\" } ]\n");
     const FrameHandle frame = frame_of(sea, 0.0, 0.0);
     pelagic_sea* no_sea = nullptr;
     pelagic_error error;
@@ -693,6 +761,7 @@ TEST(Procedural, SizesOfNoVersionAreRefused) {
     pelagic_info info = PELAGIC_INIT(pelagic_info);
     pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
     ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, &error), PELAGIC_OK);
+    pelagic_vessel vessel = PELAGIC_INIT(pelagic_vessel);
     pelagic_region region = PELAGIC_INIT(pelagic_region);
     pelagic_box box = PELAGIC_INIT(pelagic_box);
     pelagic_points points = PELAGIC_INIT(pelagic_points);
@@ -725,6 +794,7 @@ TEST(Procedural, SizesOfNoVersionAreRefused) {
         {"options", open.size, opened},
         {"info", info.size, [&] { return pelagic_get_info(sea.get(), &info, &error); }},
         {"camera", camera.size, [&] { return pelagic_shot_camera(sea.get(), 1.0, &camera, &error); }},
+        {"at", vessel.size, [&] { return pelagic_vessel_at(sea.get(), 0, 1.0, &vessel, &error); }},
         {"camera", camera.size, expand_size},
         {"camera", camera.size, expanded},
         {"region", region.size, bounds},

@@ -4,6 +4,7 @@
  *   pelagic_frame *frame;  the sea while the shutter is open
  *
  *   pelagic_open(&source, NULL, &sea, &error);
+ *   pelagic_vessel_at(sea, 0, frame_number, &vessel, &error);
  *   pelagic_frame_create(sea, open_s, close_s, &frame, &error);
  *   pelagic_bounds(frame, &region, &box, &error);
  *   pelagic_expand_size(frame, &camera, &options, &size, &error);
@@ -158,6 +159,7 @@ typedef struct pelagic_info {
         frame_bytes; /* what a frame holds; beside it bounds keep up to three times as much, rays up to ray_cache_bytes */
     size_t
         foam_bytes; /* what a frame keeps of its foam's past, where coverage or age_s is asked for everywhere */
+    size_t vessels; /* of waves.vessels: what pelagic_vessel_at() knows */
 } pelagic_info;
 PELAGIC_API pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pelagic_error* error);
 
@@ -176,6 +178,21 @@ typedef struct pelagic_camera {
 /* The shot's own at a frame. */
 PELAGIC_API pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double frame, pelagic_camera* camera,
                                                pelagic_error* error);
+
+/* ---- Vessels */
+
+/* One of waves.vessels, which makes a wake, on its path in calm water. Waves move what floats on top of that: the water at points of the hull is
+ * pelagic_water_at() of position_m + x ahead + y port. The wake is in it. */
+typedef struct pelagic_vessel {
+    size_t size;
+    double position_m[3];               /* the middle of the hull at the water, whose z is 0 */
+    double ahead[3], port[3], up[3];    /* unit vectors in the world: to the bow, to port, upwards */
+    double velocity_mps[3];             /* per second of the sea */
+    double length_m, beam_m, draught_m; /* of the hull in the water */
+} pelagic_vessel;
+/* The vessel'th, from 0, at a frame of the shot, which may lie between frames and outside its range. */
+PELAGIC_API pelagic_status pelagic_vessel_at(const pelagic_sea* sea, size_t vessel, double frame,
+                                             pelagic_vessel* at, pelagic_error* error);
 
 /* ---- A frame */
 

@@ -271,7 +271,7 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
                 std::ranges::min_element(depth->keys.keys, {}, &NumberKeys::Key::value)->value;
             const DirectionalSpectrum::Part all{&moment.spectrum, 1.0};
             moment.extent = extent_of(moment.scene, DirectionalSpectrum({&all, 1}, Dispersion{least_m}),
-                                      moment.second_order);
+                                      moment.second_order, moment.masks);
         }
         moment.scene = std::move(numbers);
         if (wind != scene.keyed.end()) moment.wind = wind->keys;

@@ -1,16 +1,15 @@
 // Bands of cascades: disjoint, complete, functions of the sizes alone.
+#include "core/base/constants.h"
 #include "core/scene/cascade_bands.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 namespace pelagic {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 TEST(CascadeBands, BeginAtEightPeriodsOfTheTile) {
     const std::vector<double> sizes_m{400.0, 50.0, 5.0};

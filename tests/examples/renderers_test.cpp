@@ -729,11 +729,14 @@ TEST_F(HydraSea, ShowsTheLastOneUntilTheNextIsReady) {
     EXPECT_TRUE(Hydra::log().empty());
 }
 
-// Of a sea that is long in the making and whose shutter is refused then: who ends the work never hears of that.
+// Of a sea that is long in the making, and of a frame beyond the last one, whose camera is refused then: who ends the work never hears of
+// that.
 TEST_F(HydraSea, EndsWorkThatNobodyWaitsFor) {
     SeaParameters parameters = asked();
     parameters.shot = write("long.toml", text_with("resolution = 256", "resolution = 2048"));
-    parameters.shutter_close = 100.0;
+    parameters.finest_cell_m = 0.0;
+    parameters.frame = 1e8 + 1.0;
+    parameters.shutter_open = parameters.shutter_close = -1.0;
     for (const bool is_ended : {false, true}) {
         auto hydra = std::make_unique<Hydra>(true);
         hydra->ask(parameters);

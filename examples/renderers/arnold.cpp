@@ -3,8 +3,8 @@
 //   pelagic_sea { name sea shot "storm.toml" frame 12 motion_start -0.25 motion_end 0.25 }
 //
 // Its mesh is a polymesh with normals, the user data slopeVariance and whitecapCoverage, and a key at either end of the node's motion,
-// which is counted in frames. A node that doesn't say when has Arnold's own motion, from 0 to 1: from the frame to the next one. Arnold's matrices are of single precision: a camera more than some 10 km away from the world's origin sees
-// the mesh tremble.
+// which is counted in frames. A node that doesn't set its motion has Arnold's own, 0 to 1: from the frame to the next one. Arnold's matrices
+// are of single precision: a camera more than some 10 km away from the world's origin sees the mesh tremble.
 //
 //   c++ -std=c++17 -O2 -fPIC -shared arnold.cpp -I$ARNOLD/include -L$ARNOLD/bin -lai $(pkg-config --cflags --libs pelagic) -o pelagic_sea.so
 #include <ai.h>

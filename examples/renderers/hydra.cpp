@@ -225,10 +225,11 @@ class PelagicSea final : public HdGpGenerativeProcedural {
             show(nullptr);
             return {};
         }
+        const ChildPrimTypeMap children = is_async_ || !work_.valid() ? before : take(before, dirtied);
         const auto of_prim = changes.find(_GetProceduralPrimPath());
-        if (of_prim != changes.end() && of_prim->second.Intersects(inherited()))
+        if (!children.empty() && of_prim != changes.end() && of_prim->second.Intersects(inherited()))
             dirty(inherited(), before, dirtied);
-        return is_async_ || !work_.valid() ? before : take(before, dirtied);
+        return children;
     }
 
     AsyncState AsyncUpdate(const ChildPrimTypeMap& before, ChildPrimTypeMap* children,

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <memory>
 #include <ostream>
@@ -209,7 +210,7 @@ class Hydra {
     }
 
     void ask(const SeaParameters& asked) { ask(std::make_shared<HydraScene>(asked), asked); }
-    // `changes` of the prim, and what a host that asks for no list of what is dirty gives.
+    // With `changes` of the prim; hosts may ask for no list of what is dirty.
     void ask(const std::shared_ptr<HydraScene>& scene, const SeaParameters& asked,
              const HdDataSourceLocatorSet& changes = {}, bool has_list = true) {
         asked_ = asked;
@@ -244,8 +245,10 @@ class Hydra {
     static std::shared_ptr<Source> at(const HdContainerDataSourceHandle& prim,
                                       const std::vector<const char*>& names) {
         HdDataSourceBaseHandle source = prim;
-        for (const char* name : names)
-            source = std::dynamic_pointer_cast<HdContainerDataSource>(source)->Get(TfToken(name));
+        for (const char* name : names) {
+            const auto container = std::dynamic_pointer_cast<HdContainerDataSource>(source);
+            source = container ? container->Get(TfToken(name)) : nullptr;
+        }
         return std::dynamic_pointer_cast<Source>(source);
     }
 
@@ -603,8 +606,8 @@ TEST_F(HydraSea, WorksWhereSomethingHasChangedAlone) {
     expect_same(hydra.given(), expand(parameters));
     // What fails takes the mesh away.
     parameters.shot = "";
-    hydra.ask(parameters);
-    EXPECT_TRUE(hydra.children.empty());
+    hydra.ask(std::make_shared<HydraScene>(parameters), parameters, {HdXformSchema::GetDefaultLocator()});
+    EXPECT_TRUE(hydra.children.empty() && hydra.dirtied.empty());
     EXPECT_EQ(Hydra::log().size(), 1u);
 }
 
@@ -693,17 +696,22 @@ TEST_F(HydraSea, RefusesNumbersThatAreNone) {
     ASSERT_EQ(Hydra::log().size(), 1u);
 }
 
-// From the thread that makes the next one, while the host waits for it: not until it is there.
+// Who asks while the next one is made and the host waits for it gets the last one, not the next. The ten seconds are for a host that makes
+// them wait.
 TEST_F(HydraSea, IsTheLastOneForWhoAsksMeanwhile) {
     Hydra hydra;
     SeaParameters parameters = asked();
     hydra.ask(parameters);
     const HdDataSourceBaseHandle first = hydra.mesh();
-    HdDataSourceBaseHandle meanwhile;
-    hydra_stand_in().told = [&] { meanwhile = hydra.mesh(); };
+    std::future<HdDataSourceBaseHandle> meanwhile;
+    hydra_stand_in().told = [&] {
+        meanwhile = std::async(std::launch::async, [&] { return hydra.mesh(); });
+        meanwhile.wait_for(std::chrono::seconds(10));
+    };
     parameters.shot = write("note.toml", text_with("400.0", "120.0"));
     hydra.ask(parameters);
-    EXPECT_EQ(meanwhile, first);
+    ASSERT_TRUE(meanwhile.valid());
+    EXPECT_EQ(meanwhile.get(), first);
     EXPECT_NE(hydra.mesh(), first);
     EXPECT_FALSE(Hydra::log().empty());
 }

@@ -3,8 +3,8 @@
 //   pelagic_sea { name sea shot "storm.toml" frame 12 motion_start -0.25 motion_end 0.25 }
 //
 // Its mesh is a polymesh with normals, the user data slopeVariance and whitecapCoverage, and a key at either end of the node's motion,
-// which is counted in frames. Arnold's matrices are of single precision: a camera more than some 10 km away from the world's origin sees
-// the mesh tremble.
+// which is counted in frames. A node that doesn't set its motion has Arnold's own, 0 to 1: from the frame to the next one. Arnold's matrices
+// are of single precision: a camera more than some 10 km away from the world's origin sees the mesh tremble.
 //
 //   c++ -std=c++17 -O2 -fPIC -shared arnold.cpp -I$ARNOLD/include -L$ARNOLD/bin -lai $(pkg-config --cflags --libs pelagic) -o pelagic_sea.so
 #include <ai.h>
@@ -21,16 +21,12 @@ namespace {
 
 SeaStop stop;
 
-AtArray* array_of(std::size_t count, int type, const void* values) {
-    return AiArrayConvert(static_cast<std::uint32_t>(count), 1, static_cast<std::uint8_t>(type), values);
+AtArray* array_of(std::size_t count, std::uint8_t type, const void* values) {
+    return AiArrayConvert(static_cast<std::uint32_t>(count), 1, type, values);
 }
 
-// The same array twice where there are two keys: normals have as many as points.
-AtArray* keys_of(const std::vector<std::vector<float>>& keys) {
-    std::vector<float> all;
-    for (const std::vector<float>& key : keys) all.insert(all.end(), key.begin(), key.end());
-    return AiArrayConvert(static_cast<std::uint32_t>(keys.front().size() / 3),
-                          static_cast<std::uint8_t>(keys.size()), AI_TYPE_VECTOR, all.data());
+bool has(const AtNode* node, const AtString& parameter) {
+    return AiNodeEntryLookUpParameter(AiNodeGetNodeEntry(node), parameter) != nullptr;
 }
 
 AtNode* polymesh(const AtNode* procedural, const SeaParameters& asked, const SeaMesh& sea) {
@@ -39,13 +35,21 @@ AtNode* polymesh(const AtNode* procedural, const SeaParameters& asked, const Sea
     AiNodeSetArray(mesh, AtString("nsides"), array_of(sea.faces(), AI_TYPE_UINT, four.data()));
     for (const char* indices : {"vidxs", "nidxs"})
         AiNodeSetArray(mesh, AtString(indices), array_of(sea.corner.size(), AI_TYPE_UINT, sea.corner.data()));
-    std::vector<std::vector<float>> positions{sea.position_at(asked.shutter_open)};
-    if (asked.shutter_close > asked.shutter_open) positions.push_back(sea.position_at(asked.shutter_close));
-    AiNodeSetArray(mesh, AtString("vlist"), keys_of(positions));
-    AiNodeSetArray(mesh, AtString("nlist"),
-                   keys_of(std::vector<std::vector<float>>(positions.size(), sea.normal)));
-    AiNodeSetFlt(mesh, AtString("motion_start"), static_cast<float>(asked.shutter_open));
-    AiNodeSetFlt(mesh, AtString("motion_end"), static_cast<float>(asked.shutter_close));
+    // Normals have as many keys as points.
+    const std::uint8_t keys = asked.shutter_close > asked.shutter_open ? 2 : 1;
+    const auto points = static_cast<std::uint32_t>(sea.points());
+    AtArray *positions = AiArrayAllocate(points, keys, AI_TYPE_VECTOR),
+            *normals = AiArrayAllocate(points, keys, AI_TYPE_VECTOR);
+    for (std::uint8_t key = 0; key < keys; ++key) {
+        AiArraySetKey(positions, key,
+                      sea.position_at(key == 0 ? asked.shutter_open : asked.shutter_close).data());
+        AiArraySetKey(normals, key, sea.normal.data());
+    }
+    AiNodeSetArray(mesh, AtString("vlist"), positions);
+    AiNodeSetArray(mesh, AtString("nlist"), normals);
+    const AtString start("motion_start"), end("motion_end");
+    if (has(mesh, start)) AiNodeSetFlt(mesh, start, static_cast<float>(asked.shutter_open));
+    if (has(mesh, end)) AiNodeSetFlt(mesh, end, static_cast<float>(asked.shutter_close));
     AiNodeSetBool(mesh, AtString("smoothing"), true);
     AiNodeSetMatrix(
         mesh, AtString("matrix"),
@@ -63,7 +67,7 @@ AtNode* polymesh(const AtNode* procedural, const SeaParameters& asked, const Sea
 }  // namespace
 
 // For the application that has started the render, from any thread: Arnold tells no procedural that it is to stop.
-extern "C" AI_EXPORT_LIB void pelagic_arnold_stop(int stopped) {
+AI_EXPORT_LIB void pelagic_arnold_stop(int stopped) {
     stop.set(stopped != 0);
 }
 
@@ -80,8 +84,9 @@ procedural_init {
     asked.frame = static_cast<double>(AiNodeGetFlt(node, AtString("frame")));
     asked.finest_cell_m = static_cast<double>(AiNodeGetFlt(node, AtString("finest_cell")));
     asked.threads = AiNodeGetInt(node, AtString("threads"));
-    asked.shutter_open = static_cast<double>(AiNodeGetFlt(node, AtString("motion_start")));
-    asked.shutter_close = static_cast<double>(AiNodeGetFlt(node, AtString("motion_end")));
+    const AtString start("motion_start"), end("motion_end");
+    if (has(node, start)) asked.shutter_open = static_cast<double>(AiNodeGetFlt(node, start));
+    if (has(node, end)) asked.shutter_close = static_cast<double>(AiNodeGetFlt(node, end));
     *user_ptr = nullptr;
     try {
         SeaSource source(stop);

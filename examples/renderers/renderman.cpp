@@ -1,7 +1,9 @@
 // The sea as a procedural primitive of RenderMan, in RIB:
 //
-//   Procedural2 "DynamicLoad" "SimpleBound" "string dsoname" ["pelagic_sea"] "float[6] bound" [-1e5 1e5 -1e5 1e5 -50 50]
+//   Procedural2 "DynamicLoad" "SimpleBound" "string dsoname" ["pelagic_sea"] "float[6] __bound" [-1e5 1e5 -1e5 1e5 -50 50]
 //       "string shot" ["storm.toml"] "float frame" [12] "float[2] shutter" [-0.25 0.25]
+//
+// That is for present versions, 24 and later; older ones call `__bound` just `bound`.
 //
 // Its mesh are polygons with N, slopeVariance and whitecapCoverage, and with two keys of motion, at the times of `shutter`: frames, as
 // the RIB's Shutter has to count them. Matrices are of single precision: a camera more than some 10 km away from the world's origin sees

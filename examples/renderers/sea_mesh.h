@@ -12,12 +12,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 struct SeaParameters {
@@ -26,9 +28,17 @@ struct SeaParameters {
     double finest_cell_m = 0.0;                         // as in pelagic_open_options
     int threads = 0;                                    // 0: all
     double shutter_open = -0.25, shutter_close = 0.25;  // in frames from that one
+    // When the shot file was written, by set_shot(): an edited one is another sea. Files that it names aren't looked at.
+    std::filesystem::file_time_type written{};
 
+    void set_shot(const std::string& path) {
+        std::error_code error;  // opening it tells what is wrong
+        shot = path;
+        written = std::filesystem::last_write_time(path, error);
+    }
     bool has_sea_of(const SeaParameters& other) const {
-        return shot == other.shot && finest_cell_m == other.finest_cell_m && threads == other.threads;
+        return shot == other.shot && written == other.written && finest_cell_m == other.finest_cell_m &&
+               threads == other.threads;
     }
     bool operator==(const SeaParameters& other) const {
         return has_sea_of(other) && frame == other.frame && shutter_open == other.shutter_open &&

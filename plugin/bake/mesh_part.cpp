@@ -49,20 +49,6 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
     for (glm::vec3& v : velocities) v *= static_cast<float>(time_scale);
 }
 
-// Quads over some rows and columns of the points of a square of quads, the outermost among them: of a 64th of the points, and of
-// four at least.
-Faces proxy_faces(int quads) {
-    const int coarse = std::max((quads + 1) / 8 - 1, 1);
-    Faces faces;
-    set_grid_faces(coarse, coarse, faces);
-    const auto at = [&](std::int32_t i) {
-        return static_cast<std::int32_t>(std::int64_t{i} * quads / coarse);
-    };
-    for (std::int32_t& index : faces.indices)
-        index = at(index / (coarse + 1)) * (quads + 1) + at(index % (coarse + 1));
-    return faces;
-}
-
 // What the vertices of a cage have.
 struct CageArrays {
     std::vector<glm::vec3> points, velocities, slope_variance;
@@ -180,15 +166,6 @@ class MeshPart final : public OutputPart {
                   else
                       usd::write_topology_crate(topology, take);
               }});
-        if (has_proxy()) {
-            const Faces proxy = proxy_faces(
-                static_cast<int>(std::lround(std::sqrt(static_cast<double>(faces.counts.size())))));
-            sink({.path = usd::proxy_file(shot.name), .content = [&](const usd::Sink& take) {
-                      usd::write_proxy_text(
-                          {.fps = shot.fps, .faces = {.counts = proxy.counts, .indices = proxy.indices}},
-                          take);
-                  }});
-        }
         sink({.path = usd::manifest_file(shot.name), .content = [&](const usd::Sink& take) {
                   take(usd::manifest_text({.fps = shot.fps, .attributes = attributes_}));
               }});

@@ -63,8 +63,6 @@ class OutputPart {
     // Whether there are hulls that its water isn't in.
     bool meets_hulls() const { return output_.meets_hulls; }
     // Whether its coverage has a past.
-    // Of meshes: whether the points are a square's, rows of columns, of which some are enough for a proxy. A cage is as coarse itself.
-    bool has_proxy() const { return query().lattice && !plan_.surface->fitted(); }
     bool has_foam_history() const { return plan_.foam && query().asks_for_past(); }
 
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }

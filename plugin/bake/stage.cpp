@@ -249,7 +249,6 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
     const WaterBody body = make_water(scene_at(scene, shot.first_frame), plan.from->spectrum);
     stage.material = material_of(plan, body);
     stage.has_camera = true;
-    stage.has_proxy = mesh.has_proxy();
     stage.has_volumes = !volumes_of(plan).empty();
     stage.has_drops = scene.output.drops;
     stage.extents_hint = extents_of(plan);

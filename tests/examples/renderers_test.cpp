@@ -10,6 +10,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <limits>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -51,7 +53,8 @@ std::vector<int> ints(const std::vector<std::uint32_t>& values) {
 
 class Arnold {
   public:
-    static Given give(const SeaParameters& asked) {
+    static Given give(const SeaParameters& asked) { return give_at(asked, true); }
+    static Given give_at(const SeaParameters& asked, bool has_motion) {
         AtNodeLib library{};
         EXPECT_TRUE(NodeLoader(0, &library));
         EXPECT_FALSE(NodeLoader(1, &library));
@@ -66,8 +69,12 @@ class Arnold {
         node.numbers.at("frame") = asked.frame;
         node.numbers.at("finest_cell") = asked.finest_cell_m;
         node.numbers.at("threads") = asked.threads;
-        node.numbers["motion_start"] = asked.shutter_open;  // a shape's own
-        node.numbers["motion_end"] = asked.shutter_close;
+        if (has_motion) {  // a shape's own
+            node.numbers["motion_start"] = asked.shutter_open;
+            node.numbers["motion_end"] = asked.shutter_close;
+        } else {
+            node.entry.parameters.clear();
+        }
         void* data = nullptr;
         const int is_ready = library.methods->Init(&node, &data);
         Given given;
@@ -155,28 +162,40 @@ class RenderMan {
 
 using namespace pxr;
 
+template <class T>
+HdDataSourceBaseHandle source_of(const T& value) {
+    return HdRetainedTypedSampledDataSource<T>::New(value);
+}
+
 class HydraScene final : public HdSceneIndexBase {
   public:
-    explicit HydraScene(const SeaParameters& asked) : asked_(asked) {}
+    explicit HydraScene(const SeaParameters& asked) : threads(asked.threads), asked_(asked) {}
     HdSceneIndexPrim GetPrim(const SdfPath& path) const override {
         EXPECT_EQ(path.GetString(), "/Sea");
-        const auto primvar = [](const auto& value) -> HdDataSourceBaseHandle {
-            using Value = std::decay_t<decltype(value)>;
-            return HdPrimvarSchema::Builder()
-                .SetPrimvarValue(HdRetainedTypedSampledDataSource<Value>::New(value))
-                .Build();
+        const auto primvar = [](const HdDataSourceBaseHandle& value) {
+            return HdRetainedContainerDataSource::New(TfToken("primvarValue"), value);
         };
         // Some as artists author them: an asset, an integer, a float.
+        const auto primvars = HdRetainedContainerDataSource::New(
+            TfToken("shot"), primvar(source_of(SdfAssetPath("unresolved.toml", asked_.shot))),
+            TfToken("frame"), primvar(source_of(asked_.frame)), TfToken("finestCell"),
+            primvar(source_of(static_cast<float>(asked_.finest_cell_m))), TfToken("threads"),
+            primvar(source_of(threads)), TfToken("shutterOpen"), primvar(source_of(asked_.shutter_open)),
+            TfToken("shutterClose"), primvar(source_of(asked_.shutter_close)));
+        const auto named = [](const char* name, const HdDataSourceBaseHandle& value) {
+            return HdRetainedContainerDataSource::New(TfToken(name), value);
+        };
         return {TfToken("hydraGenerativeProcedural"),
                 HdRetainedContainerDataSource::New(
-                    TfToken("primvars"),
-                    HdRetainedContainerDataSource::New(
-                        TfToken("shot"), primvar(SdfAssetPath("unresolved.toml", asked_.shot)),
-                        TfToken("frame"), primvar(asked_.frame), TfToken("finestCell"),
-                        primvar(static_cast<float>(asked_.finest_cell_m)), TfToken("threads"),
-                        primvar(asked_.threads), TfToken("shutterOpen"), primvar(asked_.shutter_open),
-                        TfToken("shutterClose"), primvar(asked_.shutter_close)))};
+                    TfToken("primvars"), primvars, TfToken("xform"), named("matrix", source_of(matrix)),
+                    TfToken("materialBindings"), named("", named("path", source_of(material))),
+                    TfToken("visibility"), named("visibility", source_of(false)), TfToken("purpose"),
+                    named("purpose", source_of(TfToken("render"))))};
     }
+
+    VtValue threads;
+    GfMatrix4d matrix{1.0};
+    SdfPath material{"/Water"};
 
   private:
     SeaParameters asked_;
@@ -190,13 +209,24 @@ class Hydra {
         EXPECT_EQ(procedural_->AsyncBegin(is_async), is_async);
     }
 
-    void ask(const SeaParameters& asked) {
+    void ask(const SeaParameters& asked) { ask(std::make_shared<HydraScene>(asked), asked); }
+    // With `changes` of the prim; hosts may ask for no list of what is dirty.
+    void ask(const std::shared_ptr<HydraScene>& scene, const SeaParameters& asked,
+             const HdDataSourceLocatorSet& changes = {}, bool has_list = true) {
         asked_ = asked;
-        const auto scene = std::make_shared<HydraScene>(asked);
-        const HdGpGenerativeProcedural::DependencyMap depends = procedural_->UpdateDependencies(scene);
-        EXPECT_EQ(depends.at(SdfPath("/Sea")).at(0).GetFirstElement().GetString(), "primvars");
+        scene_ = scene;
+        HdGpGenerativeProcedural::DependencyMap changed;
+        if (!changes.empty()) changed[SdfPath("/Sea")] = changes;
+        EXPECT_EQ(
+            names_of(procedural_->UpdateDependencies(scene).at(SdfPath("/Sea"))),
+            (std::vector<std::string>{"materialBindings", "purpose", "visibility", "xform", "primvars"}));
         dirtied.clear();
-        children = procedural_->Update(scene, children, {}, &dirtied);
+        children = procedural_->Update(scene, children, changed, has_list ? &dirtied : nullptr);
+    }
+    static std::vector<std::string> names_of(const HdDataSourceLocatorSet& locators) {
+        std::vector<std::string> names;
+        for (const HdDataSourceLocator& each : locators) names.push_back(each.GetFirstElement().GetString());
+        return names;
     }
     HdGpGenerativeProcedural::AsyncState poll() {
         dirtied.clear();
@@ -206,8 +236,20 @@ class Hydra {
         while (poll() == HdGpGenerativeProcedural::Continuing) std::this_thread::yield();
     }
     HdContainerDataSourceHandle prim() const {
-        EXPECT_FALSE(procedural_->GetChildPrim(nullptr, SdfPath("/Sea/other")).dataSource);
-        return procedural_->GetChildPrim(nullptr, SdfPath("/Sea/sea")).dataSource;
+        EXPECT_FALSE(procedural_->GetChildPrim(scene_, SdfPath("/Sea/other")).dataSource);
+        return procedural_->GetChildPrim(scene_, SdfPath("/Sea/sea")).dataSource;
+    }
+    // Another one is another mesh.
+    HdDataSourceBaseHandle mesh() const { return prim()->Get(TfToken("mesh")); }
+    template <class Source>
+    static std::shared_ptr<Source> at(const HdContainerDataSourceHandle& prim,
+                                      const std::vector<const char*>& names) {
+        HdDataSourceBaseHandle source = prim;
+        for (const char* name : names) {
+            const auto container = std::dynamic_pointer_cast<HdContainerDataSource>(source);
+            source = container ? container->Get(TfToken(name)) : nullptr;
+        }
+        return std::dynamic_pointer_cast<Source>(source);
     }
 
     Given given() const {
@@ -257,14 +299,6 @@ class Hydra {
     HdSceneIndexObserver::DirtiedPrimEntries dirtied;
 
   private:
-    template <class Source>
-    static std::shared_ptr<Source> at(const HdContainerDataSourceHandle& prim,
-                                      const std::vector<const char*>& names) {
-        HdDataSourceBaseHandle source = prim;
-        for (const char* name : names)
-            source = std::dynamic_pointer_cast<HdContainerDataSource>(source)->Get(TfToken(name));
-        return std::dynamic_pointer_cast<Source>(source);
-    }
     static std::string token(const HdContainerDataSourceHandle& prim, const std::vector<const char*>& names) {
         return at<HdTypedSampledDataSource<TfToken>>(prim, names)->GetTypedValue(0.0f).GetString();
     }
@@ -280,6 +314,7 @@ class Hydra {
     }
 
     std::unique_ptr<HdGpGenerativeProcedural> procedural_;
+    std::shared_ptr<HydraScene> scene_;
     SeaParameters asked_;
 };
 
@@ -316,6 +351,11 @@ resolution = [96, 54]
 position_m = [8192.0, -4096.0, 6.0]
 look_at_m = [8292.0, -4096.0, 0.0]
 )";
+
+std::string text_with(const std::string& now, const std::string& instead) {
+    std::string text = kShot;
+    return text.replace(text.find(now), now.size(), instead);
+}
 
 class SeaMeshes : public testing::Test {
   protected:
@@ -457,7 +497,9 @@ TEST_P(Renderers, TellWhatIsWrong) {
     parameters = asked();
     parameters.shutter_close = 100.0;  // longer than a second
     EXPECT_FALSE(GetParam().give(parameters).is_there());
-    EXPECT_EQ(GetParam().log().size(), 1u);
+    log = GetParam().log();
+    ASSERT_EQ(log.size(), 1u);
+    EXPECT_NE(log[0].find("shutter"), std::string::npos) << log[0];
     // And what is right afterwards is.
     EXPECT_TRUE(GetParam().give(asked()).is_there());
     EXPECT_TRUE(GetParam().log().empty());
@@ -517,41 +559,161 @@ TEST_F(SeaMeshes, AreStoppedFromAnyThread) {
 TEST_F(SeaMeshes, PassNotesOn) {
     SeaStop stop;
     SeaParameters parameters = asked();
-    std::string text = kShot;
-    text.replace(text.find("400.0"), 5, "120.0");  // holds few of its waves
-    parameters.shot = write("note.toml", text);
+    parameters.shot = write("note.toml", text_with("400.0", "120.0"));  // holds few of its waves
     std::vector<std::string> notes;
     SeaSource(stop).mesh(parameters, [&](const char* sentence) { notes.emplace_back(sentence); });
     EXPECT_FALSE(notes.empty());
 }
 
-class HydraSea : public SeaMeshes {};
+// As of a shape that knows no motion: that which the other hosts have where nobody says any.
+TEST_F(SeaMeshes, AreMadeForNodesOfArnoldWithoutMotion) {
+    SeaParameters parameters = asked();
+    const SeaParameters unset;
+    parameters.shutter_open = unset.shutter_open;
+    parameters.shutter_close = unset.shutter_close;
+    const Given given = Arnold::give_at(parameters, false);
+    expect_same(given, expand(parameters));
+    EXPECT_EQ(given.positions.size(), 2u);
+}
+
+class HydraSea : public SeaMeshes {
+  protected:
+    ~HydraSea() override { hydra_stand_in().told = nullptr; }
+};
 
 TEST_F(HydraSea, WorksWhereSomethingHasChangedAlone) {
     Hydra hydra;
     SeaParameters parameters = asked();
     hydra.ask(parameters);
     EXPECT_TRUE(hydra.dirtied.empty());  // it is new
-    const HdContainerDataSourceHandle first = hydra.prim();
+    const HdDataSourceBaseHandle first = hydra.mesh();
     hydra.ask(parameters);
-    EXPECT_EQ(hydra.prim(), first);
+    EXPECT_EQ(hydra.mesh(), first);
     EXPECT_TRUE(hydra.dirtied.empty());
     parameters.frame = 13.0;
     hydra.ask(parameters);
-    EXPECT_NE(hydra.prim(), first);
+    EXPECT_NE(hydra.mesh(), first);
     ASSERT_EQ(hydra.dirtied.size(), 1u);
     EXPECT_EQ(hydra.dirtied[0].primPath.GetString(), "/Sea/sea");
-    std::vector<std::string> locators;
-    for (const HdDataSourceLocator& each : hydra.dirtied[0].dirtyLocators)
-        locators.push_back(each.GetFirstElement().GetString());
-    EXPECT_EQ(locators, (std::vector<std::string>{"mesh", "primvars", "xform"}));
+    EXPECT_EQ(Hydra::names_of(hydra.dirtied[0].dirtyLocators),
+              (std::vector<std::string>{"mesh", "primvars", "xform"}));
     // A frame after another is that frame alone.
+    expect_same(hydra.given(), expand(parameters));
+    // A host may ask for no list.
+    parameters.frame = 14.0;
+    hydra.ask(std::make_shared<HydraScene>(parameters), parameters, {HdXformSchema::GetDefaultLocator()},
+              false);
     expect_same(hydra.given(), expand(parameters));
     // What fails takes the mesh away.
     parameters.shot = "";
+    hydra.ask(std::make_shared<HydraScene>(parameters), parameters, {HdXformSchema::GetDefaultLocator()});
+    EXPECT_TRUE(hydra.children.empty() && hydra.dirtied.empty());
+    EXPECT_EQ(Hydra::log().size(), 1u);
+}
+
+TEST_F(HydraSea, IsMovedBoundShownAndHiddenAsItsPrim) {
+    Hydra hydra;
+    const SeaParameters parameters = asked();
+    const auto scene = std::make_shared<HydraScene>(parameters);
+    hydra.ask(scene, parameters);
+    const HdDataSourceBaseHandle first = hydra.mesh();
+    const Expected expected = expand(parameters);
+    // Twice as large and away: of powers of two, which are exact.
+    for (std::size_t axis = 0; axis < 3; ++axis) scene->matrix[axis][axis] = 2.0;
+    scene->matrix[3][0] = 64.0;
+    scene->material = SdfPath("/Foam");
+    hydra.ask(scene, parameters, {HdXformSchema::GetDefaultLocator()});
+    ASSERT_EQ(hydra.dirtied.size(), 1u);
+    EXPECT_EQ(hydra.dirtied[0].primPath.GetString(), "/Sea/sea");
+    EXPECT_EQ(Hydra::names_of(hydra.dirtied[0].dirtyLocators),
+              (std::vector<std::string>{"materialBindings", "purpose", "visibility", "xform"}));
+    EXPECT_EQ(hydra.mesh(), first);
+    const HdContainerDataSourceHandle prim = hydra.prim();
+    const auto value = [&](auto type, const std::vector<const char*>& names) {
+        const auto source = Hydra::at<HdTypedSampledDataSource<decltype(type)>>(prim, names);
+        EXPECT_TRUE(source) << names[0];
+        return source ? source->GetTypedValue(0.0f) : type;
+    };
+    const GfMatrix4d matrix = value(GfMatrix4d(0.0), {"xform", "matrix"});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(matrix[axis][axis], 2.0);
+        EXPECT_EQ(matrix[3][axis], 2.0 * expected.mesh.origin_m[axis] + (axis == 0 ? 64.0 : 0.0));
+    }
+    EXPECT_TRUE(value(false, {"xform", "resetXformStack"}));
+    EXPECT_EQ(value(SdfPath(), {"materialBindings", "", "path"}).GetString(), "/Foam");
+    EXPECT_FALSE(value(true, {"visibility", "visibility"}));
+    EXPECT_EQ(value(TfToken(), {"purpose", "purpose"}).GetString(), "render");
+    EXPECT_FALSE(Hydra::at<HdDataSourceBase>(prim, {"primvars", "shot"}));
+    // What changes of the primvars alone changes nothing of these.
+    hydra.ask(scene, parameters, {HdPrimvarsSchema::GetDefaultLocator()});
+    EXPECT_TRUE(hydra.dirtied.empty());
+}
+
+TEST_F(HydraSea, IsOfTheShotFileAsItIsNow) {
+    Hydra hydra;
+    SeaParameters parameters = asked();
+    hydra.ask(parameters);
+    const std::filesystem::path shot = parameters.shot;
+    const auto written = std::filesystem::last_write_time(shot);
+    write("shot.toml", text_with("14.0", "20.0"));
+    std::filesystem::last_write_time(shot, written + std::chrono::seconds(1));
+    hydra.ask(parameters);
+    expect_same(hydra.given(), expand(parameters));
+    // What has failed is tried again, whatever it was that has been mended.
+    write("shot.toml", text_with("14.0", "-3.0"));
+    std::filesystem::last_write_time(shot, written);
     hydra.ask(parameters);
     EXPECT_TRUE(hydra.children.empty());
     EXPECT_EQ(Hydra::log().size(), 1u);
+    write("shot.toml", kShot);
+    std::filesystem::last_write_time(shot, written);
+    hydra.ask(parameters);
+    expect_same(hydra.given(), expand(parameters));
+    EXPECT_TRUE(Hydra::log().empty());
+}
+
+TEST_F(HydraSea, RefusesNumbersThatAreNone) {
+    SeaParameters parameters = asked();
+    const auto scene = std::make_shared<HydraScene>(parameters);
+    scene->threads = VtValue(1e12);  // all
+    Hydra hydra(true);
+    hydra.ask(scene, parameters);
+    hydra.wait();
+    EXPECT_FALSE(hydra.children.empty());
+    EXPECT_TRUE(Hydra::log().empty());
+    parameters.frame = std::nan("");
+    for (int times = 0; times < 2; ++times) {
+        hydra.ask(parameters);
+        EXPECT_TRUE(hydra.children.empty());
+        const std::vector<std::string> log = Hydra::log();
+        ASSERT_EQ(log.size(), 1u);
+        EXPECT_NE(log[0].find("primvars:frame"), std::string::npos) << log[0];
+        EXPECT_EQ(hydra.poll(), HdGpGenerativeProcedural::Finished);  // no work has begun
+    }
+    scene->threads = VtValue(-std::numeric_limits<float>::infinity());
+    hydra.ask(scene, parameters = asked());
+    EXPECT_TRUE(hydra.children.empty());
+    ASSERT_EQ(Hydra::log().size(), 1u);
+}
+
+// Who asks while the next one is made and the host waits for it gets the last one, not the next. The ten seconds are for a host that makes
+// them wait.
+TEST_F(HydraSea, IsTheLastOneForWhoAsksMeanwhile) {
+    Hydra hydra;
+    SeaParameters parameters = asked();
+    hydra.ask(parameters);
+    const HdDataSourceBaseHandle first = hydra.mesh();
+    std::future<HdDataSourceBaseHandle> meanwhile;
+    hydra_stand_in().told = [&] {
+        meanwhile = std::async(std::launch::async, [&] { return hydra.mesh(); });
+        meanwhile.wait_for(std::chrono::seconds(10));
+    };
+    parameters.shot = write("note.toml", text_with("400.0", "120.0"));
+    hydra.ask(parameters);
+    ASSERT_TRUE(meanwhile.valid());
+    EXPECT_EQ(meanwhile.get(), first);
+    EXPECT_NE(hydra.mesh(), first);
+    EXPECT_FALSE(Hydra::log().empty());
 }
 
 TEST_F(HydraSea, ShowsTheLastOneUntilTheNextIsReady) {
@@ -563,11 +725,11 @@ TEST_F(HydraSea, ShowsTheLastOneUntilTheNextIsReady) {
     expect_same(hydra.given(), expand(parameters));
     EXPECT_EQ(hydra.poll(), HdGpGenerativeProcedural::Finished);
     // A newer frame ends the work on an older one, which is never shown.
-    const HdContainerDataSourceHandle first = hydra.prim();
+    const HdDataSourceBaseHandle first = hydra.mesh();
     for (const double frame : {13.0, 14.0, 15.0}) {
         parameters.frame = frame;
         hydra.ask(parameters);
-        EXPECT_EQ(hydra.prim(), first);
+        EXPECT_EQ(hydra.mesh(), first);
     }
     hydra.wait();
     EXPECT_EQ(hydra.dirtied.size(), 1u);
@@ -575,30 +737,21 @@ TEST_F(HydraSea, ShowsTheLastOneUntilTheNextIsReady) {
     EXPECT_TRUE(Hydra::log().empty());
 }
 
-// Against the whole of the same work: what is left of it when it is ended is less than half.
+// Of a sea that is long in the making, and of a frame beyond the last one, whose camera is refused then: who ends the work never hears of
+// that.
 TEST_F(HydraSea, EndsWorkThatNobodyWaitsFor) {
-    using Clock = std::chrono::steady_clock;
-    std::string text = kShot;
-    text.replace(text.find("resolution = 256"), 16, "resolution = 2048");
     SeaParameters parameters = asked();
-    parameters.shot = write("long.toml", text);
-    Clock::duration whole{}, ended{};
-    for (int round = 0; round < 2; ++round) {  // the first one's plans of transforms are kept
-        Hydra hydra(true);
-        const Clock::time_point begun = Clock::now();
-        hydra.ask(parameters);
-        hydra.wait();
-        whole = Clock::now() - begun;
-    }
-    {
+    parameters.shot = write("long.toml", text_with("resolution = 256", "resolution = 2048"));
+    parameters.finest_cell_m = 0.0;
+    parameters.frame = 1e8 + 1.0;
+    parameters.shutter_open = parameters.shutter_close = -1.0;
+    for (const bool is_ended : {false, true}) {
         auto hydra = std::make_unique<Hydra>(true);
-        const Clock::time_point begun = Clock::now();
         hydra->ask(parameters);
+        if (!is_ended) hydra->wait();
         hydra.reset();
-        ended = Clock::now() - begun;
+        EXPECT_EQ(Hydra::log().size(), is_ended ? 0u : 1u);
     }
-    EXPECT_LT(ended, whole / 2);
-    EXPECT_TRUE(Hydra::log().empty());
 }
 
 }  // namespace

@@ -116,10 +116,6 @@ std::string manifest_file(std::string_view shot_name) {
     return "mesh/" + std::string(shot_name) + ".manifest.usda";
 }
 
-std::string proxy_file(std::string_view shot_name) {
-    return "mesh/" + std::string(shot_name) + ".proxy.usda";
-}
-
 std::string frame_number(int frame) {
     char number[16];
     std::snprintf(number, sizeof number, "%04d", frame);

@@ -8,7 +8,6 @@
 //   DIR/NAME.volumes.usda          volumes and their files (volumes.h)
 //   DIR/NAME.drops.usda            drops of spray and their files (drops.h)
 //   DIR/mesh/NAME.topology.EXT     faces and st, and declarations of the attributes that vary
-//   DIR/mesh/NAME.proxy.usda       a proxy's faces over the same points, where the mesh has one
 //   DIR/mesh/NAME.manifest.usda    names and types of the attributes that vary
 //   DIR/mesh/NAME.####.EXT         one frame's values, as time samples at the frame's number
 //
@@ -48,8 +47,6 @@ using Sink = std::function<void(std::string_view)>;
 inline constexpr std::string_view kMeshName = "Sea";
 // The mesh's attribute that holds where its points' origin is, and that attribute's type.
 inline constexpr std::string_view kOrigin = "xformOp:translate", kOriginType = "double3";
-// Its proxy: "/ROOT/SeaProxy" in the stage, kMeshName in the layer of its faces.
-inline constexpr std::string_view kProxyName = "SeaProxy";
 // The camera prim: "/Camera" in its layer, "/ROOT/Camera" in the stage.
 inline constexpr std::string_view kCameraName = "Camera";
 
@@ -180,7 +177,6 @@ struct Stage {
     std::string topology_extension = "usda";  // without the dot
     Material material{};
     bool has_camera = false;               // camera_file() is beside the root
-    bool has_proxy = false;                // proxy_file() is
     bool has_volumes = false;              // volumes_file() is
     bool has_drops = false;                // drops_file() (drops.h) is
     std::optional<Extent> extents_hint{};  // round everything at all frames, where that is known [m]
@@ -203,7 +199,6 @@ std::string camera_file(std::string_view shot_name);
 std::string sky_file(std::string_view shot_name);
 std::string topology_file(std::string_view shot_name, std::string_view extension);
 std::string manifest_file(std::string_view shot_name);
-std::string proxy_file(std::string_view shot_name);
 // A frame's number as USD expands "####": at least four characters with zeros in front, and a minus sign is
 // one of them (7 → 0007, 12345 → 12345, 0 → 0000, −5 → -005). No two frames share a file.
 std::string frame_number(int frame);

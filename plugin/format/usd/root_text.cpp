@@ -117,7 +117,10 @@ std::string_view text_of_points(const Stage& stage) {
            "blur by velocities.";
 }
 
-void write_clips(Page& page, const Stage& stage) {
+void write_mesh(Page& page, const Stage& stage, const std::string& material_path) {
+    page.gap();
+    page.open({"def Mesh \"", kMeshName, "\" ("});
+    page.line({"prepend apiSchemas = [\"MaterialBindingAPI\"]"});
     page.open({"clips = {"});
     page.open({"dictionary default = {"});
     page.line({"asset manifestAssetPath = @./", manifest_file(stage.name), "@"});
@@ -129,19 +132,6 @@ void write_clips(Page& page, const Stage& stage) {
     page.line({"double templateStride = 1"});
     page.close("}");
     page.close("}");
-}
-
-// For viewers that have no materials. Of the water alone: a colour at each vertex, with foam, would be a third of a frame's bytes.
-void write_display_color(Page& page, const Stage& stage) {
-    page.line({"color3f[] primvars:displayColor = [", color("the water's colour", stage.material.color),
-               "] (interpolation = \"constant\")"});
-}
-
-void write_mesh(Page& page, const Stage& stage, const std::string& material_path) {
-    page.gap();
-    page.open({"def Mesh \"", kMeshName, "\" ("});
-    page.line({"prepend apiSchemas = [\"MaterialBindingAPI\"]"});
-    write_clips(page, stage);
     if (stage.attributes.origin)
         page.line({"doc = \"Points are relative to ", kOrigin, ", which ", text_of_origin(stage),
                    text_of_points(stage), "\""});
@@ -149,32 +139,9 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
     page.close(")");
     page.open({"{"});
     page.line({"rel material:binding = <", material_path, ">"});
-    write_display_color(page, stage);
-    page.close("}");
-}
-
-// A variant, which is off: readers that know no purposes would show two seas, and viewers that show no renderer's purpose the coarse one.
-void write_proxy(Page& page, const Stage& stage, const std::string& root) {
-    page.gap();
-    page.open({"variantSet \"proxy\" = {"});
-    page.open({"\"off\" {"});
-    page.close("}");
-    page.open({"\"on\" {"});
-    page.prim("over", kMeshName);
-    page.line({"rel proxyPrim = </", root, "/", kProxyName, ">"});
-    page.line({"uniform token purpose = \"render\""});
-    page.close("}");
-    page.gap();
-    page.open({"def Mesh \"", kProxyName, "\" ("});
-    write_clips(page, stage);
-    page.line({"prepend references = [@./", proxy_file(stage.name), "@, @./",
-               topology_file(stage.name, stage.topology_extension), "@]"});
-    page.close(")");
-    page.open({"{"});
-    write_display_color(page, stage);
-    page.line({"uniform token purpose = \"proxy\""});
-    page.close("}");
-    page.close("}");
+    // For viewers that have no materials. Of the water alone: a colour at each vertex, with foam, would be a third of a frame's bytes.
+    page.line({"color3f[] primvars:displayColor = [", color("the water's colour", stage.material.color),
+               "] (interpolation = \"constant\")"});
     page.close("}");
 }
 
@@ -491,12 +458,6 @@ void open_root(Page& page, const Stage& stage, const std::string& root) {
     page.line({"string name = ", quoted(stage.name)});
     page.close("}");
     page.line({"kind = \"component\""});
-    if (stage.has_proxy) {
-        page.open({"variants = {"});
-        page.line({"string proxy = \"off\""});
-        page.close("}");
-        page.line({"prepend variantSets = \"proxy\""});
-    }
     page.close(")");
     page.open({"{"});
     if (!stage.extents_hint) return;
@@ -532,7 +493,6 @@ std::string root_text(const Stage& stage) {
     if (stage.has_camera) write_camera(page, stage);
     if (stage.has_volumes) write_volumes(page, stage);
     if (stage.has_drops) write_drops(page, stage);
-    if (stage.has_proxy) write_proxy(page, stage, root);
     page.close("}");
     return page.text();
 }

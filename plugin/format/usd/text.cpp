@@ -131,25 +131,6 @@ std::string topology_text(const Topology& topology) {
     return gathered([&](const Sink& sink) { write_topology_text(topology, sink); });
 }
 
-void write_proxy_text(const ProxyFaces& proxy, const Sink& sink) {
-    check({.face_vertex_counts = proxy.faces.counts, .face_vertex_indices = proxy.faces.indices});
-    Page page;
-    write_timeless_head(page, proxy.fps);
-    page.prim("over", kMeshName);
-    ArrayWriter writer(sink);
-    writer.text(page.text());
-    writer.text("    int[] faceVertexCounts = ");
-    writer.array(proxy.faces.counts, 1);
-    writer.text("\n    int[] faceVertexIndices = ");
-    writer.array(proxy.faces.indices, 1);
-    writer.text("\n}\n");
-    writer.flush();
-}
-
-std::string proxy_text(const ProxyFaces& proxy) {
-    return gathered([&](const Sink& sink) { write_proxy_text(proxy, sink); });
-}
-
 void write_frame_text(const MeshSample& sample, const Sink& sink) {
     const Extent extent = extent_of(sample.points);
     const std::vector<VaryingValues> all = varying_values(sample, extent);

@@ -20,14 +20,6 @@ std::string manifest_text(const Manifest& manifest);
 void write_topology_text(const Topology& topology, const Sink& sink);
 std::string topology_text(const Topology& topology);
 
-// The faces of a mesh's proxy, whose points are those of the mesh: a layer over the topology. st isn't used.
-struct ProxyFaces {
-    double fps = 24.0;  // > 0
-    Faces faces{};
-};
-void write_proxy_text(const ProxyFaces& proxy, const Sink& sink);
-std::string proxy_text(const ProxyFaces& proxy);
-
 void write_frame_text(const MeshSample& sample, const Sink& sink);
 std::string frame_text(const MeshSample& sample);
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #define AI_API inline
-#define AI_EXPORT_LIB __attribute__((visibility("default")))
+#define AI_EXPORT_LIB extern "C" __attribute__((visibility("default")))
 #define AI_VERSION "stand-in"
 #define AI_MAXSIZE_VERSION 32
 
@@ -36,7 +36,11 @@ struct AtMatrix {
     float data[4][4];
 };
 struct AtUniverse {};
-struct AtNodeEntry {};
+struct AtParamEntry {};
+// Both kinds of shapes that the host knows have a motion of their own.
+struct AtNodeEntry {
+    std::map<std::string, AtParamEntry> parameters{{"motion_start", {}}, {"motion_end", {}}};
+};
 
 class AtArray {
   public:
@@ -49,6 +53,7 @@ class AtArray {
 struct AtNode {
     AtUniverse* universe = nullptr;
     const AtNode* parent = nullptr;
+    AtNodeEntry entry{};
     std::string type{}, name{};
     std::map<std::string, std::string> strings{}, declared{};
     std::map<std::string, double> numbers{};
@@ -125,15 +130,31 @@ AI_API bool AiNodeDeclare(AtNode* node, const AtString name, const char* declara
     node->declared[name.c_str()] = declaration;
     return true;
 }
+AI_API const AtNodeEntry* AiNodeGetNodeEntry(const AtNode* node) {
+    return &node->entry;
+}
+AI_API const AtParamEntry* AiNodeEntryLookUpParameter(const AtNodeEntry* entry, const AtString name) {
+    const auto found = entry->parameters.find(name.c_str());
+    return found == entry->parameters.end() ? nullptr : &found->second;
+}
+AI_API AtArray* AiArrayAllocate(std::uint32_t elements, std::uint8_t keys, std::uint8_t type) {
+    return new AtArray{elements, keys, type, {}, {}};
+}
+// The keys come one after another.
+AI_API bool AiArraySetKey(AtArray* array, std::uint8_t, const void* data) {
+    const std::size_t count = std::size_t{array->elements} * (array->type == AI_TYPE_VECTOR ? 3 : 1);
+    const auto append = [&](auto& to, const auto* values) { to.insert(to.end(), values, values + count); };
+    if (array->type == AI_TYPE_UINT)
+        append(array->uints, static_cast<const std::uint32_t*>(data));
+    else
+        append(array->floats, static_cast<const float*>(data));
+    return true;
+}
+// Of one key alone.
 AI_API AtArray* AiArrayConvert(std::uint32_t elements, std::uint8_t keys, std::uint8_t type,
                                const void* data) {
-    auto* array = new AtArray{elements, keys, type, {}, {}};
-    const std::size_t count = std::size_t{elements} * keys * (type == AI_TYPE_VECTOR ? 3 : 1);
-    if (type == AI_TYPE_UINT)
-        array->uints.assign(static_cast<const std::uint32_t*>(data),
-                            static_cast<const std::uint32_t*>(data) + count);
-    else
-        array->floats.assign(static_cast<const float*>(data), static_cast<const float*>(data) + count);
+    AtArray* array = AiArrayAllocate(elements, keys, type);
+    AiArraySetKey(array, 0, data);
     return array;
 }
 AI_API AtMatrix AiM4Translation(const AtVector& by) {
@@ -160,7 +181,7 @@ struct AtNodeLib {
 #define procedural_cleanup static int ProceduralCleanup(const AtNode* node, void* user_ptr)
 #define procedural_num_nodes static int ProceduralNumNodes(const AtNode* node, void* user_ptr)
 #define procedural_get_node static AtNode* ProceduralGetNode(const AtNode* node, void* user_ptr, int i)
-#define node_loader extern "C" AI_EXPORT_LIB bool NodeLoader(int i, AtNodeLib* node)
+#define node_loader AI_EXPORT_LIB bool NodeLoader(int i, AtNodeLib* node)
 #define AI_PROCEDURAL_NODE_EXPORT_METHODS(tag)                                                     \
     node_parameters;                                                                               \
     procedural_init;                                                                               \

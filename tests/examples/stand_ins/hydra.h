@@ -6,7 +6,7 @@
 #include <any>
 #include <cstdarg>
 #include <cstdio>
-#include <initializer_list>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -87,7 +87,15 @@ class GfMatrix4d {
         for (std::size_t i = 0; i < 3; ++i) of_[3][i] = by[i];
         return *this;
     }
+    double* operator[](std::size_t row) { return of_[row]; }
     const double* operator[](std::size_t row) const { return of_[row]; }
+    // Of rows: the first one moves first.
+    GfMatrix4d operator*(const GfMatrix4d& next) const {
+        GfMatrix4d both(0.0);
+        for (std::size_t i = 0; i < 16; ++i)
+            for (std::size_t k = 0; k < 4; ++k) both[i / 4][i % 4] += of_[i / 4][k] * next[k][i % 4];
+        return both;
+    }
 
   private:
     double of_[4][4] = {};
@@ -130,8 +138,37 @@ class VtValue {
 
 // ---- Data sources
 
+class HdDataSourceLocator {
+  public:
+    template <class... Names>
+    explicit HdDataSourceLocator(const Names&... names) : names_{names...} {}
+    std::size_t GetElementCount() const { return names_.size(); }
+    const TfToken& GetElement(std::size_t i) const { return names_.at(i); }
+    const TfToken& GetFirstElement() const { return names_.at(0); }
+
+  private:
+    std::vector<TfToken> names_;
+};
+// Of locators of one name alone.
+class HdDataSourceLocatorSet : public std::vector<HdDataSourceLocator> {
+  public:
+    using std::vector<HdDataSourceLocator>::vector;
+    void insert(const HdDataSourceLocator& locator) { push_back(locator); }
+    bool Intersects(const HdDataSourceLocatorSet& others) const {
+        for (const HdDataSourceLocator& each : *this)
+            for (const HdDataSourceLocator& other : others)
+                if (each.GetFirstElement() == other.GetFirstElement()) return true;
+        return false;
+    }
+};
+
+#define HD_DECLARE_DATASOURCE_ABSTRACT(type)                          \
+    using Handle = std::shared_ptr<type>;                             \
+    static Handle Cast(const std::shared_ptr<HdDataSourceBase>& of) { \
+        return std::dynamic_pointer_cast<type>(of);                   \
+    }
 #define HD_DECLARE_DATASOURCE(type)                                     \
-    using Handle = std::shared_ptr<type>;                               \
+    HD_DECLARE_DATASOURCE_ABSTRACT(type)                                \
     template <class... Arguments>                                       \
     static Handle New(Arguments&&... arguments) {                       \
         return Handle(new type(std::forward<Arguments>(arguments)...)); \
@@ -145,26 +182,36 @@ using HdDataSourceBaseHandle = std::shared_ptr<HdDataSourceBase>;
 
 class HdContainerDataSource : public HdDataSourceBase {
   public:
+    HD_DECLARE_DATASOURCE_ABSTRACT(HdContainerDataSource)
     virtual HdDataSourceBaseHandle Get(const TfToken& name) = 0;
+    static HdDataSourceBaseHandle Get(const Handle& container, const HdDataSourceLocator& locator) {
+        HdDataSourceBaseHandle found = container;
+        for (std::size_t i = 0; i < locator.GetElementCount(); ++i) {
+            const Handle parent = Cast(found);
+            found = parent ? parent->Get(locator.GetElement(i)) : nullptr;
+        }
+        return found;
+    }
 };
-using HdContainerDataSourceHandle = std::shared_ptr<HdContainerDataSource>;
+using HdContainerDataSourceHandle = HdContainerDataSource::Handle;
 
 class HdSampledDataSource : public HdDataSourceBase {
   public:
+    HD_DECLARE_DATASOURCE_ABSTRACT(HdSampledDataSource)
     using Time = float;
     virtual VtValue GetValue(Time time) = 0;
     virtual bool GetContributingSampleTimesForInterval(Time open, Time close, std::vector<Time>* times) = 0;
 };
-using HdSampledDataSourceHandle = std::shared_ptr<HdSampledDataSource>;
+using HdSampledDataSourceHandle = HdSampledDataSource::Handle;
 
 template <class T>
 class HdTypedSampledDataSource : public HdSampledDataSource {
   public:
+    HD_DECLARE_DATASOURCE_ABSTRACT(HdTypedSampledDataSource<T>)
     virtual T GetTypedValue(Time time) = 0;
 };
-using HdIntArrayDataSourceHandle = std::shared_ptr<HdTypedSampledDataSource<VtIntArray>>;
-using HdTokenDataSourceHandle = std::shared_ptr<HdTypedSampledDataSource<TfToken>>;
-using HdMatrixDataSourceHandle = std::shared_ptr<HdTypedSampledDataSource<GfMatrix4d>>;
+using HdMatrixDataSource = HdTypedSampledDataSource<GfMatrix4d>;
+using HdMatrixDataSourceHandle = HdMatrixDataSource::Handle;
 
 template <class T>
 class HdRetainedTypedSampledDataSource : public HdTypedSampledDataSource<T> {
@@ -199,165 +246,56 @@ class HdRetainedContainerDataSource : public HdContainerDataSource {
     std::map<TfToken, HdDataSourceBaseHandle> children_;
 };
 
-class HdDataSourceLocator {
+// The first one's word counts.
+class HdOverlayContainerDataSource : public HdContainerDataSource {
   public:
-    explicit HdDataSourceLocator(const TfToken& first) : first_(first) {}
-    const TfToken& GetFirstElement() const { return first_; }
+    HD_DECLARE_DATASOURCE(HdOverlayContainerDataSource)
+    HdOverlayContainerDataSource(HdContainerDataSourceHandle first, HdContainerDataSourceHandle second)
+        : first_(std::move(first)), second_(std::move(second)) {}
+    HdDataSourceBaseHandle Get(const TfToken& name) override {
+        const HdDataSourceBaseHandle first = first_->Get(name), second = second_->Get(name);
+        const HdContainerDataSourceHandle over = HdContainerDataSource::Cast(first),
+                                          under = HdContainerDataSource::Cast(second);
+        if (over && under) return New(over, under);
+        return first ? first : second;
+    }
 
   private:
-    TfToken first_;
-};
-class HdDataSourceLocatorSet : public std::vector<HdDataSourceLocator> {
-  public:
-    using std::vector<HdDataSourceLocator>::vector;
+    HdContainerDataSourceHandle first_, second_;
 };
 
 // ---- Tokens and schemas
 
-inline const struct HdPrimTypeTokensOfStandIn { TfToken mesh{"mesh"}; } hd_prim_types;
-inline const auto* const HdPrimTypeTokens = &hd_prim_types;
-inline const struct HdMeshTokensOfStandIn {
-    TfToken mesh{"mesh"}, topology{"topology"}, subdivisionScheme{"subdivisionScheme"};
-} hd_mesh_tokens;
-inline const auto* const HdMeshSchemaTokens = &hd_mesh_tokens;
-inline const struct HdTopologyTokensOfStandIn {
-    TfToken faceVertexCounts{"faceVertexCounts"}, faceVertexIndices{"faceVertexIndices"};
-} hd_topology_tokens;
-inline const auto* const HdMeshTopologySchemaTokens = &hd_topology_tokens;
-inline const struct HdXformTokensOfStandIn { TfToken xform{"xform"}, matrix{"matrix"}; } hd_xform_tokens;
-inline const auto* const HdXformSchemaTokens = &hd_xform_tokens;
-inline const struct HdPrimvarsTokensOfStandIn {
-    TfToken primvars{"primvars"}, points{"points"}, normals{"normals"};
-} hd_primvars_tokens;
-inline const auto* const HdPrimvarsSchemaTokens = &hd_primvars_tokens;
-inline const struct HdPrimvarTokensOfStandIn {
-    TfToken primvarValue{"primvarValue"}, interpolation{"interpolation"}, role{"role"}, vertex{"vertex"},
-        point{"point"}, normal{"normal"};
-} hd_primvar_tokens;
-inline const auto* const HdPrimvarSchemaTokens = &hd_primvar_tokens;
-inline const struct PxOsdTokensOfStandIn { TfToken none{"none"}; } px_osd_tokens;
-inline const auto* const PxOsdOpenSubdivTokens = &px_osd_tokens;
+#define TOKENS_OF_STAND_IN(name, ...)                                                \
+    inline const struct name##OfStandIn { TfToken __VA_ARGS__; } name##_of_stand_in; \
+    inline const auto* const name = &name##_of_stand_in;
+TOKENS_OF_STAND_IN(HdPrimTypeTokens, mesh{"mesh"})
+TOKENS_OF_STAND_IN(HdMeshSchemaTokens, mesh{"mesh"}, topology{"topology"},
+                   subdivisionScheme{"subdivisionScheme"})
+TOKENS_OF_STAND_IN(HdMeshTopologySchemaTokens, faceVertexCounts{"faceVertexCounts"},
+                   faceVertexIndices{"faceVertexIndices"})
+TOKENS_OF_STAND_IN(HdXformSchemaTokens, xform{"xform"}, matrix{"matrix"}, resetXformStack{"resetXformStack"})
+TOKENS_OF_STAND_IN(HdPrimvarsSchemaTokens, primvars{"primvars"}, points{"points"}, normals{"normals"})
+TOKENS_OF_STAND_IN(HdPrimvarSchemaTokens, primvarValue{"primvarValue"}, interpolation{"interpolation"},
+                   role{"role"}, vertex{"vertex"}, point{"point"}, normal{"normal"})
+TOKENS_OF_STAND_IN(HdMaterialBindingsSchemaTokens, materialBindings{"materialBindings"})
+TOKENS_OF_STAND_IN(HdPurposeSchemaTokens, purpose{"purpose"})
+TOKENS_OF_STAND_IN(HdVisibilitySchemaTokens, visibility{"visibility"})
+TOKENS_OF_STAND_IN(PxOsdOpenSubdivTokens, none{"none"})
 
-class HdPrimvarSchema {
-  public:
-    explicit HdPrimvarSchema(HdContainerDataSourceHandle container) : container_(std::move(container)) {}
-    HdSampledDataSourceHandle GetPrimvarValue() const {
-        return container_ ? std::dynamic_pointer_cast<HdSampledDataSource>(
-                                container_->Get(HdPrimvarSchemaTokens->primvarValue))
-                          : nullptr;
-    }
-    static HdTokenDataSourceHandle BuildInterpolationDataSource(const TfToken& word) {
-        return HdRetainedTypedSampledDataSource<TfToken>::New(word);
-    }
-    static HdTokenDataSourceHandle BuildRoleDataSource(const TfToken& word) {
-        return HdRetainedTypedSampledDataSource<TfToken>::New(word);
-    }
-    class Builder {
-      public:
-        Builder& SetPrimvarValue(const HdSampledDataSourceHandle& value) { return value_ = value, *this; }
-        Builder& SetInterpolation(const HdTokenDataSourceHandle& word) {
-            return interpolation_ = word, *this;
-        }
-        Builder& SetRole(const HdTokenDataSourceHandle& word) { return role_ = word, *this; }
-        HdContainerDataSourceHandle Build() {
-            return HdRetainedContainerDataSource::New(HdPrimvarSchemaTokens->primvarValue, value_,
-                                                      HdPrimvarSchemaTokens->interpolation, interpolation_,
-                                                      HdPrimvarSchemaTokens->role, role_);
-        }
-
-      private:
-        HdSampledDataSourceHandle value_;
-        HdTokenDataSourceHandle interpolation_, role_;
+#define SCHEMA_OF_STAND_IN(name, word)                               \
+    struct name {                                                    \
+        static const HdDataSourceLocator& GetDefaultLocator() {      \
+            static const HdDataSourceLocator locator{TfToken(word)}; \
+            return locator;                                          \
+        }                                                            \
     };
-
-  private:
-    HdContainerDataSourceHandle container_;
-};
-
-class HdPrimvarsSchema {
-  public:
-    static HdPrimvarsSchema GetFromParent(const HdContainerDataSourceHandle& prim) {
-        return HdPrimvarsSchema(prim ? std::dynamic_pointer_cast<HdContainerDataSource>(
-                                           prim->Get(HdPrimvarsSchemaTokens->primvars))
-                                     : nullptr);
-    }
-    static const HdDataSourceLocator& GetDefaultLocator() {
-        static const HdDataSourceLocator locator(HdPrimvarsSchemaTokens->primvars);
-        return locator;
-    }
-    HdPrimvarSchema GetPrimvar(const TfToken& name) {
-        return HdPrimvarSchema(
-            container_ ? std::dynamic_pointer_cast<HdContainerDataSource>(container_->Get(name)) : nullptr);
-    }
-
-  private:
-    explicit HdPrimvarsSchema(HdContainerDataSourceHandle container) : container_(std::move(container)) {}
-    HdContainerDataSourceHandle container_;
-};
-
-class HdMeshTopologySchema {
-  public:
-    class Builder {
-      public:
-        Builder& SetFaceVertexCounts(const HdIntArrayDataSourceHandle& counts) {
-            return counts_ = counts, *this;
-        }
-        Builder& SetFaceVertexIndices(const HdIntArrayDataSourceHandle& indices) {
-            return indices_ = indices, *this;
-        }
-        HdContainerDataSourceHandle Build() {
-            return HdRetainedContainerDataSource::New(HdMeshTopologySchemaTokens->faceVertexCounts, counts_,
-                                                      HdMeshTopologySchemaTokens->faceVertexIndices,
-                                                      indices_);
-        }
-
-      private:
-        HdIntArrayDataSourceHandle counts_, indices_;
-    };
-};
-
-class HdMeshSchema {
-  public:
-    static const HdDataSourceLocator& GetDefaultLocator() {
-        static const HdDataSourceLocator locator(HdMeshSchemaTokens->mesh);
-        return locator;
-    }
-    class Builder {
-      public:
-        Builder& SetTopology(const HdContainerDataSourceHandle& topology) {
-            return topology_ = topology, *this;
-        }
-        Builder& SetSubdivisionScheme(const HdTokenDataSourceHandle& scheme) {
-            return scheme_ = scheme, *this;
-        }
-        HdContainerDataSourceHandle Build() {
-            return HdRetainedContainerDataSource::New(HdMeshSchemaTokens->topology, topology_,
-                                                      HdMeshSchemaTokens->subdivisionScheme, scheme_);
-        }
-
-      private:
-        HdContainerDataSourceHandle topology_;
-        HdTokenDataSourceHandle scheme_;
-    };
-};
-
-class HdXformSchema {
-  public:
-    static const HdDataSourceLocator& GetDefaultLocator() {
-        static const HdDataSourceLocator locator(HdXformSchemaTokens->xform);
-        return locator;
-    }
-    class Builder {
-      public:
-        Builder& SetMatrix(const HdMatrixDataSourceHandle& matrix) { return matrix_ = matrix, *this; }
-        HdContainerDataSourceHandle Build() {
-            return HdRetainedContainerDataSource::New(HdXformSchemaTokens->matrix, matrix_);
-        }
-
-      private:
-        HdMatrixDataSourceHandle matrix_;
-    };
-};
+SCHEMA_OF_STAND_IN(HdPrimvarsSchema, "primvars")
+SCHEMA_OF_STAND_IN(HdMeshSchema, "mesh")
+SCHEMA_OF_STAND_IN(HdXformSchema, "xform")
+SCHEMA_OF_STAND_IN(HdMaterialBindingsSchema, "materialBindings")
+SCHEMA_OF_STAND_IN(HdPurposeSchema, "purpose")
+SCHEMA_OF_STAND_IN(HdVisibilitySchema, "visibility")
 
 // ---- The scene and its procedurals
 
@@ -408,17 +346,28 @@ class HdGpGenerativeProcedural {
     const SdfPath path_;
 };
 
-class HdGpGenerativeProceduralPlugin {
+class HfPluginBase {
   public:
-    virtual ~HdGpGenerativeProceduralPlugin() = default;
+    virtual ~HfPluginBase() = default;
+
+  protected:
+    HfPluginBase() = default;
+};
+class HdGpGenerativeProceduralPlugin : public HfPluginBase {
+  public:
     virtual HdGpGenerativeProcedural* Construct(const SdfPath& path) = 0;
+
+  protected:
+    HdGpGenerativeProceduralPlugin() = default;
+    ~HdGpGenerativeProceduralPlugin() override = default;
 };
 
-// What the host has been told.
+// What the host has been told, and what it does when it is told something more.
 struct HydraStandIn {
-    std::vector<std::unique_ptr<HdGpGenerativeProceduralPlugin>> plugins;
+    std::vector<std::shared_ptr<HdGpGenerativeProceduralPlugin>> plugins;
     std::mutex lock;
     std::vector<std::string> log;
+    std::function<void()> told;
 };
 inline HydraStandIn& hydra_stand_in() {
     static HydraStandIn host;
@@ -429,7 +378,7 @@ class HdGpGenerativeProceduralPluginRegistry {
   public:
     template <class Plugin>
     static void Define() {
-        hydra_stand_in().plugins.push_back(std::make_unique<Plugin>());
+        hydra_stand_in().plugins.push_back(std::make_shared<Plugin>());
     }
 };
 
@@ -439,8 +388,11 @@ inline void hydra_stand_in_log(const char* format, ...) {
     va_start(words, format);
     std::vsnprintf(text, sizeof text, format, words);
     va_end(words);
-    const std::lock_guard<std::mutex> lock(hydra_stand_in().lock);
-    hydra_stand_in().log.emplace_back(text);
+    {
+        const std::lock_guard<std::mutex> lock(hydra_stand_in().lock);
+        hydra_stand_in().log.emplace_back(text);
+    }
+    if (hydra_stand_in().told) hydra_stand_in().told();
 }
 
 }  // namespace pxr

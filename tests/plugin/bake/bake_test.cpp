@@ -12,8 +12,6 @@
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -317,47 +315,6 @@ TEST_F(Bakes, MeshesAreInTheFormatThatIsAskedForAndThePagesAreText) {
         EXPECT_EQ(files.at(file).at("bytes").get<std::uintmax_t>(), fs::file_size(folder_ / file));
         EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 3);
     }
-}
-
-// Of a patch: over a 64th of the frames' own points, from one side to the other. Surfaces whose points are no square have none.
-TEST_F(Bakes, APatchHasAProxy) {
-    for (const int quads : {8, 100}) {
-        Scene scene = small_scene();
-        scene.shot.last_frame = 1;
-        scene.surface.resolution = quads;
-        const auto record = bake_and_read(scene);
-        const std::string proxy = bytes_of(folder_ / "mesh/sea.proxy.usda"),
-                          root = bytes_of(folder_ / "sea.usda");
-        EXPECT_NE(root.find("string proxy = \"off\""), std::string::npos);
-        std::stringstream text(proxy.substr(proxy.find("faceVertexIndices = [") + 21));
-        std::set<int> points;
-        std::vector<int> corners;
-        for (int index; text >> index; text.ignore(1)) {
-            points.insert(index);
-            corners.push_back(index);
-        }
-        const int side = quads + 1, all = side * side;
-        EXPECT_LE(points.size(), std::max(static_cast<std::size_t>(all / 64), std::size_t{4}));
-        EXPECT_GT(points.size(), static_cast<std::size_t>(all / 100));
-        EXPECT_TRUE(points.contains(0) && points.contains(side - 1) && points.contains(all - side) &&
-                    points.contains(all - 1));
-        // Quads that cover the square once, whose areas are counted in the mesh's own.
-        ASSERT_EQ(corners.size() % 4, 0u);
-        int area = 0;
-        for (std::size_t i = 0; i < corners.size(); i += 4) {
-            const int across = corners[i + 1] - corners[i], up = (corners[i + 3] - corners[i]) / side;
-            EXPECT_EQ(corners[i + 2], corners[i] + across + up * side);
-            EXPECT_TRUE(across > 0 && up > 0);
-            area += across * up;
-        }
-        EXPECT_EQ(area, quads * quads);
-        EXPECT_TRUE(record.at("files").contains("mesh/sea.proxy.usda"));
-    }
-    Scene grid = camera_scene();
-    grid.shot.name = "grid";
-    bake(grid, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
-    EXPECT_FALSE(fs::exists(folder_ / "mesh/grid.proxy.usda"));
-    EXPECT_EQ(bytes_of(folder_ / "grid.usda").find("roxy"), std::string::npos);
 }
 
 // What a run leaves that was killed before it recorded its frames: crates of the same name and size.

@@ -71,7 +71,7 @@ TEST_F(ForeignFiles, AreThoseOfAnotherFormatAndOfOutputsThatAreGone) {
                      "mesh/sea.topology.usdc:" + gone, "tiles/sea.displacement.0.####.exr: 3 files" + gone}));
     scene_.output.mesh = MeshFormat::None;
     scene_.output.cascade_tiles = false;
-    EXPECT_EQ(foreign(scene_).size(), 12u) << "the stage and its sky, too";
+    EXPECT_EQ(foreign(scene_).size(), 11u) << "the stage and its sky, too";
 }
 
 TEST_F(ForeignFiles, AreThoseOfAnotherNameThatNoRecordKnows) {
@@ -84,10 +84,10 @@ TEST_F(ForeignFiles, AreThoseOfAnotherNameThatNoRecordKnows) {
     const std::string other = " of another shot";
     EXPECT_EQ(foreign(scene_),
               (Lines{"mesh/sea.####.usda: 3 files" + other, "mesh/sea.manifest.usda:" + other,
-                     "mesh/sea.proxy.usda:" + other, "mesh/sea.topology.usda:" + other,
-                     "sea.camera.usdc:" + other, "sea.sky.exr:" + other, "sea.usda:" + other}));
+                     "mesh/sea.topology.usda:" + other, "sea.camera.usdc:" + other, "sea.sky.exr:" + other,
+                     "sea.usda:" + other}));
     write("sea.json");
-    EXPECT_EQ(foreign(scene_).size(), 8u) << "that is no record";
+    EXPECT_EQ(foreign(scene_).size(), 7u) << "that is no record";
 }
 
 TEST_F(ForeignFiles, AreNotWhatPeopleAndRendersKeepBesideThem) {

@@ -170,36 +170,6 @@ std::string expected_rest(const pelagic::Faces& faces) {
            json_triangles(faces) + "}}";
 }
 
-// The proxy by itself, cut out of the root's variant. With the variant on OpenUSD, in a page, mostly hangs while it opens the stage: its threads
-// wait for the page's to read files. And it draws no proxies, so that this one is for everybody.
-std::string proxy_alone(const std::string& root) {
-    constexpr std::string_view kPurpose = "uniform token purpose = \"proxy\"\n";
-    const std::size_t begin = root.find("def Mesh \"SeaProxy\""), end = root.find(kPurpose, begin);
-    if (begin == std::string::npos || end == std::string::npos)
-        throw std::runtime_error("no proxy in the root");
-    return root.substr(0, root.find("def Xform")) + "def Xform \"_3_days_out\"\n{\n" +
-           root.substr(begin, end - begin) + "}\n}\n";
-}
-
-// Each eighth row and column.
-pelagic::Faces proxy_faces() {
-    pelagic::Faces faces = pelagic::grid_faces(kQuads / 8, kQuads / 8);
-    for (std::int32_t& index : faces.indices)
-        index = 8 * (index / (kQuads / 8 + 1)) * (kQuads + 1) + 8 * (index % (kQuads / 8 + 1));
-    return faces;
-}
-
-// The proxy has the mesh's points at each frame, and faces of its own.
-std::string expected_proxy(const pelagic::Faces& coarse, int frame) {
-    const Mesh mesh = random_mesh(frame);
-    return R"json({"prims": {"/_3_days_out/SeaProxy": "Mesh"},
-"flattened": ["uniform token subdivisionScheme = \"none\""],
-"frames": {")json" +
-           std::to_string(frame) + R"json(": {"/_3_days_out/SeaProxy": {"points": )json" +
-           json_array(mesh.points) + ", \"normals\": " + json_array(mesh.normals) +
-           ", \"indices\": " + json_triangles(coarse) + "}}}}\n";
-}
-
 usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes) {
     usd::Stage stage;
     stage.name = name;
@@ -209,7 +179,7 @@ usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes
     stage.attributes = attributes;
     stage.material.roughness = 0.25;
     stage.material.opacity = 0.875;
-    stage.has_camera = stage.has_proxy = true;
+    stage.has_camera = true;
     stage.sun = usd::Sun{};
     stage.sky = usd::Sky{};
     stage.custom_data = {{"seed", std::int64_t{9007199254740993}},
@@ -542,11 +512,6 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
     usd::Stage stage = stage_of(name, attributes);
     stage.frame_extension = stage.topology_extension = extension;
     save(dir / usd::root_file(name), usd::root_text(stage));
-    const pelagic::Faces coarse = proxy_faces();
-    save(dir / usd::proxy_file(name),
-         usd::proxy_text({.fps = 23.976, .faces = {.counts = coarse.counts, .indices = coarse.indices}}));
-    save(dir / "proxy.usda", proxy_alone(usd::root_text(stage)));
-    save(dir / "proxy.json", expected_proxy(coarse, 1));
 
     save(dir / "expected.json", "{" + expected_rest(faces) + ",\n\"sameLayers\": " + layers.twins() +
                                     ",\n\"frames\": {" + frames + "}}\n");

@@ -575,7 +575,7 @@ TEST(Weather, DisplacementIsPlannedForTheLargestOfItsKeys) {
     for (const double f : {1.0, 25.0, 49.0, 80.0, 97.0}) {
         const double t = scene.shot.time_s(f);
         const PreparedScene now = *prepared_at(shot, t);
-        const Extent needed = extent_of(now.scene, now.spectrum, SecondOrder());
+        const Extent needed = extent_of(now.scene, now.spectrum, SecondOrder(), now.masks);
         EXPECT_GE(now.extent.reach_m, needed.reach_m) << f;
         EXPECT_GE(shot->extent.reach_m, now.extent.reach_m) << f;
         EXPECT_GE(shot->extent.height_m, now.extent.height_m) << f;

@@ -289,6 +289,8 @@ void FoamHistory<T>::find_means() {
     mean_ = static_cast<float>(std::min(foam, 1.0));
     mean_age_s_ = foam > 0.0 ? static_cast<float>(aged / foam) : 0.0f;
     mean_bubbles_ = static_cast<float>(bubbles);
+    if (const auto& gusts = sea_->plan().gusts; gusts && !gusts->fronts.empty())
+        gusts_ = shot_->whitecaps(time_s_).gusts;
 }
 
 template <class T>
@@ -349,8 +351,8 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
                          which == 0 ? aged.data() : next_age.data());
     });
     const auto& masks = sea_->plan().masks;
-    const Gusts* const gusts =
-        sea_->gusts() && !sea_->gusts()->plan.fronts.empty() ? &*sea_->gusts() : nullptr;
+    const std::optional<Gusts>& now = shot_ ? gusts_ : sea_->gusts();
+    const Gusts* const gusts = now && !now->plan.fronts.empty() ? &*now : nullptr;
     for (std::size_t i = 0; (masks || gusts) && i < foam.size(); ++i) {
         if (part.level[i] + 1 < FoamPlan::kLevels) continue;
         // Beyond all tiles masks leave as much of the mean, and fronts make as much of it, where they are now.
@@ -360,7 +362,9 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, const Sums& 
             const MaskGains<double> gains = masks->at(place_m);
             gained = gains.foam * masked_breaking(gains.waves, breaking_deviate_);
         }
-        if (gusts) gained *= gusts->foam_of(gusts->plan.fronts_wind(place_m, time_s_));
+        if (gusts)
+            gained *= gusts->foam_of(gusts->plan.fronts_wind(
+                place_m, static_cast<double>(locate.footprint_m(first + i)), time_s_));
         const auto gain = static_cast<float>(gained);
         next[i] *= gain;
         next_age[i] *= gain;

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -149,6 +150,7 @@ class FoamHistory {
     std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
+    std::optional<Gusts> gusts_;             // of the moment, where the sea changes and has fronts
     float mean_bubbles_ = 0.0f;
     double breaking_deviate_ = 0.0;
     double time_s_ = 0.0;

@@ -44,17 +44,34 @@ HWY_INLINE N ValueOf(const Terms& terms, N x) {
 }
 
 template <class T, class N>
-HWY_INLINE N FrontsWind(const GustArgs<T>& args, N x, N y, N level) {
+HWY_INLINE N FrontsWind(const GustArgs<T>& args, N x, N y, N width, N axis_x, N axis_y, N level) {
     const GustsPlan& plan = args.gusts->plan;
     N wind(1);
     for (std::size_t f = 0; f < plan.fronts.size(); ++f) {
         const GustsPlan::Front& front = plan.fronts[f];
         const glm::dvec2 from = args.phases->from_fronts[f];
-        wind = wind * front_wind(x + N(from.x), y + N(from.y), N(front.along.x), N(front.along.y),
-                                 N(front.inner_per_m.x), N(front.inner_per_m.y), N(front.outer_per_m.x),
-                                 N(front.outer_per_m.y), N(front.wind), level);
+        const N along_x(front.along.x), along_y(front.along.y);
+        wind = wind * front_wind(x + N(from.x), y + N(from.y), along_x, along_y, N(front.half_m.x),
+                                 N(front.half_m.y), N(front.edge_m),
+                                 square_root(length2_along(width, axis_x, axis_y, along_x, along_y)),
+                                 square_root(length2_along(width, axis_x, axis_y, -along_y, along_x)),
+                                 N(front.wind), level);
     }
     return minimum(maximum(wind, N(plan.weakest)), N(plan.strongest));
+}
+
+// What fronts of a wind add to the threshold.
+template <class N>
+HWY_INLINE N FrontsThreshold(const Gusts& gusts, N wind, N kept) {
+    N even(0), patchy(0);
+    const auto add = [&](const Gusts::Bend& bend, N farther) {
+        farther = maximum(farther, N(0));
+        even += N(bend.even) * farther;
+        patchy += N(bend.patchy) * farther;
+    };
+    for (const Gusts::Bend& bend : gusts.stronger) add(bend, wind - N(bend.wind));
+    for (const Gusts::Bend& bend : gusts.weaker) add(bend, N(bend.wind) - wind);
+    return even + patchy * patchy_share(kept);
 }
 
 template <class T>
@@ -84,14 +101,18 @@ void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
             sum = with_gust(sum, N(wave.amplitude), cycles, weight);
         }
         const N level = gust_level(sum.resolved);
-        N factor = N(1) + N(args.gusts->plan.strength) * level, at = level;
+        N factor = N(1) + N(args.gusts->plan.strength) * level;
+        N threshold = ValueOf(args.gusts->of_level, level) + ValueOf(args.gusts->of_kept, sum.kept);
         if (has_fronts) {
-            factor = factor * FrontsWind(args, x, y, level);
-            at = (factor - N(args.gusts->middle)) * N(1.0 / args.gusts->half);
+            const N wind = FrontsWind(args, x, y, width, axis_x, axis_y, level);
+            factor = factor * wind;
+            // Beyond all fronts it stays as it is, to the bit.
+            if (!hn::AllTrue(d, hn::Eq(wind.v, N(1).v)))
+                threshold = minimum(threshold + FrontsThreshold(*args.gusts, wind, sum.kept),
+                                    maximum(threshold, N(args.gusts->most)));
         }
         hn::Store(factor.v, d, chunk.factor.data() + i);
-        hn::Store((ValueOf(args.gusts->of_level, at) + ValueOf(args.gusts->of_kept, sum.kept)).v, d,
-                  chunk.whitecap_threshold.data() + i);
+        hn::Store(threshold.v, d, chunk.whitecap_threshold.data() + i);
     }
 }
 

@@ -94,12 +94,18 @@ std::string trains_text(const Plan& plan) {
     return page;
 }
 
+// Whether masks are another without the effect. Where vessels are, ripples are calmed that don't break.
+bool shapes_masks(Effect effect, const Scene& scene) {
+    return effect == Effect::Masks || effect == Effect::Coast || effect == Effect::Wakes ||
+           (effect == Effect::Whitecaps && !scene.waves.vessels.empty());
+}
+
 // What a frame would do and hold less without the effect; of a plan that is no bake, of the same queries.
 std::string cost_text(const Plan& plan, const EffectRow& row) {
     const auto from = std::make_shared<PreparedScene>(*plan.from);
     row.turn_off(from->scene);
     if (!is_on(Effect::SecondOrder, from->scene)) from->second_order = {};
-    from->masks = masks_of(from->scene, from->spectrum);
+    if (shapes_masks(row.effect, plan.from->scene)) from->masks = masks_of(from->scene, from->spectrum);
     if (!from->weather)
         from->extent = extent_of(from->scene, from->spectrum, from->second_order, from->masks);
     std::vector<Query> queries;

@@ -29,13 +29,13 @@ GustsPlan::FromFronts GustsPlan::from_fronts(glm::dvec2 origin_m, double time_s)
     return from;
 }
 
-double GustsPlan::fronts_wind(glm::dvec2 place_m, double time_s) const {
+double GustsPlan::fronts_wind(glm::dvec2 place_m, double footprint_m, double time_s) const {
     const FromFronts from = from_fronts(place_m, time_s);
     double wind = 1.0;
     for (std::size_t i = 0; i < fronts.size(); ++i) {
         const Front& front = fronts[i];
-        wind *= front_wind(from[i].x, from[i].y, front.along.x, front.along.y, front.inner_per_m.x,
-                           front.inner_per_m.y, front.outer_per_m.x, front.outer_per_m.y, front.wind, 0.0);
+        wind *= front_wind(from[i].x, from[i].y, front.along.x, front.along.y, front.half_m.x, front.half_m.y,
+                           front.edge_m, footprint_m, footprint_m, front.wind, 0.0);
     }
     return std::clamp(wind, weakest, strongest);
 }
@@ -95,8 +95,8 @@ GustsPlan plan_gusts(const Scene& scene) {
         plan.fronts.push_back({.middle_m = {front.east_m, front.north_m},
                                .along = way,
                                .velocity_mps = loop_s > 0.0 ? glm::dvec2(0.0) : front.speed_mps * way,
-                               .inner_per_m = 1.0 / half_m,
-                               .outer_per_m = 1.0 / (half_m + front.edge_m),
+                               .half_m = half_m,
+                               .edge_m = front.edge_m,
                                .time_s = scene.shot.time_s(front.frame),
                                .reach_m = std::max(half_m.x, half_m.y) + front.edge_m,
                                .wind = front.wind});

@@ -34,9 +34,10 @@ struct GustsPlan {
     std::array<Wave, kWaves> waves{};
 
     struct Front {
-        glm::dvec2 middle_m{0.0}, along{1.0, 0.0};      // at time_s
-        glm::dvec2 velocity_mps{0.0};                   // none in a loop
-        glm::dvec2 inner_per_m{0.0}, outer_per_m{0.0};  // one over an ellipse's half axes
+        glm::dvec2 middle_m{0.0}, along{1.0, 0.0};  // at time_s
+        glm::dvec2 velocity_mps{0.0};               // none in a loop
+        glm::dvec2 half_m{0.0};                     // an ellipse's half axes, along and across
+        double edge_m = 0.0;                        // round it
         double time_s = 0.0;
         double reach_m = 0.0;  // from the middle: beyond it there is none
         double wind = 1.0;
@@ -51,8 +52,8 @@ struct GustsPlan {
     // From each front's middle to a place [m].
     using FromFronts = std::array<glm::dvec2, limits::kGustFronts>;
     FromFronts from_fronts(glm::dvec2 origin_m, double time_s) const;
-    // The wind of all fronts at a place, times the sea's, as from far away, where no pattern is seen on their edges.
-    double fronts_wind(glm::dvec2 place_m, double time_s) const;
+    // The wind of all fronts in a round footprint, times the sea's, as from far away, where no pattern is seen on their edges.
+    double fronts_wind(glm::dvec2 place_m, double footprint_m, double time_s) const;
 
     // Each wave's phase at a place, 0 … 1, anywhere in the world and at any time.
     std::array<double, kWaves> cycles_at(glm::dvec2 origin_m, double time_within_loop_s) const;

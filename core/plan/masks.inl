@@ -31,13 +31,19 @@ inline T ragged_share(T share, T level) {
     return smooth_rise(minimum(maximum(share + T(4) * level * share * (T(1) - share), T(0)), T(1)));
 }
 
-// The wind of a front, times the sea's. The place: from its middle [m].
+// The wind of a front, times the sea's. The place: from its middle; half_u, half_v: the half axes of its ellipse; length_u, length_v: of a
+// footprint, along and across [m]. The footprint takes the edge by half of its length farther out and as far in, and leaves of what is
+// smaller than itself as much as its area.
 template <class T>
-inline T front_wind(T x, T y, T along_x, T along_y, T inner_u, T inner_v, T outer_u, T outer_v, T wind,
-                    T level) {
-    MaskShare<T> at =
-        mask_share(x * along_x + y * along_y, y * along_x - x * along_y, inner_u, inner_v, outer_u, outer_v);
-    return T(1) + (wind - T(1)) * ragged_share(at.share, level);
+inline T front_wind(T x, T y, T along_x, T along_y, T half_u, T half_v, T edge, T length_u, T length_v,
+                    T wind, T level) {
+    T inner_u = maximum(half_u - T(0.5) * length_u, T(0.01) * half_u),
+      inner_v = maximum(half_v - T(0.5) * length_v, T(0.01) * half_v);
+    T outer_u = half_u + edge + T(0.5) * length_u, outer_v = half_v + edge + T(0.5) * length_v;
+    T left = (T(2) * half_u + edge) * (T(2) * half_v + edge) / ((inner_u + outer_u) * (inner_v + outer_v));
+    MaskShare<T> at = mask_share(x * along_x + y * along_y, y * along_x - x * along_y, T(1) / inner_u,
+                                 T(1) / inner_v, T(1) / outer_u, T(1) / outer_v);
+    return T(1) + (wind - T(1)) * minimum(left, T(1)) * ragged_share(at.share, level);
 }
 
 // Quadratic B-splines of the three cells round a place, which add up to 1, and how they change from one cell to the next. From the middle

@@ -263,9 +263,11 @@ void add_sea(Built& out) {
                                      .unit = "m",
                                      .range = limits::kFrontEdge_m,
                                      .soft = SoftRange{1.0, 500.0, true}}),
-            row<&GustFront::wind>({.name = "wind",
-                                   .help = "times the sea's wind: more than 1 is a gust, less a lull",
-                                   .range = limits::kFrontWind})),
+            row<&GustFront::wind>(
+                {.name = "wind",
+                 .help =
+                     "times the sea's wind: more than 1 is a gust, less a lull. A calm has a tenth: the sea's long waves go on",
+                 .range = limits::kFrontWind})),
         row<&SeaState::rain_mm_h>(
             {.name = "rain_mm_h",
              .help =

@@ -51,7 +51,7 @@ inline constexpr int kGustFronts = 8;  // each is looked at for every point
 inline constexpr Range kFrontSpeed_mps{0.0, 100.0};
 inline constexpr Range kFrontSize_m{1.0, 1e5};
 inline constexpr Range kFrontEdge_m{1.0, 1e5};
-inline constexpr Range kFrontWind{0.0, 4.0};
+inline constexpr Range kFrontWind{0.1, 4.0};  // in a calm the sea's long waves go on
 inline constexpr Range kRain_mm_h{0.0, 300.0};
 inline constexpr Range kDepth_m{0.01, 1e6};  // or infinite
 inline constexpr int kSwells = 64;           // each is a spectrum of its own in every integral

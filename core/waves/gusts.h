@@ -3,8 +3,9 @@
 // follow the shot's law: J is compared with a threshold at which the whole sea would have a coverage in proportion to
 // f^p, p being the law's exponent at the mean wind. The mean of both over area is what it is without gusts.
 //
-// A front multiplies f by its own factor; what the means are refers to the sea without fronts. Where the law has no foam at the mean wind there
-// is none to be multiplied, in a front as little.
+// A front multiplies f by w, its own wind over the sea's, and has the law's coverage at w times the sea's wind, on the mean of the pattern
+// within it. What the means are refers to the sea without fronts. Where the law has no foam at the mean wind, a front has none
+// either: the threshold and what breaking leaves are calibrated on that wind's breaking waves.
 //
 // Resolved waves are those of the mean wind, and so are the moments of J.
 #pragma once
@@ -17,15 +18,19 @@ namespace pelagic {
 
 struct Gusts {
     GustsPlan plan;
-    // ε = Σ of_level[n] · at^n + Σ of_kept[n] · kept^n. The second sum corrects footprints that resolve only a
-    // part of the pattern, `kept` of its variance, so that the mean coverage stays. f = middle + half · at: at is the level itself
-    // without fronts, and with them reaches as far.
+    // ε = Σ of_level[n] · level^n + Σ of_kept[n] · kept^n. The second sum corrects footprints that resolve only a
+    // part of the pattern, `kept` of its variance, so that the mean coverage stays.
     static constexpr int kLevelTerms = 9, kKeptTerms = 8;
     std::array<double, kLevelTerms> of_level{};
     std::array<double, kKeptTerms> of_kept{};
-    double middle = 1.0, half = 0.0;
-    double exponent = 0.0;   // p
-    double most_foam = 1.0;  // of a front, times the mean
+    // A front adds lines from bend to bend, in w, which are 0 where w is 1: each bend adds its slopes where the wind is farther from 1 than
+    // there. To ε, `even` where a footprint hides the pattern and `patchy` more where it keeps all of it; and to what foam is of the mean.
+    struct Bend {
+        double wind = 1.0, even = 0.0, patchy = 0.0, foam = 0.0;
+    };
+    static constexpr int kBends = 16;
+    std::array<Bend, kBends> stronger{}, weaker{};
+    double most = 0.0;  // of ε in a front
 
     // Of a front's wind, times the mean, over waves and footprints that no pattern is seen in.
     double foam_of(double fronts_wind) const;
@@ -33,7 +38,7 @@ struct Gusts {
 
 struct FoamBalance;
 
-// `threshold`: without gusts. `exponent`: law_exponent().
-Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold, double exponent);
+// `threshold`: without gusts. The scene: whose law it is.
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold, const Scene& scene);
 
 }  // namespace pelagic

@@ -30,6 +30,13 @@ inline T length2_along(T width, T axis_x, T axis_y, T unit_x, T unit_y) {
     return width * width + beyond * along * along;
 }
 
+// How far foam in a front has gone from where no pattern is seen to where all is, by the share of the variance that is kept: the level's
+// own variance rises faster than that. Mean foam of fronts stays within some percent.
+template <class T>
+inline T patchy_share(T kept) {
+    return kept * (T(2) - kept);
+}
+
 // The level of gusts, −1 … 1. Its mean over area is 0, however much of the pattern a footprint resolves.
 template <class T>
 inline T gust_level(T resolved) {

@@ -206,7 +206,7 @@ Whitecaps whitecaps_of(const Plan& plan, const SpectralMoments& total, const Foa
         gusts.strength = plan.from->scene.sea.gust_strength;
         found.gusts =
             make_gusts(gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
-                       found.threshold, law_exponent(plan.from->scene));
+                       found.threshold, plan.from->scene);
     }
     return found;
 }

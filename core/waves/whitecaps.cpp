@@ -29,8 +29,8 @@ double coverage_at(const Scene& scene, double wind_mps) {
 
 }  // namespace
 
-double law_coverage(const Scene& scene) {
-    return coverage_at(scene, std::max(scene.sea.wind_speed_mps, 0.0));
+double law_coverage(const Scene& scene, double winds) {
+    return coverage_at(scene, winds * std::max(scene.sea.wind_speed_mps, 0.0));
 }
 
 double law_exponent(const Scene& scene) {

@@ -57,7 +57,8 @@ inline constexpr double kMostCoverage = 0.6;
 //                   air's (Darles et al. 2007, Eq. 3, prints 1.59e-5)
 //   callaghan-2008  Callaghan et al. 2008: 3.18e-5 (U10 − 3.70)³, from 10.2 m/s on 4.82e-6 (U10 + 1.98)³, seen up to
 //                   23.09 m/s. From there on it stays: Holthuijsen et al. 2012 found no more foam on crests beyond 24 m/s.
-double law_coverage(const Scene& scene);
+// `winds`: in so many times the scene's wind.
+double law_coverage(const Scene& scene, double winds = 1.0);
 // The exponent of the wind in the law, at the scene's wind: 3.52, 2.55; 0 where the coverage stays constant. Near the
 // wind at which foam begins callaghan-2008 is steeper than any power; 4 at most.
 double law_exponent(const Scene& scene);

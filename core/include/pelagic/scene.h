@@ -119,7 +119,7 @@ struct GustFront {
     double length_m = 100.0,
            width_m = 300.0;  // > 0, of the ellipse, where it blows whole: along its way and across
     double edge_m = 60.0;    // > 0: round the ellipse, where it fades
-    double wind = 2.0;       // 0 … 4, times the sea's wind
+    double wind = 2.0;       // 0.1 … 4, times the sea's wind
 };
 
 // [sea]
@@ -141,8 +141,9 @@ struct SeaState {
     double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
     double gust_strength = 0.0;                  // 0 … 1: how much the wind varies over the surface
     double gust_size_m = 300.0;                  // > 0
-    std::vector<GustFront> gust_fronts;          // where they overlap, their winds multiply
-    double rain_mm_h = 0.0;                      // 0 … 300
+    std::vector<GustFront>
+        gust_fronts;         // where they overlap winds multiply, up to the strongest and down to the weakest
+    double rain_mm_h = 0.0;  // 0 … 300
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File

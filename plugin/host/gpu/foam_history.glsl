@@ -39,7 +39,7 @@ vec3 foam_left(vec2 rest_m, float footprint) {
         MaskGains gains = placed_masks(rest_m);
         mean *= gains.foam * masked_breaking(gains.waves, texelFetch(foam_levels, ivec2(1, kFoamLevels), 0).z);
     }
-    if (kFronts > 0) mean *= fronts_foam(rest_m);
+    if (kFronts > 0) mean *= fronts_foam(rest_m, footprint);
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 2; ++k) {
         float share = k == 0 ? 1.0 - t : t;

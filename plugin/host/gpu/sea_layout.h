@@ -36,7 +36,7 @@ class SeaLayout {
     bool has_gusts() const { return sea_->gusts().has_value(); }
     // Of them those that are placed; their rows are the last of the uniform block.
     int fronts() const { return has_gusts() ? static_cast<int>(sea_->gusts()->plan.fronts.size()) : 0; }
-    int front_rows() const { return fronts() > 0 ? 3 * fronts() + 2 : 0; }
+    int front_rows() const { return fronts() > 0 ? 2 * fronts() + 1 + 2 * Gusts::kBends : 0; }
     // Calm and rough places (masks.glsl): how many, their rows of the uniform block, and the levels of cells and pixels that show what a
     // slick leaves; −1: none is finer.
     bool is_masked() const { return sea_->plan().masks.has_value(); }

@@ -78,12 +78,12 @@ std::vector<std::array<float, 4>> front_rows_of(const Gusts& gusts, glm::dvec2 o
     for (std::size_t i = 0; i < gusts.plan.fronts.size(); ++i) {
         const GustsPlan::Front& front = gusts.plan.fronts[i];
         rows.push_back(row(from[i].x, from[i].y, front.along.x, front.along.y));
-        rows.push_back(
-            row(front.inner_per_m.x, front.inner_per_m.y, front.outer_per_m.x, front.outer_per_m.y));
-        rows.push_back(row(front.wind, front.reach_m, 0.0, 0.0));
+        rows.push_back(row(front.half_m.x, front.half_m.y, front.edge_m, front.wind));
     }
-    rows.push_back(row(gusts.plan.weakest, gusts.plan.strongest, gusts.middle, 1.0 / gusts.half));
-    rows.push_back(row(gusts.exponent, gusts.most_foam, 0.0, 0.0));
+    rows.push_back(row(gusts.plan.weakest, gusts.plan.strongest, gusts.most, 0.0));
+    for (const auto* bends : {&gusts.stronger, &gusts.weaker})
+        for (const Gusts::Bend& bend : *bends)
+            rows.push_back(row(bend.wind, bend.even, bend.patchy, bend.foam));
     return rows;
 }
 

@@ -149,9 +149,10 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
            constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
            constant("kFronts", layout.fronts()) + constant("kFrontRows", layout.front_rows()) +
-           constant("kMasks", layout.masks()) + constant("kMaskRows", layout.mask_rows()) +
-           constant("kMaskPictures", layout.has_mask_pictures()) + constant("kMasked", layout.is_masked()) +
-           constant("kStrips", layout.has_strips()) + constant("kVesselRows", SeaLayout::kVesselRows) +
+           constant("kFrontBends", Gusts::kBends) + constant("kMasks", layout.masks()) +
+           constant("kMaskRows", layout.mask_rows()) + constant("kMaskPictures", layout.has_mask_pictures()) +
+           constant("kMasked", layout.is_masked()) + constant("kStrips", layout.has_strips()) +
+           constant("kVesselRows", SeaLayout::kVesselRows) +
            constant("kWakeTableRows", SeaLayout::kWakeTableRows) +
            constant("kWakeBox", WakeStrip::kBoxSteps) + constant("kSlopeBlocks", Frame<float>::kSlopeBlocks) +
            constant("kCalmCell", layout.calm_cell()) + constant("kCalmPixel", layout.calm_pixel()) +

@@ -314,6 +314,7 @@ pelagic_status pelagic_vessel_at(const pelagic_sea* sea, size_t vessel, double f
     return guarded(error, [&] {
         const Scene& scene = required(sea, "sea").shot->scene;
         const std::size_t count = scene.waves.vessels.size();
+        if (count == 0) throw std::invalid_argument("the shot has no waves.vessels");
         if (vessel >= count)
             throw std::invalid_argument("vessel is " + std::to_string(vessel) + "; accepted: below " +
                                         std::to_string(count) + ", as many as waves.vessels has");

@@ -612,11 +612,13 @@ class GpuSea {
         return std::unique_lock(mutex_);
     }
 
-    // The clock only by the loop that it makes and by when heroes, vessels and keys stand: set() is given the sea's time.
+    // The clock only by the loop that it makes and by when heroes, fronts, vessels and keys stand: set() is given the sea's time.
     static std::string what_counts(const Scene& scene) {
         std::string moments;
         for (const HeroWave& hero : scene.waves.heroes)
             moments += number_text(scene.shot.time_s(hero.frame)) + ' ';
+        for (const GustFront& front : scene.sea.gust_fronts)
+            moments += number_text(scene.shot.time_s(front.frame)) + ' ';
         if (!scene.waves.vessels.empty())  // their keys are at frames
             for (const double frame : {0.0, 1.0}) moments += number_text(scene.shot.time_s(frame)) + ' ';
         for (const int frame : frames_of_sea(scene)) moments += number_text(scene.shot.time_s(frame)) + ' ';

@@ -136,6 +136,31 @@ TEST(WeatherFoam, IsTheSumOfWhatBrokeBefore) {
     expect_the_sum_of_what_broke_before(sharpening_foam_alone());
 }
 
+// Beyond all tiles: by the law at the wind of the frame, which has gone on from the first.
+TEST(WeatherFoam, OfAFrontIsThatOfTheMomentsWind) {
+    Scene scene = rising_foam();
+    scene.effects.whitecap_law = WhitecapLaw::Callaghan2008;
+    const auto far = rest_points<float>({.per_side = 8, .spacing_m = 2000.0, .first_m = 0.0});
+    const auto left = [&](const Scene& of) {
+        const Query query = filtered(foam_products(), 3000.0);
+        SeaAtTime<float> sea(std::make_shared<const SeaOverTime<float>>(make_plan(of, {query})));
+        const auto values = foam_at(sea, 60.0, far);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < far.size(); ++i) {
+            const auto active = static_cast<double>(values.numbers(Product::Breaking)[i]);
+            sum += (static_cast<double>(values.numbers(Coverage)[i]) - active) / (1.0 - active);
+        }
+        return sum;
+    };
+    const double plain = left(scene);
+    scene.sea.gust_fronts = {{.speed_mps = 0.0, .length_m = 1e5, .width_m = 1e5, .wind = 0.5}};
+    Scene last = scene;
+    last.keyed.clear();
+    last.sea.wind_speed_mps = 22.0;
+    const double law = law_coverage(last, 0.5) / law_coverage(last);
+    EXPECT_NEAR(left(scene) / plain, law, 0.05 * law);
+}
+
 TEST(WeatherFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
     for (const Scene& scene : {rising_foam(), changing_foam()}) {
         const auto sea = sea_over_time<float>(scene);

@@ -430,6 +430,20 @@ TEST(CoastTiles, AreWorkedOutOnce) {
     EXPECT_EQ(plan_of_foam_level(plan, 2.0).masks->surf, prepared->masks->surf);
 }
 
+// Nor for what an effect costs that leaves them as they are: with a surf that nobody would work out, it costs nothing.
+TEST(CoastTiles, ArentWorkedOutAgainToExplain) {
+    Scene scene = tiles(bed_of(plane_beach));
+    scene.sea.gust_strength = 0.5;
+    PreparedScene prepared = *prepare(scene);
+    CoastSurf<double> surf = *prepared.masks->surf;
+    surf.broken.resize(2 * surf.broken.size());
+    prepared.masks->surf = std::make_shared<const CoastSurf<double>>(std::move(surf));
+    const Plan plan = make_plan(std::make_shared<const PreparedScene>(std::move(prepared)),
+                                {filtered(products(Position, Product::Breaking), 1.0)});
+    const std::string page = explain(plan);
+    EXPECT_NE(page.find("  gusts: no transform and no memory"), std::string::npos) << page;
+}
+
 TEST(CoastTiles, SayTheirBytesAndLeaveOthersAlone) {
     const Scene scene = tiles(bed_of(plane_beach));
     const Plan plan = make_plan(scene, {unfiltered(products(Position))}),

@@ -454,6 +454,8 @@ TEST(Procedural, NonsenseIsRefusedWithASentence) {
         EXPECT_EQ(nonsense.call(), PELAGIC_INVALID_ARGUMENT) << nonsense.name;
         EXPECT_GT(std::strlen(error.message), 5u) << nonsense.name;
     }
+    EXPECT_EQ(pelagic_vessel_at(sea.get(), 0, 1.0, &vessel, &error), PELAGIC_INVALID_ARGUMENT);
+    EXPECT_STREQ(error.message, "the shot has no waves.vessels");
     EXPECT_EQ(no_sea, nullptr);
     EXPECT_EQ(no_frame, nullptr);
     // Nothing to close is no mistake, and neither are no points.

@@ -307,6 +307,18 @@ class Seas(unittest.TestCase):
         self.assertFalse(sea.serves(scene))
         self.assertNotIn("wake_table", self.sea.textures)
 
+    def test_gusts_fronts_go_by_the_clock(self):
+        scene = small_scene()
+        scene.sea.gust_fronts = [{"frame": 25.0, "east_m": 0.0, "north_m": 0.0}]
+        sea = pelagic.GpuSea(scene, finest_m=1.0)
+        self.assertTrue(sea.serves(scene))
+        for name, other in {"fps": 25.0, "time_scale": 0.5, "time_offset_s": 3.0}.items():
+            was = getattr(scene.shot, name)
+            setattr(scene.shot, name, other)
+            self.assertFalse(sea.serves(scene), name)
+            setattr(scene.shot, name, was)
+        self.assertTrue(sea.serves(scene))
+
     def test_how_foam_looks_needs_no_other_sea_and_no_other_sky(self):
         scene = small_scene()
         sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)

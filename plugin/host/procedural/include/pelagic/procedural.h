@@ -190,7 +190,8 @@ typedef struct pelagic_vessel {
     double velocity_mps[3];             /* per second of the sea */
     double length_m, beam_m, draught_m; /* of the hull in the water */
 } pelagic_vessel;
-/* The vessel'th, from 0, at a frame of the shot, which may lie between frames and outside its range. */
+/* The vessel'th, from 0, at a frame of the shot, which may lie between frames and outside its range: that instant,
+ * whatever the shutter. pelagic_water_at() answers for the middle of the shutter: for both to agree, give the frame at that middle. */
 PELAGIC_API pelagic_status pelagic_vessel_at(const pelagic_sea* sea, size_t vessel, double frame,
                                              pelagic_vessel* at, pelagic_error* error);
 

@@ -636,25 +636,27 @@ long Plan::lines_per_frame() const {
     return count;
 }
 
-// The seas of its keys, and that of a frame, which changes: it has its modes' rates as well.
+// The seas of its keys, and that of a frame, which is made while the one before is there. Where waves change it has modes of its own, with
+// their rates; else all share theirs, but for trains and tables.
 static std::size_t weather_bytes(const Plan& plan) {
     std::set<std::size_t> seas;
     for (const Weather::Key& key : plan.from->weather->keys) seas.insert(key.waves);
     Plan one = plan;
     one.from = plan.from->weather->keys.front().sea;
-    std::size_t rates = 0;
-    for (const CascadePlan& cascade : plan.cascades)
-        if (cascade.moves())
-            rates += lattice_modes(cascade.amplitude_radius()) * 4 *
-                     (plan.knobs.double_precision ? sizeof(double) : sizeof(float));
-    if (seas.size() == 1) return one.sea_bytes();  // that of all frames
-    std::size_t turns = 0;
-    if (depth_at(*plan.from, 0.0))  // of each key and of a frame
-        for (const CascadePlan& cascade : plan.cascades)
-            turns += lattice_modes(cascade.amplitude_radius()) * (plan.from->weather->keys.size() + 1) *
-                     sizeof(double);
-    return (seas.size() + 2) * one.sea_bytes() + turns +
-           2 * rates;  // a frame's sea is made while the one before is there
+    const std::size_t keys = plan.from->weather->keys.size(),
+                      scalar = plan.knobs.double_precision ? sizeof(double) : sizeof(float);
+    const bool is_over_depth = depth_at(*plan.from, 0.0).has_value();
+    std::size_t modes = 0, rates = 0, turns = 0;
+    for (const CascadePlan& cascade : plan.cascades) {
+        const std::size_t count = lattice_modes(cascade.amplitude_radius());
+        modes += count * sea_bytes_per_mode(plan.knobs.double_precision, plan.has_gradients());
+        // Of the amplitudes, and of the displacement over a depth that changes.
+        if (cascade.moves()) rates += count * (is_over_depth && plan.has_gradients() ? 5 : 4) * scalar;
+        if (is_over_depth) turns += count * (keys + 1) * sizeof(double);  // of each key and of a frame
+    }
+    const std::size_t others = one.sea_bytes() - modes;
+    if (seas.size() == 1 && !is_over_depth) return modes + (keys + 2) * others;
+    return (seas.size() + 2) * modes + (keys + 2) * others + turns + 2 * rates;
 }
 
 std::size_t Plan::sea_bytes() const {

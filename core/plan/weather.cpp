@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -77,7 +78,10 @@ Scene as_planned(Scene moment, const Scene& shot) {
 }  // namespace
 
 double frame_at(const Shot& shot, double t_s) {
-    return 1.0 + (t_s - shot.time_offset_s) / shot.time_scale * shot.fps;
+    const double frame = 1.0 + (t_s - shot.time_offset_s) / shot.time_scale * shot.fps,
+                 whole = std::round(frame);
+    return shot.time_s(whole) == t_s ? whole
+                                     : frame;  // which rounding may miss, and keys are at whole frames
 }
 
 Weather::Blend Weather::at(double t_s) const {
@@ -142,7 +146,7 @@ std::optional<DisplacementAt> displacement_at(const PreparedScene& shot, double 
     const auto now = [&](const DisplacementNumber& number) -> Now {
         const KeyedNumber* keyed = keyed_of(scene, number.path);
         if (!keyed) return {scene.waves.*number.member, 0.0};
-        return {value_at(keyed->keys, false, frame), rate_at(keyed->keys, false, frame) * frames_per_s};
+        return {value_at(keyed->keys, false, frame), rate_at(keyed->keys, frame) * frames_per_s};
     };
     const auto [choppiness, lean, second] = kDisplacementNumbers;
     DisplacementAt at;
@@ -164,13 +168,33 @@ std::optional<DisplacementAt> displacement_at(const PreparedScene& shot, double 
     return at;
 }
 
+// The ends of the parts of a way between two keys in each of which ω is nearly a polynomial. ω goes as the depth's root where that is small, so
+// they are cut where the depth changes much, or fast for how deep it is: an eighth inside an end it has changed 1.4 times.
+static std::vector<double> ends_of_depth(const NumberKeys& depth, double from, double to) {
+    const auto depth_m = [&](double frame) { return value_at(depth, false, frame); };
+    const double first_m = depth_m(from), last_m = depth_m(to), eighth = 0.125 * (to - from);
+    if (std::max(first_m, last_m) <= 4.0 * std::min(first_m, last_m) &&
+        depth_m(from + eighth) <= 1.4 * first_m && depth_m(to - eighth) <= 1.4 * last_m)
+        return {to};
+    const double middle_m = std::sqrt(first_m * last_m);
+    double before = from, after = to;
+    for (int i = 0; i < 50; ++i) {  // it rises or falls all the way
+        const double middle = 0.5 * (before + after);
+        ((depth_m(middle) > middle_m) == (first_m > last_m) ? before : after) = middle;
+    }
+    std::vector<double> ends = ends_of_depth(depth, from, before);
+    const std::vector<double> later = ends_of_depth(depth, before, to);
+    ends.insert(ends.end(), later.begin(), later.end());
+    return ends;
+}
+
 // From a key on until a time before the next. The integral of the polynomial through ω at Gauss's points, by Legendre's polynomials P:
-// of the one that is 1 at point j, w_j/2 (1 + x + Σ P_m(x_j) (P_{m+1} − P_{m−1})(x)). From key to key, x = 1, that is Gauss's rule.
+// of the one that is 1 at point j, w_j/2 (1 + x + Σ P_m(x_j) (P_{m+1} − P_{m−1})(x)). To the end, x = 1, that is Gauss's rule.
 static std::vector<DepthAt::Part> depths_after(const PreparedScene& shot, std::size_t key, double t_s) {
-    constexpr std::size_t kPoints = 12;  // of a depth that changes 16 times a frequency is right to 1e-4
-    const KeyedNumber& keyed = *keyed_of(shot.scene, "sea.depth_m");
+    constexpr std::size_t kPoints = 12;  // its rate is a frequency that is right to 1e-4
+    const NumberKeys& depth = keyed_of(shot.scene, "sea.depth_m")->keys;
     const std::vector<Weather::Key>& keys = shot.weather->keys;
-    const auto depth_m = [&](double frame) { return value_at(keyed.keys, false, frame); };
+    const auto depth_m = [&](double frame) { return value_at(depth, false, frame); };
     const double first_s = keys[key].time_s, first_m = depth_m(keys[key].frame);
     if (t_s <= first_s || key + 1 == keys.size() || depth_m(keys[key + 1].frame) == first_m)
         return {{first_m, t_s - first_s}};
@@ -182,17 +206,25 @@ static std::vector<DepthAt::Part> depths_after(const PreparedScene& shot, std::s
         }
         return p;
     };
-    const double lasts_s = keys[key + 1].time_s - first_s, x = 2.0 * (t_s - first_s) / lasts_s - 1.0,
-                 frames = static_cast<double>(keys[key + 1].frame) - keys[key].frame;
+    const double frames = static_cast<double>(keys[key + 1].frame) - keys[key].frame,
+                 seconds_a_frame = (keys[key + 1].time_s - first_s) / frames;
     const auto& rule = GaussLegendre<kPoints>::rule();
-    const auto until = legendre(x);
     std::vector<DepthAt::Part> parts;
-    for (std::size_t j = 0; j < kPoints; ++j) {
-        const auto here = legendre(rule.node[j]);
-        double sum = 1.0 + x;
-        for (std::size_t m = 1; m < kPoints; ++m) sum += here[m] * (until[m + 1] - until[m - 1]);
-        parts.push_back({depth_m(keys[key].frame + 0.5 * (1.0 + rule.node[j]) * frames),
-                         0.25 * lasts_s * rule.weight[j] * sum});
+    double from = keys[key].frame;
+    for (const double to : ends_of_depth(depth, from, keys[key + 1].frame)) {
+        const double begins_s = first_s + (from - keys[key].frame) * seconds_a_frame,
+                     lasts_s = (to - from) * seconds_a_frame;
+        if (t_s <= begins_s) break;
+        const double x = std::min(2.0 * (t_s - begins_s) / lasts_s - 1.0, 1.0);
+        const auto until = legendre(x);
+        for (std::size_t j = 0; j < kPoints; ++j) {
+            const auto here = legendre(rule.node[j]);
+            double sum = 1.0 + x;
+            for (std::size_t m = 1; m < kPoints; ++m) sum += here[m] * (until[m + 1] - until[m - 1]);
+            parts.push_back({depth_m(from + 0.5 * (1.0 + rule.node[j]) * (to - from)),
+                             0.25 * lasts_s * rule.weight[j] * sum});
+        }
+        from = to;
     }
     return parts;
 }
@@ -210,7 +242,7 @@ std::optional<DepthAt> depth_at(const PreparedScene& shot, double t_s) {
     DepthAt at{.key = 0,
                .parts = {},
                .depth_m = value_at(keyed->keys, false, frame),
-               .depth_mps = rate_at(keyed->keys, false, frame) * scene.shot.fps / scene.shot.time_scale};
+               .depth_mps = rate_at(keyed->keys, frame) * scene.shot.fps / scene.shot.time_scale};
     while (at.key + 1 < keys.size() && keys[at.key + 1].time_s <= t_s) ++at.key;
     at.parts = depths_after(shot, at.key, t_s);
     return at;
@@ -241,10 +273,21 @@ std::string weather_text(const PreparedScene& shot, double t_s, double past_s, d
         for (const double value :
              {at->share, at->share_per_s, at->pairs, at->pairs_per_s, at->lean_rad, at->lean_rad_per_s})
             text += "displaced " + number_text(value) + '\n';
-    // Phases are sums over all that has been.
+    // Phases are sums over all that has been, from key to key. The depth goes to its next key, a smooth one by the key after that, too.
     if (const KeyedNumber* depth = keyed_of(shot.scene, "sea.depth_m")) {
-        text += value_text(key_of(depth->path), depth->keys);
-        for (const Weather::Key& key : weather.keys) text += ' ' + std::to_string(key.frame);
+        NumberKeys known = depth->keys;
+        const double frame = frame_at(shot.scene.shot, t_s);
+        const auto next =
+            std::ranges::find_if(known.keys, [&](const NumberKeys::Key& key) { return key.frame > frame; });
+        const bool is_between = next != known.keys.begin() && std::prev(next)->frame < frame,
+                   needs_slope = is_between && known.interpolation == CameraInterpolation::Smooth;
+        known.keys.erase(next + std::min<std::ptrdiff_t>(needs_slope ? 2 : 1, known.keys.end() - next),
+                         known.keys.end());
+        text += value_text(key_of(depth->path), known);
+        for (const Weather::Key& key : weather.keys) {
+            text += ' ' + std::to_string(key.frame);
+            if (key.time_s > t_s) break;
+        }
         text += '\n';
     }
     if (blend.first == blend.second) return text;
@@ -260,8 +303,7 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     const auto wind = std::ranges::find(scene.keyed, "sea.wind_speed_mps", &KeyedNumber::path);
     for (const DisplacementNumber& number : kDisplacementNumbers)
         if (const KeyedNumber* keyed = keyed_of(scene, number.path))
-            scene.waves.*number.member =
-                std::ranges::max_element(keyed->keys.keys, {}, &NumberKeys::Key::value)->value;
+            scene.waves.*number.member = standing_for(keyed->keys, false);
     const auto prepared_moment = [&](int frame) {
         Scene numbers = scene_at(scene, frame);
         PreparedScene moment = *prepare(as_planned(numbers, scene));

@@ -14,7 +14,7 @@
 // share of that (DisplacementAt), which is the frame's number, with its rate.
 //
 // Over a depth that changes a mode keeps its wavenumber and has the frequency of the depth of now: its phase is ∫ ω(k, d(s)) ds, between two
-// keys by Gauss's rule over points that the keys alone decide (DepthAt). Until the first key it is that of the first key's depth.
+// keys by Gauss's rule over points that the keys alone decide (DepthAt). As if until the first key, and from t = 0, there had been its depth.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ struct Weather {
     bool is_smooth = false;
 
     // The seas of two neighbouring keys, and the share w of the second with its rate [1/s]. At a key, before the first, after the last
-    // and between two that are alike: one sea twice, and both 0.
+    // and between two that are alike: one sea twice, and both 0. So a corner of energies has no rate: the mean of its sides would be of three seas.
     struct Blend {
         std::size_t first = 0, second = 0;
         double share = 0.0, rate_per_s = 0.0;

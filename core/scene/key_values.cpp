@@ -182,12 +182,6 @@ Key key_about(const About& about, KeyType type) {
 
 namespace {
 
-// What stands for all of them where there is to be one: the largest, of angles, which have none, the first.
-double standing_for(const NumberKeys& number, bool is_angle) {
-    return is_angle ? number.keys.front().value
-                    : std::ranges::max_element(number.keys, {}, &NumberKeys::Key::value)->value;
-}
-
 // The value of an entry's key; null: there is none.
 KeyValue* value_in(std::vector<KeyEntry>& entries, const EntryPath& at) {
     if (at.index >= entries.size()) return nullptr;

@@ -82,15 +82,20 @@ double value_at(const NumberKeys& number, bool is_angle, double frame) {
     return std::clamp(value, low, high);
 }
 
-double rate_at(const NumberKeys& number, bool is_angle, double frame) {
+double standing_for(const NumberKeys& number, bool is_angle) {
+    return is_angle ? number.keys.front().value
+                    : std::ranges::max_element(number.keys, {}, &NumberKeys::Key::value)->value;
+}
+
+double rate_at(const NumberKeys& number, double frame) {
     const std::size_t until = keys_until(number, frame);
     if (until == 0) return 0.0;
     const bool is_last = until == number.keys.size();
-    const double after = is_last ? 0.0 : Span(number, is_angle, until - 1).rate(0.0);
+    const double after = is_last ? 0.0 : Span(number, false, until - 1).rate(0.0);
     if (frame == number.keys[until - 1].frame)
-        return 0.5 * (after + (until < 2 ? 0.0 : Span(number, is_angle, until - 2).rate(1.0)));
+        return 0.5 * (after + (until < 2 ? 0.0 : Span(number, false, until - 2).rate(1.0)));
     if (is_last) return 0.0;
-    const Span span(number, is_angle, until - 1);
+    const Span span(number, false, until - 1);
     return span.rate(span.share(frame));
 }
 

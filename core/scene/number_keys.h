@@ -12,8 +12,10 @@ namespace pelagic {
 // on a C1 cubic that stays between their values and stands still at the first and the last key. Of an angle [degrees] by the shorter of
 // the two ways from key to key.
 double value_at(const NumberKeys& number, bool is_angle, double frame);
-// How fast it changes there, a frame; at a corner the mean of both sides.
-double rate_at(const NumberKeys& number, bool is_angle, double frame);
+// How fast one that is no angle changes there, a frame; at a corner the mean of both sides.
+double rate_at(const NumberKeys& number, double frame);
+// What stands for all of its values where there is to be one: the largest, of angles, which have none, the first.
+double standing_for(const NumberKeys& number, bool is_angle);
 
 // The scene of a frame, without keys. Those of camera.keys stay: they are poses (core/surface/view.h).
 Scene scene_at(const Scene& scene, double frame);

@@ -555,7 +555,8 @@ void check_keyed_sea(SceneChecker& check, const Scene& scene) {
 // What takes one depth for all times.
 template <class Refuse>
 void check_keyed_depth(const Scene& scene, const KeyedNumber& depth, const Refuse& refuse) {
-    constexpr double kMost = 16.0;  // times between two keys, by which ω is still integrated to 1e-4
+    constexpr double kMost =
+        16.0;  // times between two keys: more parts of one way, each a pass through the modes
     const auto& keys = depth.keys.keys;
     if (std::ranges::any_of(keys, [](const NumberKeys::Key& key) { return std::isinf(key.value); }))
         return refuse("goes to water without a floor, and no depth is between",

@@ -180,6 +180,37 @@ SpectralMoments between(SpectralMoments first, SpectralMoments second, double sh
     return (first *= 1.0 - share) += second *= share;
 }
 
+// What a narrow band of a spectrum has of moments.
+struct BandMoments {
+    double k;
+    SpectralMoments moments;
+};
+// Of the tiles of a sea between two over other depths: what its displacement gradients, which have coth(kd) of the depth of now, are more than the
+// blend of theirs. A panel of the spectra, a few per cent wide, is a band.
+std::vector<BandMoments> gradients_by_depth(const Plan& first, const Plan& second, double share,
+                                            const Dispersion& now) {
+    std::vector<BandMoments> bands;
+    const std::array depths_m{first.from->spectrum.dispersion().depth_m,
+                              second.from->spectrum.dispersion().depth_m};
+    if (first.trains || depths_m[0] == depths_m[1]) return bands;
+    const double deep_k = Dispersion::kDeep / std::min(depths_m[0], depths_m[1]);
+    for (const auto& [plan, part] : {std::pair(&first, 1.0 - share), std::pair(&second, share)}) {
+        const DirectionalSpectrum& spectrum = plan->from->spectrum;
+        const auto add = [&](double from, double to) {
+            const double k = 0.5 * (from + to),
+                         ratio = now.horizontal_ratio(k) / spectrum.dispersion().horizontal_ratio(k);
+            SpectralMoments more;
+            more.take_gradients(moments_pressed(spectrum, from, to, plan->breaking.choppiness));
+            bands.push_back({k, more.scale_gradients(part * (ratio * ratio - 1.0))});
+        };
+        spectrum.for_panels(0.0, std::min(deep_k, plan->breaking.k_end()), [&](double from, double to) {
+            add(from, 0.5 * (from + to));
+            add(0.5 * (from + to), to);
+        });
+    }
+    return bands;
+}
+
 // The share of the planned displacement.
 double share_of(const std::optional<DisplacementAt>& displacement) {
     return displacement ? displacement->share : 1.0;
@@ -395,6 +426,9 @@ Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s
     plan_.from = std::move(from);
     total_ = total_between(first, second, share, rate_per_s, plan_, displacement, over, &trains_);
     const double gradients = share_of(displacement) * share_of(displacement);
+    std::vector<BandMoments> more =
+        gradients_by_depth(first.plan_, second.plan_, share, plan_.from->spectrum.dispersion());
+    for (BandMoments& band : more) total_ += band.moments.scale_gradients(gradients);
     whitecaps_ = whitecaps(foam_life(plan_));
     slick_ = between(first.slick_, second.slick_, share);
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
@@ -409,6 +443,26 @@ Sea<T>::Sea(const Sea& first, const Sea& second, double share, double rate_per_s
         for (std::size_t i = 0; i < a.resolved_next.size(); ++i)
             made.resolved_next.push_back(now(a.resolved_next[i], b.resolved_next[i]));
         ellipses_.emplace_back(first.ellipses_[q], second.ellipses_[q], share, gradients);
+        const PlannedQuery& planned = plan_.queries[q];
+        const std::vector<int>& levels =
+            planned.breaking_levels.empty() ? planned.pixel_levels : planned.breaking_levels;
+        const auto weight = [&](std::size_t level, double k) {
+            return plan_.filter.weight(k, plan_.levels[levels[level]].footprint_m);
+        };
+        const auto add = [](SpectralMoments& to, SpectralMoments moments, double part) {
+            to += moments.scale_gradients(part);
+        };
+        for (const BandMoments& band : more) {
+            if (const auto& only = planned.query.only_cascade) {
+                const CascadePlan& cascade = plan_.cascades[*only];
+                if (!(band.k >= cascade.k_lower && band.k < cascade.k_upper)) continue;
+                made.whole += band.moments;
+            }
+            for (std::size_t i = 0; i < made.resolved.size(); ++i)
+                add(made.resolved[i], band.moments, weight(i, band.k) * weight(i, band.k));
+            for (std::size_t i = 0; i < made.resolved_next.size(); ++i)
+                add(made.resolved_next[i], band.moments, weight(i, band.k) * weight(i + 1, band.k));
+        }
     }
     for (std::size_t c = 0; c < plan_.cascades.size(); ++c)
         expected_m0_.push_back((1.0 - share) * first.expected_m0_[c] + share * second.expected_m0_[c]);
@@ -505,7 +559,11 @@ Whitecaps Sea<T>::whitecaps_between(const Sea& first, const Sea& second, double 
                                     const std::optional<DisplacementAt>& displacement) {
     Plan plan = first.plan_;
     plan.from = std::move(from);
-    const SpectralMoments total = total_between(first, second, share, 0.0, plan, displacement);
+    SpectralMoments total = total_between(first, second, share, 0.0, plan, displacement);
+    const double gradients = share_of(displacement) * share_of(displacement);
+    for (BandMoments& band :
+         gradients_by_depth(first.plan_, second.plan_, share, plan.from->spectrum.dispersion()))
+        total += band.moments.scale_gradients(gradients);
     return whitecaps_of(plan, total, foam_life(plan), share_of(displacement));
 }
 

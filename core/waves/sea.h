@@ -43,10 +43,10 @@ struct Cascade {
 
     std::size_t modes() const { return cycles_per_s.size(); }
     std::size_t held_bytes() const {
-        return (forward_re.size() + forward_im.size() + backward_re.size() + backward_im.size() +
-                chop.size()) *
-                   sizeof(T) +
-               cycles_per_s.size() * sizeof(double);
+        std::size_t values = forward_re.size() + forward_im.size() + backward_re.size() + backward_im.size() +
+                             chop.size() + widening.size();
+        for (const Buffer<T>& rates : growth) values += rates.size();
+        return values * sizeof(T) + cycles_per_s.size() * sizeof(double);
     }
     // Where (mx, my = 0) stands.
     std::size_t middle(int mx) const { return (columns[mx] + columns[mx + 1]) / 2; }

@@ -194,6 +194,21 @@ constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) 
                                      2 * sizeof(float) + sizeof(glm::vec3) + sizeof(SeaPoint) +
                                      13 * sizeof(float) + (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
+// Of the frame in which the floor shows best: at one of the keys, since the way to it and how clear the water is go straight from key to key, or
+// nearly.
+std::size_t most_floor_light_bytes(const Scene& scene, const DirectionalSpectrum& spectrum) {
+    std::set<int> frames{scene.shot.first_frame};
+    for (const KeyedNumber& number : scene.keyed)
+        for (const NumberKeys::Key& key : number.keys.keys)
+            frames.insert(std::clamp(key.frame, scene.shot.first_frame, scene.shot.last_frame));
+    std::size_t most = 0;
+    for (const int frame : frames) {
+        const Scene moment = scene_at(scene, frame);
+        most = std::max(most, floor_light_bytes(moment, make_water(moment, spectrum)));
+    }
+    return most;
+}
+
 }  // namespace
 
 MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
@@ -223,9 +238,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
-    if (const std::size_t floor = floor_light_bytes(
-            scene, make_water(scene_at(scene, scene.shot.first_frame), plan.from->spectrum));
-        floor > 0)
+    if (const std::size_t floor = most_floor_light_bytes(scene, plan.from->spectrum); floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");

@@ -726,6 +726,111 @@ TEST(Weather, OverADepthThatChangesVelocitiesAreRates) {
         }
 }
 
+// The frequency that velocities have is how fast phases go, also where the depth changes as much as it may, and a smooth one steeply at a key.
+TEST(Weather, OverADepthThatChangesFrequenciesAreThePhasesRates) {
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const bool is_steep : {false, true}) {
+            Scene scene = over_depth(WaveModel::Trochoid, false, interpolation);
+            std::vector<NumberKeys::Key> keys{{25, 64.0}, {73, 4.0}};
+            if (is_steep) keys.push_back({74, 0.5});
+            give_keys(scene, "sea.depth_m", keys, interpolation);
+            const SeaOverTime<double> sea(make_plan(prepare(scene), {everything()}));
+            for (const double frame : {26.0, 40.0, 60.0, 68.0, 70.5, 71.7, 72.5, 72.98}) {
+                constexpr double h = 1e-4;
+                const double t = scene.shot.time_s(frame);
+                const auto phases = [&](double at_s) {
+                    return phases_at(sea.at(at_s)->trains(), glm::dvec2(0.0), at_s);
+                };
+                const auto before = phases(t - h), after = phases(t + h);
+                const auto now = sea.at(t);
+                for (std::size_t i = 0; i < before.size(); ++i) {
+                    const double is = now->trains().cycles_per_s[i];
+                    EXPECT_NEAR(std::remainder(after[i] - before[i], 1.0) / (2.0 * h), is, 1e-4 * is)
+                        << frame << ' ' << i;
+                }
+            }
+        }
+}
+
+// Waves that are one number's at each depth: what breaks is as of a sea of that depth, by the law, of displacement gradients that its modes have.
+TEST(Weather, OverADepthThatChangesWhatBreaksIsThatOfTheDepth) {
+    Scene scene = over_depth();
+    scene.sea.spectrum = SpectrumKind::Elfouhaily;
+    scene.sea.spreading = SpreadingKind::Cosine;
+    scene.effects.breaking_from_m = 8.0;
+    give_keys(scene, "sea.depth_m", {{1, 20.0}, {97, 5.0}}, kLinear);
+    const auto points = random_points<float>(2000.0, 20000);
+    std::vector<Query> queries{filtered(products(Product::Breaking), 2.0), everything()};
+    queries[1].pixel_m = {2.0, 16.0};
+    queries[1].cell_m = queries[1].pixel_m;
+    const auto sea = std::make_shared<const SeaOverTime<float>>(make_plan(prepare(scene), queries));
+    Frame<float> frame(sea);
+    for (const double f : {25.0, 49.0, 73.0}) {
+        SCOPED_TRACE(f);
+        const double t = scene.shot.time_s(f);
+        frame.set(t);
+        const Sea<float>& is = frame.sea();
+        const Sea<float> still(make_plan(scene_at(scene, f), queries));
+        EXPECT_NEAR(is.whitecap_threshold(), still.whitecap_threshold(), 1e-4);
+        EXPECT_EQ(is.whitecap_threshold(), sea->whitecaps(t).threshold);
+        for (const int query : {0, 1}) {
+            const QueryStatistics &a = is.statistics(query), &b = still.statistics(query);
+            ASSERT_EQ(a.resolved.size(), b.resolved.size());
+            for (const auto moment :
+                 {&SpectralMoments::xxxx, &SpectralMoments::xxyy, &SpectralMoments::yyyy}) {
+                EXPECT_NEAR(a.whole.*moment, b.whole.*moment, 1e-3 * b.whole.*moment);
+                for (std::size_t i = 0; i < a.resolved.size(); ++i)
+                    EXPECT_NEAR(a.resolved[i].*moment, b.resolved[i].*moment, 1e-2 * b.whole.*moment) << i;
+            }
+        }
+        double breaking = 0.0;
+        for (const float at : sample(frame, 0, points).numbers(Product::Breaking))
+            breaking += static_cast<double>(at);
+        const double law = law_coverage(still.plan().from->scene);
+        EXPECT_NEAR(breaking / static_cast<double>(points.size()), law, 0.15 * law);
+    }
+}
+
+// What is held, to the byte where it is amplitudes.
+TEST(Weather, OverADepthThatChangesBytesAreCounted) {
+    const Scene scene = over_depth();
+    const Plan plan = make_plan(prepare(scene), {everything()});
+    const SeaOverTime<float> sea(plan);
+    const auto held = [](const Sea<float>& of) {
+        std::size_t bytes = 0;
+        for (const Cascade<float>& cascade : of.cascades()) bytes += cascade.held_bytes();
+        return bytes;
+    };
+    std::size_t modes = 0;
+    for (const Cascade<float>& cascade : sea.first()->cascades()) modes += cascade.modes();
+    // With rates of the amplitudes and of the displacement where they change.
+    const std::size_t key = modes * (5 * sizeof(float) + sizeof(double)),
+                      between = key + modes * 5 * sizeof(float), turns = modes * sizeof(double);
+    EXPECT_EQ(held(*sea.first()), key);
+    EXPECT_EQ(held(*sea.at(scene.shot.time_s(49))), between);
+    EXPECT_EQ(plan.sea_bytes(), 3 * key + 2 * between + (3 + 1) * turns);
+}
+
+// At a key a rate is the mean of both sides, whichever way its time is rounded.
+TEST(Weather, KnowsItsKeysByTheirTimes) {
+    Scene scene;
+    scene.waves.model = WaveModel::Fft;
+    for (const double fps : {25.0, 24.0, 30000.0 / 1001.0})
+        for (const double offset_s : {0.0, 0.3, -1234.5}) {
+            scene.shot.fps = fps;
+            scene.shot.time_offset_s = offset_s;
+            scene.shot.time_scale = 0.7;
+            for (int frame = -50; frame <= 500; ++frame)
+                ASSERT_EQ(frame_at(scene.shot, scene.shot.time_s(frame)), frame) << fps;
+        }
+    scene.shot = {};
+    scene.shot.fps = 25.0;
+    give_keys(scene, "waves.choppiness", {{1, 0.2}, {29, 1.0}, {43, 1.0}}, kLinear);
+    const auto at = displacement_at(*prepare(scene), scene.shot.time_s(29));
+    ASSERT_TRUE(at);
+    EXPECT_NEAR(at->share_per_s, 0.5 * 0.8 / 28.0 * 25.0, 1e-12);
+}
+
 // A frame alone is that of a run; beyond the keys it is a sea of their depth; heights are those of the spectrum between.
 TEST(Weather, OverADepthThatChangesEachTimeIsItsOwn) {
     for (const Kind& kind : kKinds) {

@@ -133,5 +133,35 @@ TEST_F(WeatherBakes, AKeyOfTheDisplacementChangesTheFilesThatItCan) {
         }
 }
 
+// Phases are sums over the depths that have been: of a frame alone as well, and whatever comes after the next keys.
+TEST_F(WeatherBakes, AKeyOfTheDepthChangesTheFilesThatItCan) {
+    for (const auto interpolation : {CameraInterpolation::Linear, CameraInterpolation::Smooth}) {
+        Scene scene = shot(), other = scene;
+        const Key& key = key_of("sea.depth_m");
+        for (Scene* each : {&scene, &other}) {
+            each->shot.last_frame = 14;
+            each->effects.foam_decay_s = each->waves.second_order = each->waves.lean_deg = 0.0;
+            each->effects.breaking_from_m = 2.0;
+        }
+        ASSERT_FALSE(set_value(
+            scene, key, NumberKeys{{{2, 20.0}, {5, 8.0}, {8, 6.0}, {10, 4.0}, {12, 3.0}}, interpolation}));
+        ASSERT_FALSE(set_value(
+            other, key, NumberKeys{{{2, 20.0}, {5, 8.0}, {8, 6.0}, {10, 5.0}, {12, 3.0}}, interpolation}));
+        const auto a = baked(scene), b = baked(other), alone = baked(scene, {11});
+        // A smooth way to a key goes by the one after it.
+        const int first = interpolation == CameraInterpolation::Smooth ? 6 : 8;
+        for (const auto& [frame, files] : a)
+            for (const auto& [path, file] : files) {
+                const File& there = b.at(frame).at(path);
+                EXPECT_EQ(file.fingerprint == there.fingerprint, frame < first) << frame << ' ' << path;
+                EXPECT_EQ(file.content == there.content, frame < first) << frame << ' ' << path;
+            }
+        for (const auto& [path, file] : alone.at(11)) {
+            EXPECT_EQ(file.fingerprint, a.at(11).at(path).fingerprint);
+            EXPECT_TRUE(file.content == a.at(11).at(path).content) << path;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace pelagic

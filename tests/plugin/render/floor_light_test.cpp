@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "core/evaluate/evaluate.h"
 #include "core/lighting/lighting.h"
 #include "core/plan/plan.h"
+#include "core/scene/keys.h"
 #include "core/waves/sea.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
@@ -41,6 +43,25 @@ Scene lagoon(double depth_m, double wind_mps = 4.0) {
     scene.water.type = WaterType::JerlovIB;
     scene.waves.cascades = {{.size_m = 60.0, .resolution = 128}, {.size_m = 11.0, .resolution = 128}};
     return scene;
+}
+
+// Deep at first, and then not.
+TEST(FloorLight, OfADepthThatChangesIsCountedWhereItShows) {
+    const auto bytes = [](const Scene& scene) {
+        return render_memory(scene, render_options(scene), std::array{1}, {}, 1).bytes();
+    };
+    const auto pattern = [&](Scene scene) {
+        const std::size_t with = bytes(scene);
+        scene.water.caustics = 0.0;
+        return with - bytes(scene);
+    };
+    Scene scene = lagoon(300.0);
+    scene.waves.second_order = 0.0;
+    scene.camera.position_m = {0.0, 0.0, 50.0};
+    EXPECT_EQ(pattern(scene), 0u);
+    ASSERT_FALSE(set_value(scene, key_of("sea.depth_m"), NumberKeys{{{1, 300.0}, {40, 40.0}, {80, 5.0}}}));
+    EXPECT_GT(pattern(scene), 0u);
+    EXPECT_EQ(pattern(scene), pattern(lagoon(5.0)));
 }
 
 View above(glm::dvec2 place, double height_m = 3.0) {

@@ -1,5 +1,4 @@
 // Bands of cascades: disjoint, complete, functions of the sizes alone.
-#include "core/base/constants.h"
 #include "core/scene/cascade_bands.h"
 
 #include <gtest/gtest.h>
@@ -7,9 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "core/base/constants.h"
+
 namespace pelagic {
 namespace {
-
 
 TEST(CascadeBands, BeginAtEightPeriodsOfTheTile) {
     const std::vector<double> sizes_m{400.0, 50.0, 5.0};

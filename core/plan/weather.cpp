@@ -335,6 +335,7 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
         parts.push_back({&key.sea->spectrum, 1.0 / static_cast<double>(weather.keys.size())});
         widen(extent, key.sea->extent);
     }
+    // Over the deepest of its depths, where waves of a frequency are longest: tiles and trains must hold them.
     DirectionalSpectrum mean(parts, Dispersion{scene.sea.depth_m});
     const SecondOrder second = is_on(Effect::SecondOrder, scene) ? second_order(mean) : SecondOrder();
     std::optional<MasksPlan> masks = masks_of(scene, mean);

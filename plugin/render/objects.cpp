@@ -579,6 +579,7 @@ glm::vec3 LitObjects::estimate(const Ray& ray, const RayHit& hit, glm::vec2 numb
             lamps_over(at.place + off_surface_m(at.place) * at.geometric, at.normal, kMetPlaces, 0),
             [&](const glm::vec3& from) { return facing(at.normal, from); },
             [&](std::uint32_t k) {
+                // From one place in turn: one in each quarter of either side.
                 constexpr std::array<float, kMetPlaces> kUp{0.0f, 0.5f, 0.25f, 0.75f};
                 return glm::fract(number + glm::vec2(static_cast<float>(k) / kMetPlaces, kUp[k]));
             });

@@ -208,7 +208,7 @@ class Drawing:
         if time_s != self._time_s:
             self.sea.set(time_s)
             for name, pixels in self.sea.textures.items():
-                if self.sea.changes or name not in ("train_table", "ellipse_table", "mask_cells") or name not in self._textures:
+                if self.sea.changes or name not in ("train_table", "ellipse_table", "mask_cells", "coast_cells", "coast_trains") or name not in self._textures:
                     self._textures[name] = _texture(pixels)
             self._time_s = time_s
 

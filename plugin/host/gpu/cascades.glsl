@@ -14,7 +14,7 @@ layout(std140) uniform SeaTables {
     // same eight mixed with the next level.
     vec4 unresolved_levels[4 * kPixelLevels];
     vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: the key of its random tiling; .z: tiles per metre
-    vec4 gusts[kGustRows + kMaskRows + kVesselRows * kVessels + kFrontRows];  // gusts.glsl; then masks.glsl; then wakes.glsl; then fronts
+    vec4 gusts[kGustRows + kMaskRows + kVesselRows * kVessels + kFrontRows + kCoastRows];  // gusts.glsl; then masks.glsl; then wakes.glsl; then fronts; then coast.glsl
 };
 
 // The cascades of the sea, first and end.

@@ -14,6 +14,11 @@ vec3 train_footprint(vec3 given, float finest) {
     return vec3(width, beyond2 > 0.0 ? sqrt(beyond2 / along2) * given.yz : vec2(0.0));
 }
 
+TrainSums with_trains(vec2 rest_m, vec3 footprint, TrainSums sums) {
+    if (kCoast) return coast_pixel_trains(rest_m, footprint, sums);
+    return kTrains ? pixel_trains(split_metres(rest_m), footprint, sums) : sums;
+}
+
 // Height, Dx, Dy of the point that rests at x.
 vec3 query_cell(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(0, kCellLevels, cell);
@@ -21,7 +26,8 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
     MaskGains masks = MaskGains(1.0, 0.0, 0.0, 1.0, 1.0);
     if (kMasked) masks = masks_at(rest_m);
     if (kCalmCell >= 0) sum = calm_cell(rest_m, footprint, masks, sum);
-    if (kTrains) sum += cell_trains(split_metres(rest_m), train_footprint(cell, finest_m.x));
+    if (kCoast) sum += coast_cell_trains(rest_m, train_footprint(cell, finest_m.x));
+    else if (kTrains) sum += cell_trains(split_metres(rest_m), train_footprint(cell, finest_m.x));
     if (kMasked) sum *= masks.waves;
     return kVessels > 0 ? sum + wake_cell(rest_m, footprint) : sum;
 }
@@ -30,7 +36,7 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
 vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(kCellLevels, kPixelLevels, cell);
     TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec3(0.0)), vec4(0.0), unresolved_of(footprint));
-    if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y), sums);
+    sums = with_trains(rest_m, train_footprint(cell, finest_m.y), sums);
     PixelMoments unresolved = possible_moments(sums.unresolved);
     if (kMasked) unresolved = masked_moments(unresolved, footprint, masks_at(rest_m));
     if (kVessels > 0) unresolved = with_hidden_wakes(unresolved, rest_m, footprint);
@@ -73,7 +79,7 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     if (kCalmPixel >= 0) cascades_here = calm_pixel(rest_m, footprint, masks, cascades_here);
     vec2 before_trains = cascades_here.values.yz;
     TrainSums sums = TrainSums(cascades_here, breaking.gradient, unresolved_of(footprint));
-    if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
+    sums = with_trains(rest_m, train_footprint(pixel, finest_m.y), sums);
     PixelFields f = sums.fields;
     PixelMoments unresolved = possible_moments(sums.unresolved);
     if (kMasked) {
@@ -101,6 +107,7 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
                                          UnresolvedGradients(unresolved.xxxx, unresolved.xxxy, unresolved.xxyy, unresolved.xyyy,
                                                       unresolved.yyyy)),
                         gust.whitecap_threshold, kThirdMoment);
+    if (kSurf && kCoverage) foam += (1.0 - foam) * surf_foam(rest_m, f.values.x, pixel.x > finest_m.y ? pixel.x : finest_m.y);
     if (kMasked) foam *= masks.foam;
     return PixelAnswer(vec3(n.x, n.y, n.z), gust.factor * vec3(carried.xx, carried.yy, carried.xy),
                        vec3(unresolved.xx, unresolved.yy, unresolved.xy), foam, float(footprint.blend.lower) + footprint.blend.t);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -42,9 +43,6 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Le
         throw std::invalid_argument("query \"" + planned.query.name +
                                     "\" is of a lattice or of one cascade: "
                                     "a picture needs one of points anywhere in the whole sea");
-    if ((plan.trains && plan.trains->coast_cells.x > 0) || (plan.masks && plan.masks->surf))
-        throw std::invalid_argument(
-            "waves.coast = true: no graphics card draws waves that feel the floor yet; accepted: false, or pelagic render and pelagic bake, which do");
     const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);
     if ((planned.query.products & least) != least)
         throw std::invalid_argument(
@@ -265,8 +263,15 @@ std::vector<glm::vec4> SeaLayout::train_texels() const {
         if (i == count) break;
         const SplitNumber kx = split_number(trains.kx_cycles_per_m[i]),
                           ky = split_number(trains.ky_cycles_per_m[i]);
-        const auto amplitude = [&](Field field) { return trains.amplitude[index(field)][i]; };
         at(0, i) = {kx.high, kx.low, ky.high, ky.low};
+        if (const auto& coast = sea_->coast()) {
+            const float fade_per_m = i < coast->feeling ? coast->phase_fade_per_m[i] : 0.0f;
+            at(1, i) = {coast->height_m[i], coast->sideways_m[i], coast->breaking_sideways_m[i], fade_per_m};
+            at(2, i) = {coast->kx[i], coast->ky[i], 0.0f, 0.0f};
+            at(3, i) = {coast->longest_m[i], coast->breaking[i], 0.0f, 0.0f};
+            continue;
+        }
+        const auto amplitude = [&](Field field) { return trains.amplitude[index(field)][i]; };
         at(1, i) = {amplitude(Field::SlopeX), amplitude(Field::SlopeY), amplitude(Field::Dxx),
                     amplitude(Field::Dyy)};
         at(2, i) = {amplitude(Field::Dxy), amplitude(Field::Height), amplitude(Field::Dx),
@@ -275,6 +280,58 @@ std::vector<glm::vec4> SeaLayout::train_texels() const {
         for (std::size_t m = 0; m < from.size(); ++m)
             at(4 + m / 4, i)[static_cast<int>(m % 4)] = trains.unresolved_alone[i][m];
     }
+    return texels;
+}
+
+glm::ivec2 SeaLayout::coast_size() const {
+    return has_coast() ? sea_->coast()->count : sea_->plan().masks->surf->count;
+}
+
+// As square as can be.
+int SeaLayout::coast_across() const {
+    if (coast_trains() == 0) return 1;
+    const glm::dvec2 size(coast_size());
+    return std::max(1, static_cast<int>(std::lround(std::sqrt(coast_trains() * size.y / size.x))));
+}
+
+glm::ivec2 SeaLayout::coast_trains_size() const {
+    const int across = coast_across();
+    return coast_size() * glm::ivec2(across, (coast_trains() + across - 1) / across);
+}
+
+std::vector<glm::vec4> SeaLayout::coast_cell_texels() const {
+    std::vector<glm::vec4> texels;
+    const auto add = [&](const auto& surf, std::span<const float> others) {
+        for (std::size_t cell = 0; cell < surf.broken.size(); ++cell)
+            texels.emplace_back(surf.broken[cell], surf.deviation_m[cell],
+                                others.empty() ? 0.0f : others[cell], 0.0f);
+    };
+    if (has_coast())
+        add(*sea_->coast(), sea_->coast()->others);
+    else
+        add(*sea_->plan().masks->surf, {});
+    return texels;
+}
+
+std::vector<glm::vec2> SeaLayout::coast_train_texels() const {
+    if (!has_coast()) return {};
+    const Coast<float>& coast = *sea_->coast();
+    const glm::ivec2 size = coast_trains_size();
+    const int across = coast_across();
+    std::vector<glm::vec2> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y),
+                                  glm::vec2(0.0f));
+    tbb::parallel_for(0, coast.count.y, [&](int y) {
+        for (int x = 0; x < coast.count.x; ++x) {
+            const std::size_t from = coast.cell(x, y) * coast.stride;
+            for (int train = 0; train < coast_trains(); ++train) {
+                const glm::ivec2 at =
+                    coast.count * glm::ivec2(train % across, train / across) + glm::ivec2(x, y);
+                texels[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size.x) +
+                       static_cast<std::size_t>(at.x)] = {coast.phase[from + static_cast<std::size_t>(train)],
+                                                          coast.gain[from + static_cast<std::size_t>(train)]};
+            }
+        }
+    });
     return texels;
 }
 

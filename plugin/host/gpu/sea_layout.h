@@ -2,6 +2,7 @@
 // Needs no OpenGL.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -34,15 +35,30 @@ class SeaLayout {
     bool has_living_foam() const { return has_coverage_ && sea_->plan().foam.has_value(); }
     bool has_trains() const { return sea_->plan().trains.has_value(); }
     bool has_gusts() const { return sea_->gusts().has_value(); }
-    // Of them those that are placed; their rows are the last of the uniform block.
+    // Of them those that are placed.
     int fronts() const { return has_gusts() ? static_cast<int>(sea_->gusts()->plan.fronts.size()) : 0; }
     int front_rows() const { return fronts() > 0 ? 2 * fronts() + 1 + 2 * Gusts::kBends : 0; }
+    // Waves that feel a coast's floor (coast.glsl): whether any break there, whether they are trains, how many of these feel it, and how many of
+    // their pictures lie side by side. Its rows of the uniform block are the last.
+    bool has_surf() const { return sea_->has_surf(); }
+    bool has_coast() const { return sea_->coast() != nullptr; }
+    int coast_trains() const { return has_coast() ? static_cast<int>(sea_->coast()->feeling) : 0; }
+    int coast_across() const;
+    int coast_rows() const { return has_surf() ? 3 : 0; }
+    int coast_row() const {
+        return has_surf() ? kGustRows + mask_rows() + kVesselRows * vessels() + front_rows() : 0;
+    }
     // Calm and rough places (masks.glsl): how many, their rows of the uniform block, and the levels of cells and pixels that show what a
     // slick leaves; −1: none is finer.
     bool is_masked() const { return sea_->plan().masks.has_value(); }
     int masks() const { return is_masked() ? static_cast<int>(sea_->plan().masks->masks.size()) : 0; }
     int mask_rows() const { return is_masked() ? 3 * masks() + 1 : 0; }
-    bool has_mask_pictures() const { return is_masked() && sea_->plan().masks->picture_texels() > 0; }
+    // A coast that tiles feel is one of them.
+    bool has_mask_pictures() const {
+        return is_masked() && std::ranges::any_of(sea_->plan().masks->masks, [](const MasksPlan::Mask& mask) {
+                   return bool(mask.cells);
+               });
+    }
     // Whether vessels' wakes calm ripples as well.
     bool has_strips() const { return is_masked() && sea_->plan().masks->has_strips; }
     int calm_cell() const { return calm_cell_; }
@@ -105,6 +121,12 @@ class SeaLayout {
     // The texture mask_cells, one float a texel, by the size of it; where masks have pictures.
     glm::ivec2 mask_cells_size() const;
     std::vector<float> mask_cells() const;
+
+    // The textures coast_cells and coast_trains, where there is surf; the latter empty without trains.
+    glm::ivec2 coast_size() const;
+    glm::ivec2 coast_trains_size() const;
+    std::vector<glm::vec4> coast_cell_texels() const;
+    std::vector<glm::vec2> coast_train_texels() const;
 
     // A vessel's rows of the uniform block, and of the texture wake_table: see wakes.glsl.
     static constexpr int kVesselRows = 2, kWakeTableRows = 2 + Frame<float>::kSlopeBlocks;

@@ -131,8 +131,8 @@ const std::vector<std::string_view>& query_files() {
         "core/surface/earth.inl",      "core/surface/pixel_footprint.inl",
         "plugin/host/gpu/places.glsl", "plugin/host/gpu/cascades.glsl",
         "plugin/host/gpu/wakes.glsl",  "plugin/host/gpu/trains.glsl",
-        "plugin/host/gpu/gusts.glsl",  "plugin/host/gpu/masks.glsl",
-        "plugin/host/gpu/query.glsl"};
+        "plugin/host/gpu/coast.glsl",  "plugin/host/gpu/gusts.glsl",
+        "plugin/host/gpu/masks.glsl",  "plugin/host/gpu/query.glsl"};
     return files;
 }
 
@@ -149,6 +149,10 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
            constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
            constant("kFronts", layout.fronts()) + constant("kFrontRows", layout.front_rows()) +
+           constant("kCoast", layout.has_coast()) + constant("kSurf", layout.has_surf()) +
+           constant("kCoastRows", layout.coast_rows()) + constant("kCoastRow", layout.coast_row()) +
+           constant("kCoastTrains", layout.coast_trains()) + constant("kCoastAcross", layout.coast_across()) +
+           "const float kRoller = " + std::to_string(kRoller) + ";\n" +
            constant("kFrontBends", Gusts::kBends) + constant("kMasks", layout.masks()) +
            constant("kMaskRows", layout.mask_rows()) + constant("kMaskPictures", layout.has_mask_pictures()) +
            constant("kMasked", layout.is_masked()) + constant("kStrips", layout.has_strips()) +

@@ -26,12 +26,16 @@ float train_weight(float wavelength_m, float footprint_m) {
     return footprint_weight(wavelength_m / footprint_m, train_filter.x, train_filter.y);
 }
 
-vec2 train_sine_cosine(int i, SplitMetres x) {
-    float cycles = texelFetch(train_cycles, ivec2(i, 0), 0).x -
-                   split_cycles(x, texelFetch(train_table, ivec2(i, 0), 0));
+vec2 sine_cosine(float cycles) {
     float angle = 6.28318530717958647692 * (cycles - floor(cycles + 0.5));
     return vec2(sin(angle), cos(angle));
 }
+
+float train_phase(int i, SplitMetres x) {
+    return texelFetch(train_cycles, ivec2(i, 0), 0).x - split_cycles(x, texelFetch(train_table, ivec2(i, 0), 0));
+}
+
+vec2 train_sine_cosine(int i, SplitMetres x) { return sine_cosine(train_phase(i, x)); }
 
 // How long an ellipse is along a train's way.
 float footprint_along(int i, vec3 footprint) {

@@ -25,8 +25,11 @@ enum Unit : int {
     kFoamPages,
     kFoamLevels,
     kWakeTable,
-    kMaskCells
+    kMaskCells,
+    kCoastCells,
+    kCoastTrains
 };
+static_assert(kCoastTrains + 1 == SeaTextures::kUnits);
 
 }  // namespace
 
@@ -45,7 +48,7 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         throw PreviewError("the sea's tables need " + std::to_string(block_bytes) +
                            " bytes of uniforms, and the driver has " + std::to_string(largest_block) +
                            ": ask for fewer cascades or vessels");
-    std::optional<GlTexture> train_table, train_cycles, mask_cells;
+    std::optional<GlTexture> train_table, train_cycles, mask_cells, coast_cells, coast_trains;
     GlTexture ellipse_table;
     edit_texture(ellipse_table);
     texels_as_they_are();
@@ -80,6 +83,26 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, size.x, size.y, 0, GL_RED, GL_FLOAT,
                      layout->mask_cells().data());
     }
+    if (layout->has_surf()) {
+        const glm::ivec2 cells = layout->coast_size(), trains = layout->coast_trains_size();
+        if (std::max({cells.x, cells.y, trains.x, trains.y}) > largest_texture)
+            throw PreviewError("the waves that feel the floor need a texture of " +
+                               std::to_string(std::max(cells.x, trains.x)) + " x " +
+                               std::to_string(std::max(cells.y, trains.y)) +
+                               ", and the driver's largest is " + std::to_string(largest_texture) +
+                               ": lower waves.trains");
+        const auto upload = [](std::optional<GlTexture>& texture, glm::ivec2 size, int channels,
+                               const void* texels) {
+            edit_texture(texture.emplace());
+            texels_as_they_are();
+            glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+            const TexelFormat format = float_texels(channels);
+            glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0,
+                         format.format, GL_FLOAT, texels);
+        };
+        upload(coast_cells, cells, 4, layout->coast_cell_texels().data());
+        if (layout->has_coast()) upload(coast_trains, trains, 2, layout->coast_train_texels().data());
+    }
     // A sea that changes has a layout for each time, and the same textures for all of them.
     const bool has_room = layout_ &&
                           std::ranges::equal(layout_->planes(), layout->planes(),
@@ -95,6 +118,8 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     ellipse_table_ = std::move(ellipse_table);
     if (layout->vessels() == 0) wake_table_.reset();
     mask_cells_ = std::move(mask_cells);
+    coast_cells_ = std::move(coast_cells);
+    coast_trains_ = std::move(coast_trains);
     train_table_ = std::move(train_table);
     train_cycles_ = std::move(train_cycles);
     if (has_room) return true;
@@ -241,7 +266,8 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
           std::pair{"train_table", kTrainTable}, std::pair{"train_cycles", kTrainCycles},
           std::pair{"foam_nodes", kFoamNodes}, std::pair{"foam_pages", kFoamPages},
           std::pair{"foam_levels", kFoamLevels}, std::pair{"wake_table", kWakeTable},
-          std::pair{"mask_cells", kMaskCells}})
+          std::pair{"mask_cells", kMaskCells}, std::pair{"coast_cells", kCoastCells},
+          std::pair{"coast_trains", kCoastTrains}})
         glUniform1i(program.uniform(name), unit);
     set_uniforms(program, query_uniforms(*layout_));
     for (std::size_t p = 0; p < planes_.size(); ++p)
@@ -253,6 +279,8 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
     }
     if (wake_table_) bind_texture(kWakeTable, *wake_table_);
     if (mask_cells_) bind_texture(kMaskCells, *mask_cells_);
+    if (coast_cells_) bind_texture(kCoastCells, *coast_cells_);
+    if (coast_trains_) bind_texture(kCoastTrains, *coast_trains_);
     if (foam_textures_) {
         bind_texture(kFoamNodes, foam_textures_->nodes);
         bind_texture(kFoamPages, foam_textures_->pages);

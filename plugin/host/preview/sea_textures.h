@@ -17,7 +17,7 @@ namespace pelagic {
 
 class SeaTextures {
   public:
-    static constexpr int kUnits = 11;  // bind() uses texture units 0 … kUnits − 1
+    static constexpr int kUnits = 13;  // bind() uses texture units 0 … kUnits − 1
 
     // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
@@ -40,7 +40,8 @@ class SeaTextures {
 
     std::shared_ptr<const SeaLayout> layout_;
     std::vector<GlTexture> planes_;
-    std::optional<GlTexture> ellipse_table_, train_table_, train_cycles_, wake_table_, mask_cells_;
+    std::optional<GlTexture> ellipse_table_, train_table_, train_cycles_, wake_table_, mask_cells_,
+        coast_cells_, coast_trains_;
     struct FoamTextures {
         GlTexture nodes, pages, levels;
     };

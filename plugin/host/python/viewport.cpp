@@ -453,6 +453,14 @@ class GpuSea {
             const glm::ivec2 size = layout.mask_cells_size();
             made["mask_cells"] = view_of(owner, tables->mask_cells.data(), {size.y, size.x, 1});
         }
+        if (!tables->coast_cells.empty()) {
+            const glm::ivec2 size = layout.coast_size();
+            made["coast_cells"] = view_of(owner, &tables->coast_cells[0].x, {size.y, size.x, 4});
+        }
+        if (!tables->coast_trains.empty()) {
+            const glm::ivec2 size = layout.coast_trains_size();
+            made["coast_trains"] = view_of(owner, &tables->coast_trains[0].x, {size.y, size.x, 2});
+        }
         if (!tables->train_table.empty())
             made["train_table"] =
                 view_of(owner, &tables->train_table[0].x,
@@ -594,11 +602,16 @@ class GpuSea {
             : packed(sea, 0), ellipse_table(layout().ellipse_texels()) {
             if (layout().has_trains()) train_table = layout().train_texels();
             if (layout().has_mask_pictures()) mask_cells = layout().mask_cells();
+            if (layout().has_surf()) {
+                coast_cells = layout().coast_cell_texels();
+                coast_trains = layout().coast_train_texels();
+            }
         }
         const SeaLayout& layout() const { return *packed.layout(); }
 
         PackedFrame packed;
-        std::vector<glm::vec4> train_table, ellipse_table;
+        std::vector<glm::vec4> train_table, ellipse_table, coast_cells;
+        std::vector<glm::vec2> coast_trains;
         std::vector<float> mask_cells;
     };
     std::shared_ptr<Tables> now() const {
@@ -876,7 +889,7 @@ void add_viewport(py::module_& module) {
         .def_property_readonly(
             "textures", &GpuSea::textures,
             "Textures of the sea's shader by name: float32 (height, width, 1, 2 or 4), texels as they are. "
-            "Read-only views of memory that the next set() overwrites; only train_table, ellipse_table and mask_cells stay, unless it `changes`.")
+            "Read-only views of memory that the next set() overwrites; only train_table, ellipse_table, mask_cells, coast_cells and coast_trains stay, unless it `changes`.")
         .def(
             "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
             "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "

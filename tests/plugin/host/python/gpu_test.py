@@ -179,6 +179,24 @@ class Seas(unittest.TestCase):
         self.assertTrue((cells[:7, :10] > 0.0).all() and (cells <= 1.0).all())
         self.assertIn("kMaskPictures = true", sea.shaders(pelagic.GpuLight(scene))["sea"][0])
 
+    def test_a_coast_is_textures(self):
+        scene = pelagic.Scene.from_file(str(pathlib.Path(__file__).parents[4] / "examples" / "beach.toml"))
+        scene.waves.trains = 20
+        scene.effects.foam_decay_s = 0.0
+        sea = pelagic.GpuSea(scene)
+        sea.set(1.0)
+        cells, trains = sea.textures["coast_cells"], sea.textures["coast_trains"]
+        rows, columns = cells.shape[:2]
+        self.assertEqual(cells.shape[2], 4)
+        self.assertEqual((trains.shape[0] % rows, trains.shape[1] % columns, trains.shape[2]), (0, 0, 2))
+        self.assertGreater(cells[..., 0].max(), 0.5)  # breaks
+        np.testing.assert_array_equal(trains[:rows, :columns, 1][cells[..., 2] == 0.0], 0.0)  # and is gone on land
+        scene.waves.model, scene.waves.trains = "fft", pelagic.Scene().waves.trains
+        tiles = pelagic.GpuSea(scene)
+        tiles.set(1.0)
+        self.assertIn("mask_cells", tiles.textures)
+        self.assertNotIn("coast_trains", tiles.textures)
+
     def test_a_view_under_water_is_known(self):
         sea = pelagic.GpuSea(small_scene(), 0.125)
         self.assertIsNone(sea.water_over(view(-9.0)))  # it has no time yet

@@ -211,7 +211,8 @@ def _extinction(scene, water):
     near_m = 0.02
     if not scene.water.body or not 2.0 * near_m < scene.sea.depth_m < (clear_to_m(scene) or 0.0):
         return extinction
-    tried, sky = copy.copy(scene), light.sky_of(scene)
+    tried, sky = pelagic.Scene(), light.sky_of(scene)
+    tried.water = scene.water  # alone: a centimetre of water carries no swell
 
     def of_floor(depth_m):
         tried.sea.depth_m, tried.water.floor_colour = depth_m, (0.0,) * 3

@@ -149,6 +149,12 @@ with checking("the volume's coefficients are finite and not negative, in the dar
         found = np.array(depths.coefficients(scene))
         assert np.isfinite(found).all() and (found >= 0.0).all() and found.sum() > 0.0, (depth_m, sun_deg, found)
 
+    scene = pelagic.Scene()
+    scene.sea.depth_m = 2.5
+    calm = depths.coefficients(scene)
+    scene.sea.swell = [pelagic.Swell(height_m=1.0, period_s=9.0, direction_deg=0.0)]  # more than the water could carry that the volume is measured with
+    assert np.allclose(depths.coefficients(scene), calm)
+
 with checking("by itself water is seen through where its floor shows, out to the horizon; and as somebody chooses"):
     fresh_file()
     obj = add_ocean(horizon=True, water__type="jerlov-IB")

@@ -563,6 +563,7 @@ void add_waves(Built& out) {
                  "no reflection and no run-up, and no crest overturns",
              .key_parts = kWaves,
              .is_silent_off = true,
+             .may_be_mesh = true,
              .of_picture = "sea.depth_file"})));
 }
 

@@ -514,7 +514,8 @@ void check_pictures(SceneChecker& check, const Scene& scene) {
             continue;
         const Key& picture = key_of(key.of_picture);
         const KeyValue& given = value_of(scene, picture);
-        if (given != picture.fallback && !has_ending(std::get<std::string>(given), ".obj")) continue;
+        const bool is_mesh = has_ending(std::get<std::string>(given), ".obj");
+        if (given != picture.fallback && (key.may_be_mesh || !is_mesh)) continue;
         check.refuse({key.path, value_text(key, value_of(scene, key)),
                       "is of a picture, and " + picture.path + " is " + value_text(picture, given),
                       value_text(key, key.fallback) + ", or " + picture.path + " = \"PATH.exr\""});
@@ -820,6 +821,9 @@ void check_coast(SceneChecker& check, const Scene& scene) {
         check.refuse({"output.cascade_tiles", "true",
                       "asks for tiles, which are alike everywhere, and waves.coast makes places differ",
                       "false, or waves.coast = false"});
+    if (scene.surface.kind == SurfaceKind::Cage && has_ending(scene.sea.depth_file, ".obj"))
+        refuse("measures a floor's mesh from the height 0, and a cage lies at any",
+               "sea.depth_file = \"PATH.exr\"");
     if (!waves.heroes.empty()) refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
     if (has_trains && std::ranges::any_of(scene.objects, [](const SceneObject& object) {
             return object.floats && object.buoyancy == Buoyancy::Response;

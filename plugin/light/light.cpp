@@ -34,7 +34,7 @@
 #include "core/spectrum/viscous_cutoff.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/format/exr/read.h"
-#include "plugin/light/floor_mesh.h"
+#include "plugin/format/shot/floor_mesh.h"
 
 namespace pelagic {
 namespace {
@@ -308,10 +308,8 @@ std::size_t floor_bytes(const Scene& scene) {
 }
 
 Floor make_floor(const Scene& scene, double rest_m) {
-    // Beyond a map of depths the floor falls no deeper than anybody sees.
-    constexpr double kDeepest_m = 500.0;
     const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
-    const double beyond_m = std::min(scene.sea.depth_m, has_map ? kDeepest_m : 1e9);
+    const double beyond_m = std::min(scene.sea.depth_m, has_map ? kDeepestFloor_m : 1e9);
     Floor floor(beyond_m, rest_m);
     for (const Key* key : floor_keys(scene)) {
         const std::string path = std::get<std::string>(value_of(scene, *key));

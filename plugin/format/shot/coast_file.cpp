@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/scene/text.h"
 #include "plugin/format/exr/read.h"
+#include "plugin/format/shot/floor_mesh.h"
 
 namespace pelagic {
 namespace {
@@ -23,12 +24,21 @@ std::vector<Problem> read_coast_depths(Scene& scene) {
     scene.waves.coast_depths.reset();
     const SeaState& sea = scene.sea;
     // What isn't read is refused by validate().
-    if (!scene.waves.coast || !has_ending(sea.depth_file, ".exr") || !(sea.depth_size_m > 0.0)) return {};
+    const bool is_mesh = is_floor_mesh(sea.depth_file);
+    if (!scene.waves.coast || !(is_mesh || has_ending(sea.depth_file, ".exr")) || !(sea.depth_size_m > 0.0))
+        return {};
     const auto refused = [&](const std::string& problem, const std::string& accepted) {
         return std::vector{
             Problem{"sea.depth_file", quoted_text(sea.depth_file), line_text(problem), accepted}};
     };
     try {
+        if (is_mesh) {
+            FloorDepths of = depths_of(read_floor_mesh(sea.depth_file).mesh(), 0.0,
+                                       std::min(sea.depth_m, kDeepestFloor_m));
+            scene.waves.coast_depths = std::make_shared<const DepthMap>(
+                of.columns_rows, std::move(of.depths_m), of.from_m, of.size_m);
+            return {};
+        }
         const exr::RgbFile picture(sea.depth_file);
         const int width = picture.width(), height = picture.height();
         if (std::max(width, height) > kMostPixels)
@@ -53,6 +63,8 @@ std::vector<Problem> read_coast_depths(Scene& scene) {
             glm::dvec2(sea.depth_east_m, sea.depth_north_m) - 0.5 * size_m, size_m);
     } catch (const exr::ReadError& error) {
         return refused(error.problem(), error.accepted());
+    } catch (const FloorMeshError& error) {
+        return refused(error.what(), error.accepted());
     }
     return {};
 }

@@ -292,8 +292,7 @@ TEST(Validate, FramesSeedAndLoop) {
     expect_good(coast([](Scene&) {}));
     expect_refused(coast([](Scene& s) { s.sea.depth_file = "none"; }),
                    {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
-    expect_refused(coast([](Scene& s) { s.sea.depth_file = "reef.obj"; }),
-                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
+    expect_good(coast([](Scene& s) { s.sea.depth_file = "reef.obj"; }));
     const auto tiles = [&](auto&& change) {
         return coast([=](Scene& s) {
             s.waves.model = WaveModel::Fft;
@@ -775,6 +774,15 @@ TEST(Validate, ACageComesWithItsKindAndIsNotRefinedWithoutEnd) {
             s.surface.kind = SurfaceKind::Patch;
         },
         {"surface.kind", "\"patch\"", "no cage"});
+    // A floor's mesh is measured from the height 0.
+    expect_refused(
+        [&](Scene& s) {
+            with_cage(s);
+            s.waves.model = WaveModel::Trochoid;
+            s.waves.coast = true;
+            s.sea.depth_file = "reef.obj";
+        },
+        {"waves.coast", "true", "sea.depth_file = \"PATH.exr\", or false"});
     // 200 000 quads of 4⁶ each; as the camera sees them they are as many as fit.
     CageMesh many;
     for (std::int32_t i = 0; i < 200000; ++i) {

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
+#include "core/plan/coast.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/presets.h"
@@ -81,6 +84,30 @@ TEST(Shot, ACoastsDepthsAreReadWhereWavesFeelThem) {
     const std::string wrong =
         refused("[sea]\ndepth_file = \"beach.toml\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n");
     EXPECT_NE(wrong.find("is neither \"none\" nor a picture"), std::string::npos) << wrong;
+}
+
+// 8 m deep in the west, and land in the east.
+TEST(Shot, ACoastMayBeAMesh) {
+    const TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path();
+    std::ofstream(folder / "floor.obj") << "v -50 -40 -8\nv 50 -40 2\nv 50 40 2\nv -50 40 -8\nf 1 2 3 4\n";
+    const std::string text =
+        "[sea]\ndepth_m = 8\ndepth_file = \"floor.obj\"\n[waves]\nmodel = \"trochoid\"\ncoast = true\n";
+    const Scene scene = parse_shot(text, folder / "shot.toml", no_check);
+    ASSERT_TRUE(scene.waves.coast_depths);
+    const DepthMap& depths = *scene.waves.coast_depths;
+    EXPECT_EQ(depths.from_m(), glm::dvec2(-50.0, -40.0));
+    EXPECT_EQ(depths.size_m(), glm::dvec2(100.0, 80.0));
+    EXPECT_NEAR(depths.mean_m({-30.0, 0.0}, {-30.0, 0.0}), 6.0, 0.01);
+    EXPECT_LT(depths.mean_m({40.0, 0.0}, {40.0, 0.0}), kCoastShore_m);
+    std::ofstream(folder / "floor.obj") << "v 0 0 0\nf 1 1 1\n";
+    try {
+        parse_shot(text, folder / "shot.toml", no_check);
+        FAIL();
+    } catch (const ShotError& error) {
+        EXPECT_NE(std::string(error.what()).find("floor.obj\": is no floor: "), std::string::npos)
+            << error.what();
+    }
 }
 
 TEST(Shot, AnEmptyFileIsTheDefaults) {

@@ -1,14 +1,13 @@
-#include "plugin/light/floor_mesh.h"
+#include "plugin/format/shot/floor_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <span>
 #include <utility>
 
 #include "core/scene/text.h"
-#include "plugin/files/read.h"
 #include "plugin/format/obj/obj.h"
+#include "plugin/format/shot/text_file.h"
 
 namespace pelagic {
 namespace {
@@ -54,13 +53,12 @@ bool is_floor_mesh(const std::string& path) {
 }
 
 Cage read_floor_mesh(const std::filesystem::path& path) {
-    files::FileReader file(path);
-    std::string text, part(std::size_t{1} << 16, '\0');
-    while (const std::size_t count = file.read(std::span(part.data(), part.size()))) {
-        text.append(part, 0, count);
-        if (text.size() > kMostObjBytes) throw FloorMeshError("is too large", kAccepted);
+    std::string text;
+    try {
+        text = read_text_file(path, kMostObjBytes);
+    } catch (const TextFileError& error) {
+        throw FloorMeshError(error.what(), kAccepted);
     }
-    if (!file.problem().empty()) throw FloorMeshError(file.problem(), kAccepted);
     try {
         return parse_obj(text, line_text(path.filename().string()));
     } catch (const ObjError& error) {

@@ -29,6 +29,8 @@ struct FloorDepths {
     glm::dvec2 from_m{0.0}, size_m{0.0};
 };
 
+// Beyond a map of depths the floor falls no deeper than anybody sees.
+inline constexpr double kDeepestFloor_m = 500.0;
 inline constexpr int kFloorMeshTexels = 1024;  // of the longer side
 
 // Whether a path is that of a mesh (.obj), not of a picture.

@@ -129,8 +129,7 @@ std::size_t MasksPlan::coast_bytes() const {
            sizeof(double) * (surf->broken.size() + surf->deviation_m.size());
 }
 
-HeroMask hero_mask(const Scene& scene, const HeroWave& hero) {
-    const std::optional<MasksPlan> masks = plan_masks(scene);
+HeroMask hero_mask(const std::optional<MasksPlan>& masks, const HeroWave& hero) {
     if (!masks) return {};
     const MaskGains<double> at = masks->at({hero.east_m, hero.north_m});
     if (!(at.waves * kMostHeroRaise > 1.0)) return {.raise = kMostHeroRaise};

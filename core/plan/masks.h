@@ -119,7 +119,7 @@ struct HeroMask {
     glm::dvec2 change_per_m{0.0};
 };
 inline constexpr double kMostHeroRaise = 10.0;
-HeroMask hero_mask(const Scene& scene, const HeroWave& hero);
+HeroMask hero_mask(const std::optional<MasksPlan>& masks, const HeroWave& hero);
 
 // The slopes that a slick's footprint hides, in expectation; of other moments there are none.
 SpectralMoments slick_moments(const DirectionalSpectrum& spectrum, const FootprintFilter& filter);

@@ -50,7 +50,7 @@ Extent extent_of(const Scene& scene, const DirectionalSpectrum& spectrum, const 
     // A hero takes of the sea's variance what it has of its own shape: η = ρA + √(1 − ρ²) 5σ is highest at √(A² + (5σ)²).
     double hero_m = 0.0;
     for (const HeroWave& hero : scene.waves.heroes)
-        hero_m = std::max(hero_m, hero_mask(scene, hero).raise * std::abs(hero.height_m));
+        hero_m = std::max(hero_m, hero_mask(masks, hero).raise * std::abs(hero.height_m));
     if (spectrum.m0() > 0.0) {
         extent.height_m = std::hypot(extent.height_m, hero_m);
         extent.reach_m = std::hypot(extent.reach_m, choppiness.largest() * hero_m);

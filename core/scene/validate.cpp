@@ -824,7 +824,8 @@ void check_coast(SceneChecker& check, const Scene& scene) {
     if (scene.surface.kind == SurfaceKind::Cage && has_ending(scene.sea.depth_file, ".obj"))
         refuse("measures a floor's mesh from the height 0, and a cage lies at any",
                "sea.depth_file = \"PATH.exr\"");
-    if (!waves.heroes.empty()) refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
+    if (has_trains && !waves.heroes.empty())
+        refuse("turns the waves that waves.heroes are made of", "no waves.heroes");
     if (has_trains && std::ranges::any_of(scene.objects, [](const SceneObject& object) {
             return object.floats && object.buoyancy == Buoyancy::Response;
         }))

@@ -241,6 +241,14 @@ std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
             " m (effects.breaking_from_m), have no choppiness; waves.cascades[].choppiness gives them some"};
 }
 
+// Of the floor that waves feel.
+double depth_below(const Scene& scene, glm::dvec2 place_m) {
+    if (!scene.waves.coast || !scene.waves.coast_depths) return scene.sea.depth_m;
+    const DepthMap& map = *scene.waves.coast_depths;
+    const glm::dvec2 on_map = glm::clamp(place_m, map.from_m(), map.from_m() + map.size_m());
+    return on_map == place_m ? map.mean_m(place_m, place_m) : scene.sea.depth_m;
+}
+
 std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     const std::vector<HeroWave>& heroes = prepared.scene.waves.heroes;
     if (heroes.empty()) return {};
@@ -253,10 +261,15 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     double wanted_m2 = 0.0, raised_m2 = 0.0;
     for (std::size_t h = 0; h < heroes.size(); ++h) {
         const HeroWave& hero = heroes[h];
-        const double raise = hero_mask(prepared.scene, hero).raise, raised_m = raise * hero.height_m;
+        const double raise = hero_mask(prepared.masks, hero).raise, raised_m = raise * hero.height_m;
         wanted_m2 += raised_m * raised_m;
         const std::string name =
             "waves.heroes[" + std::to_string(h) + "].height_m = " + number_text(hero.height_m) + ": ";
+        const double stands =
+            prepared.masks ? raise * prepared.masks->at({hero.east_m, hero.north_m}).waves : 1.0;
+        if (stands < 0.99)
+            warnings.push_back(name + "stands where less than a tenth of the waves is left, and is " +
+                               number_text(std::round(100.0 * stands * hero.height_m) / 100.0) + " m high");
         const HeroShape shape =
             hero_shape(trains, {hero.east_m, hero.north_m}, hero_time_s(prepared.scene, hero));
         if (std::abs(shape.height_m - raised_m) > 0.05 * std::abs(raised_m))
@@ -266,6 +279,11 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
             warnings.push_back(name + "the crest folds over itself at its top; at most " +
                                tenths(raise * kSteepestHero / shape.compression * hero.height_m) +
                                " m in this sea, or a lower waves.choppiness");
+        else if (const double depth_m = depth_below(prepared.scene, {hero.east_m, hero.north_m});
+                 hero.height_m > kMostCoastHeight * depth_m)
+            warnings.push_back(name + "waves have broken where it is " + tenths(depth_m) +
+                               " m deep; at most " + tenths(kMostCoastHeight * depth_m) +
+                               " m, or a place in deeper water");
         else if (std::abs(raised_m) > kHighestHero * deviation_m)
             warnings.push_back(name + "no such sea has one as high; at most " +
                                tenths(kHighestHero * deviation_m / raise) + " m is met, or a higher sea");
@@ -343,15 +361,6 @@ std::vector<std::string> mask_warning(const PreparedScene& prepared) {
                            "].waves = " + number_text(mask.waves) + ": the surface folds over itself on " +
                            percent_text(share) + " % of that place; " +
                            number_text(std::floor(100.0 * enough) / 100.0) + " leaves 5 %");
-    }
-    for (std::size_t h = 0; h < scene.waves.heroes.size(); ++h) {
-        const HeroWave& hero = scene.waves.heroes[h];
-        const double raised = hero_mask(scene, hero).raise * plan->at({hero.east_m, hero.north_m}).waves;
-        if (raised > 0.99) continue;
-        warnings.push_back("waves.heroes[" + std::to_string(h) +
-                           "].height_m = " + number_text(hero.height_m) +
-                           ": stands where waves.masks leave less than a tenth of the waves, and is " +
-                           number_text(std::round(100.0 * raised * hero.height_m) / 100.0) + " m high");
     }
     return warnings;
 }

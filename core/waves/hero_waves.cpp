@@ -121,7 +121,7 @@ std::vector<HeroTrain> hero_trains(const PreparedScene& prepared, std::span<cons
     std::vector<double> missing(n);
     for (std::size_t h = 0; h < heroes.size(); ++h) {
         const LocalWaves& there = around[h];
-        const HeroMask mask = hero_mask(prepared.scene, heroes[h]);
+        const HeroMask mask = hero_mask(prepared.masks, heroes[h]);
         const double height_m = mask.raise * heroes[h].height_m;
         const glm::dvec2 slope = -height_m * mask.change_per_m - there.slope;
         const std::array<double, kDemands> lacks{

@@ -413,7 +413,7 @@ TEST(Masks, AreWarnedOfWhereTheirEdgesCutWavesAndRefusedWhereTheyCannotBe) {
     scene.waves.heroes[0].height_m = 5.0;
     EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: no such sea"), std::string::npos) << warned();
     scene.waves.masks[0].waves = 0.05;
-    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: stands where waves.masks leave less"),
+    EXPECT_NE(warned().find("waves.heroes[0].height_m = 5: stands where less than a tenth"),
               std::string::npos)
         << warned();
     scene.waves.masks[0].waves = 0.5;

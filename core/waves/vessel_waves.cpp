@@ -207,7 +207,7 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
                 const double from_s = static_cast<double>(b) * plan_.block_s;
                 const int steps = steps_of(b);
                 found = blocks_.emplace(b, leg(from_s, plan_.block_s / steps, steps)).first;
-                for (Buffer<float>& sum : found->second.sums) sum = Buffer<float>(omega_.size());
+                for (Buffer<float>& sum : found->second.sums) sum = Buffer<float>::uncleared(omega_.size());
                 missing.push_back(&found->second);
             }
             order_.push_back(&found->second);

@@ -155,13 +155,14 @@ TEST(Vessels, MakeKelvinsWaves) {
         const double found = loudest_angle(waves * wave_m, wave_m, 15.0, 21.0,
                                            [&](double, double) { return std::pow(values[next++].z, 2); });
         EXPECT_NEAR(found, said, 0.3) << waves;
-        RecordProperty("loudest_at_" + std::to_string(static_cast<int>(waves)),
-                       std::to_string(found) + " of " + std::to_string(said));
+        RecordProperty("off_deg_at_" + std::to_string(static_cast<int>(waves)),
+                       std::to_string(std::abs(found - said)));
     }
 }
 
 // Along the path behind: from one fall through 0 to another.
 TEST(Vessels, DragWavesOfTheirOwnSpeed) {
+    double worst = 0.0;
     for (const double speed_mps : {3.5, 6.0}) {
         const double wave_m = wavelength(speed_mps);
         const auto frame =
@@ -177,13 +178,16 @@ TEST(Vessels, DragWavesOfTheirOwnSpeed) {
         ASSERT_GT(falls.size(), 10u);
         const double found = (falls.front() - falls.back()) / static_cast<double>(falls.size() - 1);
         EXPECT_NEAR(found / wave_m, 1.0, 0.01) << speed_mps;
+        worst = std::max(worst, std::abs(found / wave_m - 1.0));
     }
+    RecordProperty("length_off", std::to_string(worst));
 }
 
 // Fast ones leave a narrow wake (Darmon, Benzaquen & Raphaël 2014), the integral's.
 TEST(Vessels, LeaveANarrowWakeWhenFast) {
     constexpr double kLengths = 32.0, kWave = 16.0, kLength_m = 6.0;
-    double before = 19.47;
+    double before = 19.47, worst = 0.0;
+    std::vector<double> by_froude;
     for (const double froude : {0.8, 1.2, 1.7, 2.2}) {
         const double speed_mps = froude * std::sqrt(kGravity * kLength_m), about = 13.0 / froude;
         const Vessel vessel = straight(speed_mps, kLength_m);
@@ -202,6 +206,15 @@ TEST(Vessels, LeaveANarrowWakeWhenFast) {
         EXPECT_NEAR(found / said, 1.0, 0.03) << froude;
         EXPECT_LT(found, 0.9 * before);
         before = found;
+        worst = std::max(worst, std::abs(found / said - 1.0));
+        by_froude.push_back(found * froude);
+    }
+    RecordProperty("integral_off", std::to_string(worst));
+    // Of an angle that is in proportion to 1/Fr, from 0.8 on and from 1.2.
+    for (const std::size_t first : {0u, 1u}) {
+        const auto [least, most] = std::minmax_element(by_froude.begin() + first, by_froude.end());
+        RecordProperty(first ? "froude_off_from_1.2" : "froude_off_from_0.8",
+                       std::to_string((*most - *least) / (*most + *least)));
     }
 }
 

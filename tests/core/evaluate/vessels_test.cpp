@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <tuple>
 
@@ -490,6 +491,58 @@ TEST(Vessels, StripsEndSoftlyAndKeepTheirFoam) {
         }
         EXPECT_LT(oldest, 0.01) << length_m;
     }
+}
+
+// Neighbours share the search: each has what the nearest of all pieces gives it, on a path that crosses itself.
+TEST(Vessels, StripsAnswerNeighboursAsEachByItself) {
+    Vessel vessel = turning();
+    vessel.path = "-700 -60 -60, -400 40 40, -200 60 -20, 0 -40 -10, 180 -60 50";
+    const VesselPlan plan = plan_vessels(still_water(vessel)).front();
+    const WakeStrip strip(plan, 7.3);
+    const auto& points = strip.points();
+    const auto expected = [&](glm::dvec2 place_m, double footprint_m) {
+        double nearest_m = strip.reach_m(), share = 0.0;
+        std::size_t of = points.size();
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            const glm::dvec2 along = points[i + 1].place_m - points[i].place_m;
+            const double t = glm::clamp(
+                glm::dot(place_m - points[i].place_m, along) / std::max(glm::dot(along, along), 1e-30), 0.0,
+                1.0);
+            const double off_m = glm::distance(place_m, points[i].place_m + t * along);
+            if (off_m < nearest_m) nearest_m = off_m, share = t, of = i;
+        }
+        if (of == points.size()) return WakeWater<double>{0.0, 0.0, 0.0};
+        const WakeStrip::Point &a = points[of], &b = points[of + 1];
+        return wake_water(
+            strip.hull(),
+            WakePlace<double>{nearest_m, std::lerp(a.way_m, b.way_m, share),
+                              std::lerp(a.age_s, b.age_s, share), std::lerp(a.strength, b.strength, share)},
+            footprint_m);
+    };
+    for (const double apart_m : {0.7, 9.0})  // neighbours that a piece tells apart, and that it doesn't
+        for (const double footprint_m : {0.05, 6.0}) {
+            std::vector<glm::dvec2> places;
+            for (double y = -110.0; y < 110.0; y += 5.0)
+                for (double x = -110.0; x < 110.0; x += apart_m) places.emplace_back(x, y);
+            std::vector<WakeWater<double>> foam(places.size(), {0.0, 0.0, 0.0}), calm = foam;
+            for (const auto& [wanted, to] :
+                 {std::pair(WakeStrip::Wanted::Foam, &foam), std::pair(WakeStrip::Wanted::Calm, &calm)})
+                strip.for_each(
+                    wanted, places.size(), [&](std::size_t i) { return places[i]; },
+                    [&](std::size_t) { return footprint_m; },
+                    [&, to = to](std::size_t i, const WakeWater<double>& water) { (*to)[i] = water; });
+            int wet = 0;
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                const WakeWater<double> at = expected(places[i], footprint_m);
+                ASSERT_NEAR(foam[i].foam, at.foam, 1e-9) << i;
+                if (at.foam > 1e-6) {
+                    ASSERT_NEAR(foam[i].age_s, at.age_s, 1e-6) << i;
+                }
+                ASSERT_NEAR(calm[i].calm, at.calm, 1e-9) << i;
+                wet += at.foam > 0.01;
+            }
+            EXPECT_GT(wet, 100);
+        }
 }
 
 TEST(Vessels, StayFiniteOnHardPaths) {

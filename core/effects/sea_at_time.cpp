@@ -4,8 +4,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <glm/common.hpp>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -143,26 +141,22 @@ void SeaAtTime<T>::add_wakes(const Points<T>& points, const FoamResults<T>& foam
     const std::span<const WakeStrip> strips = frame_.strips();
     if (strips.empty()) return;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 4096), [&](const auto& range) {
-        glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            low = glm::min(low, glm::dvec2(points.rest_m[i]));
-            high = glm::max(high, glm::dvec2(points.rest_m[i]));
-        }
-        std::vector<const WakeStrip*> here;
+        const std::size_t first = range.begin();
         for (const WakeStrip& strip : strips)
-            if (strip.reaches(points.origin_m + low, points.origin_m + high)) here.push_back(&strip);
-        if (here.empty()) return;
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-            for (const WakeStrip* strip : here) {
-                const WakeWater<double> water =
-                    strip->at(points.origin_m + glm::dvec2(points.rest_m[i]),
-                              points.pixel_m ? static_cast<double>(points.pixel_m[i]) : 0.0);
-                if (!(water.foam > 0.0)) continue;
-                const WakeWater<T> at{static_cast<T>(water.foam), static_cast<T>(water.age_s), T(0)};
-                if (foam.coverage) foam.coverage[i] = with_wake_foam(foam.coverage[i], at.foam);
-                // The same whether coverage is asked for or not.
-                if (foam.age_s) foam.age_s[i] = with_wake_age(foam.age_s[i], at);
-            }
+            strip.for_each(
+                WakeStrip::Wanted::Foam, range.size(),
+                [&](std::size_t i) { return points.origin_m + glm::dvec2(points.rest_m[first + i]); },
+                [&](std::size_t i) {
+                    return points.pixel_m ? static_cast<double>(points.pixel_m[first + i]) : 0.0;
+                },
+                [&](std::size_t i, const WakeWater<double>& water) {
+                    if (!(water.foam > 0.0)) return;
+                    const WakeWater<T> at{static_cast<T>(water.foam), static_cast<T>(water.age_s), T(0)};
+                    if (foam.coverage)
+                        foam.coverage[first + i] = with_wake_foam(foam.coverage[first + i], at.foam);
+                    // The same whether coverage is asked for or not.
+                    if (foam.age_s) foam.age_s[first + i] = with_wake_age(foam.age_s[first + i], at);
+                });
     });
 }
 

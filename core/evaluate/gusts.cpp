@@ -46,13 +46,18 @@ HWY_INLINE N ValueOf(const Terms& terms, N x) {
 template <class T, class N>
 HWY_INLINE N FrontsWind(const GustArgs<T>& args, N x, N y, N width, N axis_x, N axis_y, N level) {
     const GustsPlan& plan = args.gusts->plan;
+    const N beyond = N(0.5) * maximum(width, square_root(axis_x * axis_x + axis_y * axis_y));
     N wind(1);
     for (std::size_t f = 0; f < plan.fronts.size(); ++f) {
         const GustsPlan::Front& front = plan.fronts[f];
         const glm::dvec2 from = args.phases->from_fronts[f];
+        const N east = x + N(from.x), north = y + N(from.y), reach = N(front.reach_m) + beyond;
+        // Out of reach it is 1; what is no number isn't.
+        if (hn::AllTrue(hn::ScalableTag<T>(), hn::Ge((east * east + north * north).v, (reach * reach).v)))
+            continue;
         const N along_x(front.along.x), along_y(front.along.y);
-        wind = wind * front_wind(x + N(from.x), y + N(from.y), along_x, along_y, N(front.half_m.x),
-                                 N(front.half_m.y), N(front.edge_m),
+        wind = wind * front_wind(east, north, along_x, along_y, N(front.half_m.x), N(front.half_m.y),
+                                 N(front.edge_m),
                                  square_root(length2_along(width, axis_x, axis_y, along_x, along_y)),
                                  square_root(length2_along(width, axis_x, axis_y, -along_y, along_x)),
                                  N(front.wind), level);

@@ -1,28 +1,8 @@
 #include "core/evaluate/masks.h"
 
 #include <algorithm>
-#include <array>
-#include <glm/common.hpp>
-#include <limits>
-#include <utility>
 
 namespace pelagic {
-
-namespace {
-
-// Round the points from their origin.
-template <class T>
-std::pair<glm::dvec2, glm::dvec2> ends_of(const Chunk<T>& chunk) {
-    glm::vec<2, T> low(std::numeric_limits<T>::infinity()), high = -low;
-    for (std::size_t i = 0; i < chunk.count; ++i) {
-        const glm::vec<2, T> at(chunk.rest_x[i], chunk.rest_y[i]);
-        low = glm::min(low, at);  // but for what is no number
-        high = glm::max(high, at);
-    }
-    return {glm::dvec2(low), glm::dvec2(high)};
-}
-
-}  // namespace
 
 template <class T>
 bool MaskChunk<T>::take(const MasksPlan& plan, std::span<const WakeStrip> strips, glm::dvec2 origin_m,
@@ -60,16 +40,18 @@ bool MaskChunk<T>::take(const MasksPlan& plan, std::span<const WakeStrip> strips
             has_ripples = has_ripples || at.ripples != T(1);
         }
     }
-    const auto [low, high] = ends_of(chunk);
     for (const WakeStrip& strip : strips) {
-        if (!plan.has_strips || !strip.reaches(origin_m + low, origin_m + high)) continue;
-        for (std::size_t i = 0; i < chunk.count; ++i) {
-            const T calm = static_cast<T>(
-                strip.at(origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]), kSlick_m).calm);
-            if (!(calm > T(0))) continue;
-            ripples[i] *= T(1) - calm;
-            any = has_ripples = true;
-        }
+        if (!plan.has_strips) break;
+        strip.for_each(
+            WakeStrip::Wanted::Calm, chunk.count,
+            [&](std::size_t i) { return origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]); },
+            [](std::size_t) { return kSlick_m; },
+            [&](std::size_t i, const WakeWater<double>& water) {
+                const T calm = static_cast<T>(water.calm);
+                if (!(calm > T(0))) return;
+                ripples[i] *= T(1) - calm;
+                any = has_ripples = true;
+            });
     }
     return any;
 }

@@ -5,7 +5,13 @@
 // own wake, the older one ends at the line between the two.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
+#include <limits>
 #include <vector>
 
 #include "core/base/number.h"
@@ -21,21 +27,40 @@ class WakeStrip {
     WakeStrip(const VesselPlan& plan, double time_s);
 
     // Through a pixel of this footprint [m].
-    WakeWater<double> at(glm::dvec2 place_m, double footprint_m) const;
-    // Whether any of it reaches into a rectangle.
-    bool reaches(glm::dvec2 low_m, glm::dvec2 high_m) const;
+    WakeWater<double> at(glm::dvec2 place_m, double footprint_m) const {
+        return at(place_m, footprint_m, near(place_m, place_m), Wanted::Foam);
+    }
+    // Calls use(i, water) for some of the `count` places place_of(i), among them all where there is some of what is wanted. Neighbours
+    // share the search for what is near.
+    enum class Wanted { Foam, Calm };
+    template <class PlaceOf, class FootprintOf, class Use>
+    void for_each(Wanted wanted, std::size_t count, const PlaceOf& place_of, const FootprintOf& footprint_of,
+                  const Use& use) const {
+        constexpr std::size_t kNeighbours = 16;
+        for (std::size_t first = 0, end = 0; first < count; first = end) {
+            end = std::min(first + kNeighbours, count);
+            glm::dvec2 low_m(std::numeric_limits<double>::infinity()), high_m = -low_m;
+            for (std::size_t i = first; i < end; ++i) {
+                low_m = glm::min(low_m, place_of(i));  // but for what is no number
+                high_m = glm::max(high_m, place_of(i));
+            }
+            const Pieces pieces = near(low_m, high_m);
+            for (std::size_t i = first; pieces.count > 0 && i < end; ++i)
+                use(i, at(place_of(i), footprint_of(i), pieces, wanted));
+        }
+    }
 
-    // From the bow: where, how far along the path, how long ago the vessel's middle was there, and how fast it was, of a speed that
-    // makes foam.
+    // From the bow: where, how far along the path, how long ago the vessel's middle was there, how fast it was, of a speed that
+    // makes foam, and half the strip's width.
     struct Point {
         glm::dvec2 place_m{0.0};
-        double way_m = 0.0, age_s = 0.0, strength = 0.0;
+        double way_m = 0.0, age_s = 0.0, strength = 0.0, half_m = 0.0;
     };
     // Round some and all that they reach.
     struct Box {
         glm::dvec2 low_m{0.0}, high_m{0.0};
-        bool holds(glm::dvec2 at_m) const {
-            return at_m.x >= low_m.x && at_m.y >= low_m.y && at_m.x <= high_m.x && at_m.y <= high_m.y;
+        bool meets(glm::dvec2 from_m, glm::dvec2 to_m) const {
+            return from_m.x <= high_m.x && from_m.y <= high_m.y && to_m.x >= low_m.x && to_m.y >= low_m.y;
         }
     };
     static constexpr int kMostPoints = 160;
@@ -47,6 +72,20 @@ class WakeStrip {
     double reach_m() const { return reach_m_; }  // from the path: beyond it there is none
 
   private:
+    // Of the path, by their first points.
+    struct Pieces {
+        std::array<std::uint8_t, kMostPoints> of;
+        std::size_t count = 0;
+    };
+    // How far a place is off a piece, squared, and where along the piece it is nearest.
+    struct Off {
+        double square_m2, share;
+    };
+    Off off(std::size_t piece, glm::dvec2 place_m) const;
+    // Of a rectangle: among them is the nearest one of any place in it that the wake reaches.
+    Pieces near(glm::dvec2 low_m, glm::dvec2 high_m) const;
+    WakeWater<double> at(glm::dvec2 place_m, double footprint_m, const Pieces& pieces, Wanted wanted) const;
+
     WakeHull<double> hull_;
     double reach_m_ = 0.0;
     std::vector<Point> points_;

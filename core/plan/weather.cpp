@@ -301,6 +301,7 @@ std::shared_ptr<const PreparedScene> prepare_weather(Scene scene) {
     for (const KeyedNumber& number : scene.keyed)
         weather.is_smooth |= is_of_sea(number) && number.keys.interpolation == CameraInterpolation::Smooth;
     const auto wind = std::ranges::find(scene.keyed, "sea.wind_speed_mps", &KeyedNumber::path);
+    // The largest of their keys, also where somebody has filled Scene::keyed by hand.
     for (const DisplacementNumber& number : kDisplacementNumbers)
         if (const KeyedNumber* keyed = keyed_of(scene, number.path))
             scene.waves.*number.member = standing_for(keyed->keys, false);

@@ -260,10 +260,11 @@ KeyValue content_value(const Scene& scene, const Key& key) {
     KeyValue value = value_of(scene, key);
     if (key.type != KeyType::Entries) return value;
     auto& entries = std::get<std::vector<KeyEntry>>(value);
-    for (const Key& inner : key.entry_keys)
+    for (const Key& inner : key.entry_keys) {
+        if (!inner.is_silent_off) continue;
         for (KeyEntry& entry : entries)
-            if (inner.is_silent_off)
-                std::erase(entry.values, std::pair(std::string_view(inner.name), inner.fallback));
+            std::erase(entry.values, std::pair(std::string_view(inner.name), inner.fallback));
+    }
     for (std::size_t i = 0; key.path == kObjectsKey && i < entries.size(); ++i)
         for (auto& [name, inner] : entries[i].values) {
             const SceneObject& object = scene.objects[i];

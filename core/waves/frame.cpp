@@ -27,10 +27,16 @@ constexpr int kBlockRows = 32;
 
 // One FFTW plan per size.
 template <class T>
-LineTransform<T> transform_of(std::map<int, LineTransform<T>>& known, int n) {
-    const auto found = known.find(n);
-    return found != known.end() ? found->second : known.emplace(n, LineTransform<T>(n)).first->second;
-}
+class Transforms {
+  public:
+    using Parts = typename LineTransform<T>::Parts;
+    LineTransform<T> of(int n, Parts parts = Parts::Apart) {
+        return known_.try_emplace({n, parts}, n, parts).first->second;
+    }
+
+  private:
+    std::map<std::pair<int, Parts>, LineTransform<T>> known_;
+};
 
 // Null where this sea doesn't need the buffer.
 template <class T>
@@ -124,7 +130,7 @@ template <class T>
 Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
     : sea_(std::move(sea)), kernels_(kernels<T>()), scratches_(std::make_unique<Scratches>()) {
     const Plan& plan = sea_->plan();
-    std::map<int, LineTransform<T>> transforms;
+    Transforms<T> transforms;
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
         const CascadePlan& planned = plan.cascades[c];
         const Cascade<T>& cascade = sea_->cascades()[c];
@@ -132,7 +138,11 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
         for (int g = 0; g < static_cast<int>(planned.grids.size()); ++g) {
             const Grid& grid = planned.grids[g];
             const int n = grid.resolution;
-            GridState made{transform_of(transforms, n), {}, {}};
+            // The sea's keep the bits of files that are there.
+            GridState made{transforms.of(n, planned.vessel ? LineTransform<T>::Parts::Paired
+                                                           : LineTransform<T>::Parts::Apart),
+                           {},
+                           {}};
             if (grid.sampling == Sampling::Spline) {
                 made.prefilter = Buffer<T>(2 * static_cast<std::size_t>(grid.radius) - 1);
                 for (int m = 1 - grid.radius; m < grid.radius; ++m)
@@ -157,7 +167,7 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
         grids_.push_back(std::move(grids));
         if (planned.vessel) vessels_.emplace_back(cascade, *planned.vessel, plan.from->spectrum.dispersion());
         if (planned.second_order)
-            second_order_.emplace(sea_, c, transform_of(transforms, planned.second_order->resolution));
+            second_order_.emplace(sea_, c, transforms.of(planned.second_order->resolution));
         for (int mx = 0; mx < cascade.radius; mx += kBlockColumns) {
             const Block block{c, mx, std::min(kBlockColumns, cascade.radius - mx)};
             block_modes_ = std::max(block_modes_, cascade.columns[mx + block.columns] - cascade.columns[mx]);

@@ -48,7 +48,7 @@ unsigned effort() {
 
 // Adds to FFTW's wisdom. A different build of FFTW rejects it: no effect then. Double precision serves as reference only.
 void remember() {
-    fftwf_import_wisdom_from_string(kSingleLineWisdom);
+    for (const char* wisdom : {kSingleLineWisdom, kPairedLineWisdom}) fftwf_import_wisdom_from_string(wisdom);
 }
 
 // Once in a process, before the first plan: others may plan from then on as well, since FFTW's lock doesn't guard its wisdom.
@@ -114,10 +114,11 @@ PlannedBy::~PlannedBy() {
 // FFTW's split-complex transforms have sign −1. Exchanging real and imaginary parts of input and output gives
 // sign +1.
 template <class T>
-LineTransform<T>::LineTransform(int n) : n_(n) {
-    const std::size_t stride = line_stride<T>(n);
+LineTransform<T>::LineTransform(int n, Parts parts) : n_(n), parts_(parts) {
+    const std::size_t stride = line_stride<T>(n), imaginary = parts == Parts::Paired ? 1 : stride;
     Buffer<T> from(2 * stride), to(2 * stride);
-    const typename Fftw<T>::Dimension line{n, 1, 1};
+    const int step = parts == Parts::Paired ? 2 : 1;
+    const typename Fftw<T>::Dimension line{n, step, step};
     auto plan = std::make_shared<Plan>();
     {
         const std::lock_guard lock(planner());
@@ -126,8 +127,8 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
         // a fifth of its longest search. (For 2-D, strided or in-place transforms estimates are up to ten times
         // slower.)
         const unsigned flags = effort() | FFTW_PRESERVE_INPUT | (is_below_avx2() ? FFTW_NO_SIMD : 0U);
-        plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + stride, from.data(),
-                                     to.data() + stride, to.data(), flags);
+        plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + imaginary, from.data(),
+                                     to.data() + imaginary, to.data(), flags);
     }
     if (!plan->handle) throw std::runtime_error("no transform for size " + std::to_string(n));
     plan_ = std::move(plan);
@@ -136,8 +137,25 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
 template <class T>
 void LineTransform<T>::execute(const T* from, T* to) const {
     const std::size_t stride = line_stride<T>(n_);
-    T* input = const_cast<T*>(from);  // FFTW's interface lacks const; the plan preserves its input
-    Fftw<T>::execute(plan_->handle, input + stride, input, to + stride, to);
+    if (parts_ == Parts::Apart) {
+        T* input = const_cast<T*>(from);  // FFTW's interface lacks const; the plan preserves its input
+        Fftw<T>::execute(plan_->handle, input + stride, input, to + stride, to);
+        return;
+    }
+    thread_local Buffer<T> input, output;
+    const auto n = static_cast<std::size_t>(n_);
+    if (input.size() < 2 * n)
+        for (Buffer<T>* pairs : {&input, &output}) *pairs = Buffer<T>(2 * n);
+    T *in = input.data(), *out = output.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        in[2 * i] = from[i];
+        in[2 * i + 1] = from[stride + i];
+    }
+    Fftw<T>::execute(plan_->handle, in + 1, in, out + 1, out);
+    for (std::size_t i = 0; i < n; ++i) {
+        to[i] = out[2 * i];
+        to[stride + i] = out[2 * i + 1];
+    }
 }
 
 template class LineTransform<float>;

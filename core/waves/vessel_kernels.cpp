@@ -110,11 +110,14 @@ void Blocks(const BlocksArgs& args) {
     const N half(args.half_m), per_edge(args.per_edge_m);
     for (std::size_t i = 0; i < args.count; i += hn::Lanes(D())) {
         const N group_x = At(args.group_x, i), group_y = At(args.group_y, i);
-        Complex later{N(), N()}, earlier{N(), N()};
+        Complex later{N(0), N(0)}, earlier{N(0), N(0)};
+        bool any = false;  // the oldest have left
         for (const pelagic::Block& block : args.blocks) {
-            const Complex turn = At(block.turn_re, block.turn_im, i);
-            later = turn * later;
-            earlier = Conjugate(turn) * earlier;
+            if (any) {
+                const Complex turn = At(block.turn_re, block.turn_im, i);
+                later = turn * later;
+                earlier = Conjugate(turn) * earlier;
+            }
             const N x(block.from_x), y(block.from_y), age(block.age_s), share(block.share);
             const N east = age * group_x, north = age * group_y;
             // Most of what is old has left the tile: it isn't read.
@@ -122,6 +125,7 @@ void Blocks(const BlocksArgs& args) {
                 const N across = Depth(from_x, half, per_edge), up = Depth(from_y, half, per_edge),
                         least = minimum(across, up);
                 if (hn::AllFalse(D(), least > N(0))) return;
+                any = true;
                 // There are more arrays than hardware prefetchers follow.
                 __builtin_prefetch(re + i + kAhead);
                 __builtin_prefetch(im + i + kAhead);

@@ -37,6 +37,7 @@ template <class T>
 VesselWaves::VesselWaves(const Cascade<T>& cascade, const VesselPlan& plan, const Dispersion& dispersion)
     : plan_(plan), kernels_(vessel_kernels()), radius_(cascade.radius), columns_(cascade.columns) {
     const std::size_t count = cascade.modes();
+    remembered_ = Buffer<float>::uncleared(4 * VesselPlan::kBlocks * count);
     cycles_per_s_ = Buffer<double>(count);
     std::copy_n(cascade.cycles_per_s.data(), count, cycles_per_s_.data());
     for (Buffer<float>* buffer : {&omega_, &depth_, &group_x_, &group_y_, &turn_re_, &turn_im_})
@@ -129,6 +130,14 @@ int VesselWaves::steps_of(std::int64_t block) const {
     return steps_of(static_cast<double>(block) * plan_.block_s, plan_.block_s, kOff, VesselPlan::kMostSteps);
 }
 
+VesselWaves::Sums VesselWaves::remembered(std::int64_t block) {
+    const std::size_t count = omega_.size();
+    const auto slot =
+        static_cast<std::size_t>((block % VesselPlan::kBlocks + VesselPlan::kBlocks) % VesselPlan::kBlocks);
+    float* first = remembered_.data() + 4 * slot * count;
+    return {first, first + count, first + 2 * count, first + 3 * count};
+}
+
 void VesselWaves::head(Step& step, double at_s) const {
     const glm::dvec2 velocity = plan_.path.velocity_mps(at_s);
     if (glm::length(velocity) > 0.0) step.along = glm::normalize(velocity);
@@ -207,7 +216,7 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
                 const double from_s = static_cast<double>(b) * plan_.block_s;
                 const int steps = steps_of(b);
                 found = blocks_.emplace(b, leg(from_s, plan_.block_s / steps, steps)).first;
-                for (Buffer<float>& sum : found->second.sums) sum = Buffer<float>(omega_.size());
+                found->second.sums = remembered(b);
                 missing.push_back(&found->second);
             }
             order_.push_back(&found->second);
@@ -225,8 +234,11 @@ void VesselWaves::set(double t_s, const std::atomic<bool>* cancel) {
                     if (sum.size() < count) sum = Buffer<float>(2 * static_cast<std::size_t>(radius_));
                 sum_up(leg, mx, cosine_[leg.table].data() + at, sine_[leg.table].data() + at,
                        {own[0].data(), own[1].data(), own[2].data(), own[3].data()});
-                for (int part = 0; part < 4; ++part)
-                    std::copy_n(own[part].data(), count, leg.sums[part].data() + at);
+                const Sums to = leg.sums.from(at);
+                std::copy_n(own[0].data(), count, to.later_re);
+                std::copy_n(own[1].data(), count, to.later_im);
+                std::copy_n(own[2].data(), count, to.earlier_re);
+                std::copy_n(own[3].data(), count, to.earlier_im);
             }
         });
     } catch (...) {
@@ -280,8 +292,7 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
     for (int mx = first_mx; mx < first_mx + columns; ++mx) {
         const std::size_t first = first_of(mx), count = count_of(mx);
         own.blocks.clear();
-        const auto add = [&](const Leg& leg, const float* turn_re, const float* turn_im,
-                             const Buffer<float>(&of)[4], std::size_t at) {
+        const auto add = [&](const Leg& leg, const float* turn_re, const float* turn_im, const Sums& of) {
             const glm::dvec2 from_m = leg.middle_m - middle_m_;
             const double age_s = t_s_ - 0.5 * (leg.from_s + leg.end_s);
             own.blocks.push_back({.from_x = static_cast<float>(from_m.x),
@@ -291,15 +302,15 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
                                   .place = phase(leg.place, mx),
                                   .turn_re = turn_re,
                                   .turn_im = turn_im,
-                                  .later_re = of[0].data() + at,
-                                  .later_im = of[1].data() + at,
-                                  .earlier_re = of[2].data() + at,
-                                  .earlier_im = of[3].data() + at});
+                                  .later_re = of.later_re,
+                                  .later_im = of.later_im,
+                                  .earlier_re = of.earlier_re,
+                                  .earlier_im = of.earlier_im});
         };
         for (const Leg* block : order_)
             // The oldest have left, but for fast waves.
             if (!own.blocks.empty() || reaches_tile(*block, mx))
-                add(*block, turn_re_.data() + first, turn_im_.data() + first, block->sums, first);
+                add(*block, turn_re_.data() + first, turn_im_.data() + first, block->sums.from(first));
         const auto add_begun = [&](const Leg& leg, const float* cosine, const float* sine,
                                    Buffer<float>(&of)[4], Buffer<float>& turn_re, Buffer<float>& turn_im) {
             for (std::size_t i = 0; i < count; ++i) {
@@ -312,8 +323,9 @@ void VesselWaves::heights(int first_mx, int columns, T* re, T* im, T* rate_re, T
                     turn_im[i] = before * step_im + turn_im[i] * step_re;
                 }
             }
-            sum_up(leg, mx, cosine, sine, {of[0].data(), of[1].data(), of[2].data(), of[3].data()});
-            add(leg, turn_re.data(), turn_im.data(), of, 0);
+            const Sums sums{of[0].data(), of[1].data(), of[2].data(), of[3].data()};
+            sum_up(leg, mx, cosine, sine, sums);
+            add(leg, turn_re.data(), turn_im.data(), sums);
         };
         if (!begun_.steps.empty())
             add_begun(begun_, cosine_[begun_.table].data() + first, sine_[begun_.table].data() + first,

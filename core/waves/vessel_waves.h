@@ -57,6 +57,9 @@ class VesselWaves {
     };
     struct Sums {
         float *later_re, *later_im, *earlier_re, *earlier_im;
+        Sums from(std::size_t at) const {
+            return {later_re + at, later_im + at, earlier_re + at, earlier_im + at};
+        }
     };
     struct Step {
         glm::dvec2 velocity_mps{0.0}, along{1.0, 0.0};
@@ -68,13 +71,15 @@ class VesselWaves {
         glm::dvec2 middle_m{0.0};
         Phases place;  // of its end
         std::vector<Step> steps;
-        int table = 0;          // of cosines and sines
-        Buffer<float> sums[4];  // of blocks
+        int table = 0;  // of cosines and sines
+        Sums sums{};    // of blocks: in what is remembered
     };
 
     Phases phases(glm::dvec2 place_m) const;
     int steps_of(double from_s, double lasts_s, double part, int most) const;
     int steps_of(std::int64_t block) const;
+    // Where a block's are kept: a later one takes the place of one that is too old.
+    Sums remembered(std::int64_t block);
     // Turns its hull as it lies at a time.
     void head(Step& step, double at_s) const;
     Leg leg(double from_s, double step_s, int steps) const;
@@ -97,6 +102,8 @@ class VesselWaves {
     Buffer<float> ky_, omega_, depth_, group_x_, group_y_, turn_re_, turn_im_;
     Buffer<float> cosine_[VesselPlan::kStepLengths],
         sine_[VesselPlan::kStepLengths];  // of half a step of 1, 2, 4, … in a block
+    Buffer<float>
+        remembered_;  // the sums of all blocks: in one piece, so that the system gives it in huge pages
     std::map<std::int64_t, Leg> blocks_;
     std::vector<const Leg*> order_;  // of the time that is set, the oldest first
     Leg begun_, last_;               // of the block that isn't over: its steps that are, and the rest

@@ -36,4 +36,24 @@ inline constexpr char kSingleLineWisdom[] =
 )
 )wisdom";
 
+// The same for lines of pairs (LineTransform::Parts), of the lengths that vessels' tiles are shown in: 320, 400, 480, 560, 640.
+inline constexpr char kPairedLineWisdom[] =
+    R"wisdom((fftw-3.3.10 fftwf_wisdom #x9e7d4dee #xdb14fed1 #x34bf76a4 #xeb6e8fdf
+  (fftwf_codelet_n2bv_16_avx 0 #x11048 #x11048 #x0 #x0f89a429 #xd5be9fda #x3c36f263 #x47686d63)
+  (fftwf_codelet_t2bv_20_avx 0 #x11048 #x11048 #x0 #x26b22518 #x27332121 #xd0851861 #xfcfc16ca)
+  (fftwf_codelet_t2bv_20_avx 0 #x11048 #x11048 #x0 #x3da58366 #xb7d6a2da #x437dcc99 #x7c166232)
+  (fftwf_codelet_n2bv_20_avx 0 #x11048 #x11048 #x0 #x3d74e141 #xaea1c54b #xa5186d81 #x49e4369e)
+  (fftwf_codelet_n2bv_12_avx 0 #x11048 #x11048 #x0 #xb0282c2f #x13d43c0f #x2a02806d #xb69d5c33)
+  (fftwf_codelet_t2bv_5_avx 0 #x11048 #x11048 #x0 #x2d627ed4 #xce312406 #xd515829b #x32e795dd)
+  (fftwf_dft_vrank_geq1_register 0 #x11048 #x11048 #x0 #x2ce50037 #x58405cc2 #xfd5fbcd1 #x52587115)
+  (fftwf_codelet_t2bv_8_avx 0 #x11048 #x11048 #x0 #xe4832ac3 #xa58b7846 #x8641b180 #x22ee16b8)
+  (fftwf_codelet_n2bv_4_avx 0 #x11048 #x11048 #x0 #xb83c4b15 #x57878487 #xc5c2dcbf #xab3ef18e)
+  (fftwf_dft_vrank_geq1_register 0 #x11048 #x11048 #x0 #x98842cdb #xe66fad27 #x7b8400d9 #x81aea171)
+  (fftwf_codelet_t1bv_7_avx 0 #x11048 #x11048 #x0 #x0f430d26 #xc83d2ad9 #x73d80f72 #xe72b93ab)
+  (fftwf_codelet_t2bv_20_avx 0 #x11048 #x11048 #x0 #x8e292a89 #xb7544841 #x28be0a5f #x9e8b284c)
+  (fftwf_codelet_n2bv_20_avx 0 #x11048 #x11048 #x0 #x392985b4 #xf4275012 #xd0a70c00 #x40713784)
+  (fftwf_codelet_t2bv_32_avx 0 #x11048 #x11048 #x0 #xd0940e0e #xc72734f1 #xef0bbd22 #x620052fc)
+)
+)wisdom";
+
 }  // namespace pelagic

@@ -6,7 +6,6 @@
 // says what the disk is good for.
 
 #include <oneapi/tbb/info.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,16 +43,6 @@ Scene million_vertices(int frames) {
     scene.output.maps = {MapKind::Displacement, MapKind::Normal};
     scene.output.map_resolution = kN;
     return scene;
-}
-
-// Of this process, both user's and system's [s].
-double processor_s() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 // A way to spend time on all frames, which says how long they took, and the processor's time beside.

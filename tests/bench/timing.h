@@ -37,6 +37,16 @@ inline void interleave(std::vector<Timed>& timed, int repeats) {
         }
 }
 
+// Of this process, both user's and system's [s].
+inline double processor_s() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 inline const char* verdict(bool met) {
     return met ? "met" : "missed";
 }

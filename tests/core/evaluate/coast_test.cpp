@@ -196,8 +196,12 @@ TEST(Coast, OneTrainBreaksAtItsLimit) {
     while (breaks < rest.size() && (high[breaks] - low[breaks]) / depth_m(breaks) < 0.70) ++breaks;
     ASSERT_LT(breaks + 20, rest.size());
     EXPECT_GT(high[breaks] - low[breaks], 1.1 * height0_m);
-    for (std::size_t i = breaks + 10; i < rest.size() && depth_m(i) > 0.3; ++i)
+    double worst = 0.0;
+    for (std::size_t i = breaks + 10; i < rest.size() && depth_m(i) > 0.3; ++i) {
         EXPECT_NEAR((high[i] - low[i]) / depth_m(i), 0.78, 0.05) << depth_m(i);
+        worst = std::max(worst, std::abs((high[i] - low[i]) / depth_m(i) - 0.78));
+    }
+    RecordProperty("limit_off", std::to_string(worst));
 }
 
 // On the crests, and as much in the mean as the law of breaking says.

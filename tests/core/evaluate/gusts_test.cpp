@@ -517,6 +517,32 @@ TEST(GustFronts, ThatMoveAreRefusedInALoop) {
     EXPECT_EQ(sample(frame, 0, points).vectors(SlopeVariance), first.vectors(SlopeVariance));
 }
 
+// In a sea that stands still all frames are one moment: a front is at its middle in each, whatever its frame and speed.
+TEST(GustFronts, StandStillWithTheSea) {
+    Scene moving =
+        with_front({.frame = 40.0, .east_m = 30.0, .speed_mps = 100.0, .edge_m = 20.0, .wind = 4.0}, 80.0);
+    moving.shot.time_scale = 0.0;
+    moving.shot.time_offset_s = 1e6;
+    Scene still = moving;
+    still.sea.gust_fronts[0].speed_mps = 0.0;
+    const auto points = random_points<float>(200.0, 500);
+    const auto at = [&](const Scene& scene, int frame) {
+        return sample(frame_of<float>(scene, {filtered(kGusty, 2.0)}, scene.shot.time_s(frame)), 0, points);
+    };
+    const auto first = at(moving, 1), later = at(moving, 48), placed = at(still, 40),
+               plain = at(without_fronts(moving), 1);
+    for (const auto* other : {&later, &placed}) {
+        EXPECT_EQ(first.vectors(SlopeVariance), other->vectors(SlopeVariance));
+        EXPECT_EQ(first.numbers(Product::Breaking), other->numbers(Product::Breaking));
+    }
+    EXPECT_NE(first.vectors(SlopeVariance), plain.vectors(SlopeVariance));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_TRUE(std::isfinite(first.vectors(SlopeVariance)[i].x)) << i;
+        const float foam = first.numbers(Product::Breaking)[i];
+        EXPECT_TRUE(foam >= plain.numbers(Product::Breaking)[i] && foam <= 1.0f) << i;
+    }
+}
+
 // Shots without them keep their fingerprints.
 TEST(GustFronts, ArentSaidWhereThereAreNone) {
     const Scene scene = with_front({});

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,10 +54,17 @@ glm::dvec3 top(const Scene& scene, const HeroWave& hero) {
     return shown(scene, {hero.east_m, hero.north_m}, {{0.0, 0.0}}, time_of(scene, hero)).position_m.front();
 }
 
+// More where a bench asks for more.
+int seeds(int by_day) {
+    const char* asked = std::getenv("PELAGIC_SEEDS");
+    return asked ? std::atoi(asked) : by_day;
+}
+
 TEST(HeroWaves, StandWhereTheyAreAskedForInAnySea) {
+    double worst = 0.0;
     // Where tiles of both cascades blend.
     const HeroWave hero{.frame = 60.0, .east_m = 350.0, .north_m = -45.0, .height_m = 6.0};
-    for (int seed = 1; seed <= 12; ++seed) {
+    for (int seed = 1; seed <= seeds(12); ++seed) {
         Scene scene = sea_with({hero}, seed);
         if (seed % 4 == 1) scene.waves.tiling = Tiling::Periodic;
         if (seed % 4 == 2) scene.waves.lean_deg = 0.0;
@@ -70,7 +79,10 @@ TEST(HeroWaves, StandWhereTheyAreAskedForInAnySea) {
         EXPECT_NEAR(found.z, hero.height_m, 0.015 * hero.height_m) << seed;
         EXPECT_NEAR(found.x, 0.0, 0.1) << seed;
         EXPECT_NEAR(found.y, 0.0, 0.1) << seed;
+        worst = std::max(worst, std::abs(found.z / hero.height_m - 1.0));
     }
+    RecordProperty("seeds", seeds(12));
+    RecordProperty("height_off", std::to_string(worst));
 }
 
 // It is a crest: no point near it is higher, neither there nor then, but for ripples that ride on it.
@@ -120,6 +132,7 @@ TEST(HeroWaves, HaveTheShapeOfTheSeasCorrelation) {
                 worst_m = std::max(worst_m, std::abs(hero_shape(trains, {x_m, y_m}, t_s).height_m -
                                                      expected({x_m, y_m}, t_s)));
     EXPECT_LT(worst_m, 0.05 * hero.height_m);
+    RecordProperty("shape_off", std::to_string(worst_m / hero.height_m));
 }
 
 // A mesh alone and with finer maps beside it, a picture and foam's past have plans of their own.

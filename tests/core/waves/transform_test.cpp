@@ -19,7 +19,9 @@ namespace {
 
 // Rounding of log2(N) stages: half a unit in the last place each, of sums that grow as √N.
 template <class T>
-void expect_the_sum(int n) {
+using Parts = typename LineTransform<T>::Parts;
+template <class T>
+void expect_the_sum(int n, Parts<T> parts = Parts<T>::Apart) {
     const std::size_t stride = line_stride<T>(n);
     Buffer<T> from(2 * stride), to(2 * stride);
     for (int m = 0; m < n; ++m) {
@@ -27,7 +29,7 @@ void expect_the_sum(int n) {
         from[m] = static_cast<T>(z[0]);
         from[stride + m] = static_cast<T>(z[1]);
     }
-    LineTransform<T>(n).execute(from.data(), to.data());
+    LineTransform<T>(n, parts).execute(from.data(), to.data());
     const double tolerance = 4.0 * std::numeric_limits<T>::epsilon() * std::sqrt(n) * (1.0 + std::log2(n));
     for (int j = 0; j < n; j += 1 + n / 16) {
         std::complex<double> sum = 0.0;
@@ -44,11 +46,16 @@ TEST(LineTransform, IsTheSumWithAPositiveExponent) {
         expect_the_sum<float>(n);
         expect_the_sum<double>(n);
     }
+    for (int n : {2, 7, 30, 480, 512}) {
+        expect_the_sum<float>(n, Parts<float>::Paired);
+        expect_the_sum<double>(n, Parts<double>::Paired);
+    }
 }
 
 // A different build of FFTW may reject the recorded plans. Then this fails, and only speed is lost.
 TEST(LineTransform, RecordedPlansAreThoseOfThisFftw) {
     EXPECT_EQ(fftwf_import_wisdom_from_string(kSingleLineWisdom), 1);
+    EXPECT_EQ(fftwf_import_wisdom_from_string(kPairedLineWisdom), 1);
 }
 
 // So that a comparison changes nobody's bits.

@@ -4,7 +4,7 @@
     farm.py BUILD [--kills N] [--arrays N]
 
 N: how many kills of tasks that share a folder (default 100) and arrays on a Slurm of this machine with tasks killed and a node down
-(default 1; skipped where it can't be started). Frames are written to /dev/shm, where that is: a disk's time isn't asked about.
+(default 1; skipped where it can't be started); 0 leaves their row out. Frames are written to /dev/shm, where that is: a disk's time isn't asked about.
 """
 
 import argparse
@@ -164,8 +164,10 @@ def main():
         long_record(pelagic, Path(folder))
         shared_out(pelagic, Path(folder))
         library(build, Path(folder))
-    kills(pelagic, options.kills)
-    arrays(pelagic, options.arrays)
+    if options.kills:
+        kills(pelagic, options.kills)
+    if options.arrays:
+        arrays(pelagic, options.arrays)
 
 
 if __name__ == "__main__":

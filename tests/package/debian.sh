@@ -25,7 +25,7 @@ in_root() {
     "${as_root[@]}" unshare --mount bash -euc '
         mount -t proc proc "$1/proc"
         mount --rbind /dev "$1/dev"
-        exec chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive \
+        exec chroot "$1" env -i HOME=/root PATH=/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive \
             bash -euxc "cd /given; source ./script"' debian.sh "$clean/$1"
 }
 

@@ -51,10 +51,10 @@ def licence_of(library):
 
 
 def stripped(file):
-    """The contents of a binary without what only debuggers need, for older systems too."""
+    """The contents of a binary without what only debuggers need."""
     with tempfile.NamedTemporaryFile() as out:
         subprocess.run(["strip", "--strip-unneeded", "-o", out.name, file.resolve()], check=True)
-        return for_older_systems(Path(out.name).read_bytes())
+        return Path(out.name).read_bytes()
 
 
 # Versions of the C library and of the C++ runtime that a binary asks for by one function, which has been there for long under an
@@ -120,10 +120,10 @@ def contents(binaries):
             owner, licence = licence_of(binary)
             files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
             continue
-        files[f"{FOLDER}/lib/{binary.name}"] = stripped(binary)
+        files[f"{FOLDER}/lib/{binary.name}"] = for_older_systems(stripped(binary))
         needed |= shared_libraries(binary)
     for name, path in needed.items():
-        files[f"{FOLDER}/lib/{name}"] = stripped(path)
+        files[f"{FOLDER}/lib/{name}"] = for_older_systems(stripped(path))
         owner, licence = licence_of(path)
         files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
     return files

@@ -46,7 +46,7 @@ part each-source 45 each_source
 for share in 1 2 3 4; do part "sanitize-$share" 75 "$here/run.sh sanitize --share $share/4"; done
 for share in 1 2; do part "tsan-$share" 75 "$here/run.sh tsan --share $share/2"; done
 for suite in trixie sid; do part "blender-$suite" 60 "$here/addon/in_debian.sh $suite"; done
-part packages 30 "$here/package/debian.sh"
+part packages 45 "$here/package/debian.sh"
 part older-cpus 30 "$here/farm/older_cpus.sh"
 part benches 10 benches
 part rays 30 rays

@@ -157,6 +157,15 @@ def program():
     return shutil.which("pelagic")
 
 
+def other_version():
+    """A sentence where the program is of another version than the add-on; None: it is of the same."""
+    said = subprocess.run([program(), "--version"], capture_output=True, text=True, encoding="utf-8", errors="replace").stdout
+    theirs, ours = said.partition("\n")[0].strip(), "pelagic {}.{}.{}".format(*module.VERSION)
+    if theirs == ours:
+        return None
+    return f"{program()} is {theirs or 'of no known version'}, and the add-on is of {ours}: the farm's frames may differ from those here"
+
+
 def write_job(scene, out):
     """The shot and copies of the files that it names, in `out`/farm, where a bake's check looks at nothing. Returns the shot's file."""
     folder = out / JOB
@@ -204,6 +213,8 @@ class PELAGIC_OT_write_job(NeedsOcean, bpy.types.Operator):
             self.report({"WARNING"}, f"The shot is written. Where the command line's program is, go on with: {shlex.join(line)}")
             return {"FINISHED"}
         try:
+            if (sentence := other_version()):
+                self.report({"WARNING"}, sentence)
             ended = subprocess.run([program(), *line[1:]], capture_output=True, text=True, encoding="utf-8", errors="replace")
         except OSError as error:
             self.report({"ERROR"}, str(error))

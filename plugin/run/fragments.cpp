@@ -82,9 +82,8 @@ Frames read_fragments(const fs::path& record, std::vector<Fragment> fragments, R
                       const std::atomic<bool>* cancel) {
     Frames frames;
     if (fragments.empty()) return frames;
-    std::set<int> ignored;
     const std::string version = read_frames(
-                                    record, {}, [](int, const FrameRecord&) {}, ignored, cancel)
+                                    record, {}, [](int, const FrameRecord&) {}, nullptr, cancel)
                                     .version;
     for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
     std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
@@ -172,7 +171,7 @@ RecordsReading read_some(const fs::path& record, std::span<const int> frames,
     Frames theirs = read_fragments(record, std::move(wanted), found, cancel);
     Frames read;
     static_cast<RecordReading&>(found) = read_frames(
-        record, frames, [&](int number, FrameRecord frame) { read[number] = std::move(frame); }, numbers,
+        record, frames, [&](int number, FrameRecord frame) { read[number] = std::move(frame); }, &numbers,
         cancel);
     for (auto& [number, frame] : theirs) add(read, number, std::move(frame));
     for (auto& [number, frame] : read) take(number, std::move(frame));

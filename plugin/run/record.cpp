@@ -324,44 +324,56 @@ bool is_read_in_part(const std::filesystem::path& file, std::span<const int> fra
 }
 
 RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
-                          const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
+                          const std::function<void(int, FrameRecord)>& take, std::set<int>* numbers,
                           const std::atomic<bool>* cancel) {
     // As write() lays a record out: entries are what begins and ends with four spaces.
-    constexpr std::string_view kFrames = ",\n  \"frames\": {", kBegin = "\n    \"", kEnd = "\n    }";
+    constexpr std::string_view kFrames = ",\n  \"frames\": {", kBegin = "\n    \"", kEnd = "\n    }",
+                               kLast = "\n  }\n}\n";
     const auto whole = [&] {
         return read_record(
             file,
             [&](int number, FrameRecord frame) {
-                if (!frame.is_stale) numbers.insert(number);
+                if (numbers && !frame.is_stale) numbers->insert(number);
                 take(number, std::move(frame));
             },
             cancel);
     };
     constexpr std::uintmax_t kLargest = std::uintmax_t{1}
                                         << 30;  // [bytes] 1e5 frames: anything may be in its place
-    if (!is_read_in_part(file, frames) || files::file_size(file).value_or(0) > kLargest ||
-        !files::carries(file, "{\n  \"pelagic\": "))
+    const std::uintmax_t size = files::file_size(file).value_or(0);
+    if (!is_read_in_part(file, frames) || size > kLargest || !files::carries(file, "{\n  \"pelagic\": "))
         return whole();
+    // Where no frame is asked about, what stands before them, and the end.
+    const bool asks_for_frames = numbers || !frames.empty();
+    files::FileReader reader(file);
+    const std::size_t step = asks_for_frames ? size : kSmallRecord;
     std::string bytes;
-    const std::string problem = files::read_pieces(file, [&](std::string_view piece) {
-        stop_if(cancel);
-        bytes += piece;
-    });
+    for (std::size_t got = step; got == step && bytes.find(kFrames) == std::string::npos;) {
+        const std::size_t before = bytes.size();
+        bytes.resize(before + step);
+        got = reader.read(std::span(bytes).subspan(before));
+        bytes.resize(before + got);
+    }
+    std::string ending(kLast.size(), '\0');
+    reader.seek(size - ending.size());
+    ending.resize(reader.read(ending));
+    stop_if(cancel);
     const std::string_view text = bytes;
     const std::size_t begin = text.find(kFrames);
-    if (!problem.empty() || begin == std::string_view::npos || !text.ends_with("\n  }\n}\n")) return whole();
+    if (!reader.problem().empty() || begin == std::string_view::npos || ending != kLast) return whole();
     RecordReading reading;
     const auto parsed = [](std::string part) { return Json::parse(part, nullptr, false); };
     take_shot(parsed(std::string(text.substr(0, begin)) + '}'), reading);
     if (!reading.shot) return whole();
+    if (!asks_for_frames) return reading;
     for (std::size_t at = text.find(kBegin, begin); at != std::string_view::npos;) {
         const std::size_t key = at + kBegin.size(), next = text.find(kBegin, key);
         int number = 0;
         const auto [end, error] = std::from_chars(text.data() + key, text.data() + text.size(), number);
         const auto after = static_cast<std::size_t>(end - text.data());
         if (error != std::errc() || !text.substr(after).starts_with("\": {")) return whole();
-        if (text.substr(after, next - after).find("\"stale\": true") == std::string_view::npos)
-            numbers.insert(numbers.end(), number);
+        if (numbers && text.substr(after, next - after).find("\"stale\": true") == std::string_view::npos)
+            numbers->insert(numbers->end(), number);
         if (std::binary_search(frames.begin(), frames.end(), number)) {
             const std::size_t last = text.find(kEnd, after);
             const Json entry = parsed(std::string(
@@ -474,9 +486,8 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
     unlocked_ = lock.problem();
     // With a lock that holds, once.
     for (bool is_done = false; !is_done;) {
-        std::set<int> ignored;
         const RecordReading there = read_frames(
-            file, {}, [](int, const FrameRecord&) {}, ignored);
+            file, {}, [](int, const FrameRecord&) {}, nullptr);
         refuse_other_choice(there, file);
         if (write_static) write_static();
         std::map<std::string, Json> files_there, files;
@@ -530,8 +541,13 @@ void Record::take_in(const std::filesystem::path& file, const files::LockWatch& 
         const bool is_small = is_alone(file) && files::file_size(file).value_or(0) < kSmallRecord;
         if (!is_small) {
             if (!unsaved_.empty()) save(file);
-            if (is_in_record(file)) return drop_fragment();
-            if (!may_be_whole(file)) return;
+            // Fragments first: what is taken in meanwhile counts twice, and not never.
+            auto frames = std::int64_t{0};
+            for (const Fragment& fragment : fragments_of(file)) frames += fragment.frames;
+            std::set<int> numbers;
+            if (is_in_record(file, numbers)) return drop_fragment();
+            frames += static_cast<std::int64_t>(numbers.size());
+            if (frames <= std::int64_t{last_frame_} - first_frame_) return;
         }
         const files::FolderLock lock(file.parent_path(), waiting);
         if (!is_small && write_static) write_static();
@@ -574,31 +590,24 @@ bool Record::is_alone(const std::filesystem::path& file) const {
 }
 
 // As where files were lost, and made again.
-bool Record::is_in_record(const std::filesystem::path& file) const {
+bool Record::is_in_record(const std::filesystem::path& file, std::set<int>& numbers_there) const {
     std::map<int, FrameRecord> ours;
     std::vector<int> numbers;
-    std::set<int> ignored;
     if (!fragment_.empty())
         read_record(fragment_, [&](int number, FrameRecord frame) {
             numbers.push_back(number);
             ours[number] = std::move(frame);
         });
-    if (ours.empty() || !is_read_in_part(file, numbers)) return false;
+    const bool are_few = is_read_in_part(file, numbers);
     std::size_t found = 0;
     read_frames(
-        file, numbers,
-        [&](int number, const FrameRecord& frame) { found += to_json(ours.at(number)) == to_json(frame); },
-        ignored);
-    return found == ours.size();
-}
-
-bool Record::may_be_whole(const std::filesystem::path& file) const {
-    std::set<int> numbers;
-    read_frames(
-        file, {}, [](int, const FrameRecord&) {}, numbers);
-    auto frames = static_cast<std::int64_t>(numbers.size());
-    for (const Fragment& fragment : fragments_of(file)) frames += fragment.frames;
-    return frames > std::int64_t{last_frame_} - first_frame_;
+        file, are_few ? std::span<const int>(numbers) : std::span<const int>(),
+        [&](int number, const FrameRecord& frame) {
+            if (const auto own = ours.find(number); own != ours.end())
+                found += to_json(own->second) == to_json(frame);
+        },
+        &numbers_there);
+    return are_few && !ours.empty() && found == ours.size();
 }
 
 void Record::drop_fragment() {

@@ -93,10 +93,10 @@ inline constexpr std::size_t kFewFrames = 16;
 // Whether these frames are few and the record isn't small: then read_frames() parses no other.
 bool is_read_in_part(const std::filesystem::path& file, std::span<const int> frames);
 
-// The same of these frames, rising, and the numbers of all that have an entry and aren't stale. In part, other entries aren't looked at for what was
-// altered; else all of them are handed over.
+// The same of these frames, rising, and the numbers of all that have an entry and aren't stale; null: nobody asks for them. In part, other entries
+// aren't looked at for what was altered; else all of them are handed over.
 RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
-                          const std::function<void(int, FrameRecord)>& take, std::set<int>& numbers,
+                          const std::function<void(int, FrameRecord)>& take, std::set<int>* numbers,
                           const std::atomic<bool>* cancel = nullptr);
 
 // Another run into the folder has chosen other settings since this one looked: the same command again takes those.
@@ -172,8 +172,8 @@ class Record {
     void take_in(const std::filesystem::path& file, const files::LockWatch& waiting,
                  const std::function<void()>& write_static);
     bool is_alone(const std::filesystem::path& file) const;
-    bool is_in_record(const std::filesystem::path& file) const;
-    bool may_be_whole(const std::filesystem::path& file) const;
+    // Whether all that is in the fragment is there as well; and the numbers of the record's frames.
+    bool is_in_record(const std::filesystem::path& file, std::set<int>& numbers_there) const;
     void drop_fragment();
 
     nlohmann::ordered_json shot_;

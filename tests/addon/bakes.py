@@ -18,7 +18,7 @@ from harness import *  # noqa: F403
 enable()
 import pelagic
 
-from pelagic_ocean import baked, ocean, play
+from pelagic_ocean import baked, farm, module, ocean, play
 
 program = sys.argv[-1]
 folder = Path(tempfile.mkdtemp())
@@ -268,6 +268,14 @@ with checking("a job for the farm leaves what a bake leaves, with copies of the 
         assert [file.name for file in sorted(job.rglob("*")) if file.is_file()] == ["a square.obj", "our_sea.toml"]
         os.environ["PATH"] = f"{Path(program).parent}:{path}"
         assert bpy.ops.pelagic.write_job() == {"FINISHED"}
+        assert farm.other_version() is None
+        other = folder / "other"
+        other.mkdir()
+        (other / "pelagic").write_text("#!/bin/sh\necho pelagic 0.0.9\n", encoding="utf-8")
+        (other / "pelagic").chmod(0o755)
+        os.environ["PATH"] = f"{other}:{path}"
+        assert f"is pelagic 0.0.9, and the add-on is of pelagic {'.'.join(map(str, module.VERSION))}" in farm.other_version(), farm.other_version()
+        os.environ["PATH"] = f"{Path(program).parent}:{path}"
         square.unlink()
         tasks = json.loads((job / "farm" / "our_sea.bake.json").read_text())["tasks"]
         for task in tasks:

@@ -1,8 +1,13 @@
 #!/usr/bin/python3
 """Bakes and renders that are stopped, killed and put to sleep at random moments, several times over one folder: what has
-a name of its own is whole, and the next run leaves what an undisturbed one leaves, byte for byte."""
+a name of its own is whole, and the next run leaves what an undisturbed one leaves, byte for byte.
 
+With --kills a case is a farm's folder: up to three tasks at a time, each of some of the frames, and each ended by SIGKILL."""
+
+import concurrent.futures
 import json
+import re
+import shutil
 import signal
 import subprocess
 import time
@@ -90,6 +95,7 @@ def disturb(campaign, draw, arguments, whole_s):
             break
         name = draw.choice((*STOPS, "SIGKILL", "SIGKILL", "SIGSTOP"))
         process.send_signal(getattr(signal, name))
+        campaign.count("kills" if name == "SIGKILL" else "other signals")
         sent.append(name)
         story.append(f"{name} after {time.monotonic() - start:.3f} s")
         if name == "SIGSTOP":
@@ -121,8 +127,42 @@ def disturb(campaign, draw, arguments, whole_s):
     return story
 
 
+def kill(campaign, draw, arguments, whole_s):
+    """One task, ended by SIGKILL. Says how it went, and whether it was done before."""
+    process = subprocess.Popen([campaign.program, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    try:
+        _, err = process.communicate(timeout=draw.uniform(0.0, whole_s))
+    except subprocess.TimeoutExpired:
+        process.kill()
+        _, err = process.communicate()
+    status = process.returncode
+    story = f"{' '.join(map(str, arguments))}: status {status}\n{err.decode()[-1500:]}"
+    campaign.expect(status in (0, -signal.SIGKILL), f"it ended by itself\n{story}")
+    campaign.count("tasks done before" if status == 0 else "kills")
+    return story, status == 0
+
+
+def kill_tasks(campaign, draw, commands, wholes, whole_s, out):
+    """Tasks that share the folder are killed, until there were options.kills; what they leave is looked at each time."""
+    kills = 0
+    while kills < campaign.options.kills:
+        command, last = draw.choice(commands)
+        tasks = [[*command, "--threads", str(draw.randint(1, 2)), "--frames", f"{(first := draw.randint(1, last))}-{draw.randint(first, last)}"]
+                 for _ in range(draw.randint(1, 3))]
+        with concurrent.futures.ThreadPoolExecutor(3) as pool:
+            ends = list(pool.map(lambda task: kill(campaign, draw, task, whole_s), tasks))
+        kills += sum(not done for _, done in ends)
+        if out.exists():
+            check_whole(campaign, out, wholes, "\n".join(story for story, _ in ends))
+            if all(done for _, done in ends):
+                shutil.rmtree(out)  # nothing is left to do: begin again
+
+
 def main():
-    campaign = Campaign(__doc__, 600)
+    def options(parser):
+        parser.add_argument("--kills", type=int, help="tasks that share a folder, and so many kills a case")
+
+    campaign = Campaign(__doc__, 600, options)
 
     def judge(draw, folder):
         verb = draw.choice(("bake", "bake", "render"))
@@ -139,7 +179,10 @@ def main():
             whole_s = max(whole_s, run.seconds)
             wholes.append({name: path.read_bytes() for name, path in files_below(whole).items()})
             commands.append([verb, folder / f"{number}.toml", "--out", folder / "out"])
-        for _ in range(draw.randint(1, 4)):
+        if campaign.options.kills:
+            lasts = [int(re.search(r"frames = \[1, (\d+)\]", text)[1]) for text in shots]
+            kill_tasks(campaign, draw, list(zip(commands, lasts)), wholes, whole_s, folder / "out")
+        for _ in range(0 if campaign.options.kills else draw.randint(1, 4)):
             command = [*draw.choice(commands), "--threads", str(draw.randint(1, 4))]
             story = disturb(campaign, draw, command, whole_s)
             if (folder / "out").exists():

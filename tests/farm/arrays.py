@@ -36,7 +36,7 @@ map_resolution = {texels}
 
 
 def pelagic(*arguments, statuses=(0,)):
-    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=600)
     assert done.returncode in statuses, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout
 
@@ -77,7 +77,7 @@ def short_array(cluster, folder):
     array, last = submit(shot, out, 4)
     dependency = cluster("squeue", "-h", "-j", last, "-o", "%E")
     assert f"afterany:{array}" in dependency, f"the check waits for {dependency!r}"
-    cluster.wait(60)
+    cluster.wait(180)
     assert status_of(out)["whole"] == "1-8", logs_in(out)
     assert "all whole" in (out / "farm/small.bake.verify.log").read_text(), logs_in(out)
     assert len(list((out / "farm").glob("small.bake.*-*.log"))) == 4, "a log a task, by its frames"
@@ -116,20 +116,20 @@ def bad_night(cluster, folder):
     subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size * (frames - 4) // frames}", "tmpfs", out], check=True)
     first, _ = submit(shot, out, tasks)
     submit(shot, out, tasks)  # the same again, beside it
-    until(lambda: len(programs_of(out)) > 1, 60, "task at work", out)
+    until(lambda: len(programs_of(out)) > 1, 180, "task at work", out)
     os.kill(programs_of(out)[0], signal.SIGKILL)
     cluster.stop("slurmctld")  # killed, it would forget jobs of the last seconds: that is Slurm's
     cluster.start_controller()
-    until(lambda: "RUNNING" in cluster("squeue", "-h", "-r", "-o", "%T", check=False), 60, "task that runs again", out)
+    until(lambda: "RUNNING" in cluster("squeue", "-h", "-r", "-o", "%T", check=False), 180, "task that runs again", out)
     number = cluster("squeue", "-h", "-r", "-t", "RUNNING", "-o", "%F_%K").split()[0]
     cluster("scontrol", "requeue", number, check=False)  # it may have ended just now
     cluster("scontrol", "update", "NodeName=node4", "State=DOWN", "Reason=test")
-    until(lambda: "no space left on the device" in logs_in(out), 240, "full disk", out)
+    until(lambda: "no space left on the device" in logs_in(out), 600, "full disk", out)
     found = status_of(out)
     assert found["running"] or found["failed"], f"{found}\n{logs_in(out)}"
     subprocess.run(["mount", "-o", f"remount,size={4 * size}", out], check=True)
     cluster("scontrol", "update", "NodeName=node4", "State=RESUME", check=False)  # it may have come back by itself
-    cluster.wait(300)
+    cluster.wait(900)
     found = status_of(out)
     assert found["whole"] == f"1-{frames}", f"{found}\n{logs_in(out)}"
     assert (out / "farm/small.bake.verify.log").read_text().rstrip().endswith("all whole"), logs_in(out)

@@ -25,6 +25,7 @@
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
 #include "plugin/host/cli/json_output.h"
+#include "plugin/host/cli/own_program.h"
 #include "plugin/host/cli/render_order.h"
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
@@ -320,7 +321,7 @@ int run(FarmArguments arguments) {
             }
             const fs::path folder = out / "farm", array = folder / (name + ".sh"),
                            last = folder / (name + ".verify.sh");
-            const fs::path program = fs::read_symlink("/proc/self/exe");
+            const fs::path program = own_program();
             files::ensure_folder(folder);
             const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
                                  std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;

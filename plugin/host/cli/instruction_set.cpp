@@ -12,6 +12,7 @@
 #include "core/base/instruction_set.h"
 #include "core/scene/text.h"
 #include "plugin/host/cli/guarded_run.h"
+#include "plugin/host/cli/own_program.h"
 
 namespace pelagic::cli {
 namespace {
@@ -74,9 +75,10 @@ void restart_for_instruction_set([[maybe_unused]] int argc, [[maybe_unused]] con
     if (tunables.ends_with(kWithout)) return;
     if (!tunables.empty()) tunables += ':';
     tunables += kWithout;
+    const std::string program = own_program().string();
     if (setenv("GLIBC_TUNABLES", tunables.c_str(), 1) == 0)
-        execv("/proc/self/exe", const_cast<char* const*>(argv));
-    throw WrongUsage("--instruction-set sse4: the program can't be started anew (/proc/self/exe: " +
+        execv(program.c_str(), const_cast<char* const*>(argv));
+    throw WrongUsage("--instruction-set sse4: the program can't be started anew (" + program + ": " +
                      std::generic_category().message(errno) + ")");
 #endif
 }

@@ -273,6 +273,16 @@ TEST_F(Fragments, OfALongRecordWaitUntilItIsWhole) {
     one_frame(kFrames - 1);  // the last one
     EXPECT_EQ(text(), expected);
     EXPECT_FALSE(fs::exists(folder_ / "record"));
+
+    // Where nobody asks for frames, none is read; a record whose end is missing is damaged all the same.
+    const RecordReading head = read_frames(
+        record(), {}, [](int, const FrameRecord&) { ADD_FAILURE(); }, nullptr);
+    EXPECT_EQ(head.version, read_record(record(), [](int, const FrameRecord&) {}).version);
+    EXPECT_TRUE(head.problem.empty() && head.shot) << head.problem;
+    fs::resize_file(record(), fs::file_size(record()) - 1);
+    EXPECT_FALSE(read_frames(
+                     record(), {}, [](int, const FrameRecord&) {}, nullptr)
+                     .problem.empty());
 }
 
 }  // namespace

@@ -42,12 +42,13 @@ def is_under_its_name(path):
 
 
 def judge(draw, folder):
-    if draw.case < len(STACK_CASES):
-        what, kib = STACK_CASES[draw.case]
+    case = draw.case % (len(STACK_CASES) + len(SPACE_CASES))
+    if case < len(STACK_CASES):
+        what, kib = STACK_CASES[case]
         run = campaign.run(*arguments_of(what, folder), limits={resource.RLIMIT_STACK: kib << 10}, timeout=120)
         campaign.ended_well(run, (0, 75))
         return
-    number = draw.case - len(STACK_CASES)
+    number = case - len(STACK_CASES)
     what, space, size_mb, time = SPACE_CASES[number]
     # The last time past the check of memory, so that it runs out in the middle of the work.
     unchecked = ["--max-memory", "8G"] if time == TIMES - 1 else []

@@ -67,7 +67,7 @@ part rays 5 rays
 part random-scenes 5 random_scenes
 part fuzz 9 "$here/fuzz/run.sh 60"
 # The campaigns: name, cases.
-campaigns="arguments 1500 arrays 40 damage 120 edits 120 limits 280 memory 12 mutations 800 poses 60 signals 80"
+campaigns="arguments 1500 arrays 150 damage 120 edits 120 limits 280 memory 12 mutations 800 poses 100 signals 80"
 read -ra cases <<<"$campaigns"
 for ((i = 0; i < ${#cases[@]}; i += 2)); do part "campaign-${cases[i]}" 3 "campaign ${cases[i]} ${cases[i + 1]}"; done
 

@@ -40,7 +40,8 @@ rays() {
 }
 random_scenes() {
     install_packages && build release test_random_scenes &&
-        PELAGIC_SEED=$((seed * 600)) PELAGIC_SCENES=600 "$PELAGIC_ROOT/build/release/tests/test_random_scenes"
+        PELAGIC_SEED=$((seed * 400)) PELAGIC_SCENES=400 ctest --test-dir "$PELAGIC_ROOT/build/release/tests/random" \
+            --tests-regex '^Batch/' --parallel 2 --no-tests=error --output-on-failure
 }
 # campaign NAME COUNT [OPTION…]: so many cases, from where the night before ended.
 campaign() {

@@ -49,7 +49,7 @@ campaign() {
         "$here/campaigns/run.sh" "$1" -- --first "$((seed * $2))" --count "$2" "${@:3}"
 }
 
-# The parts: name, minutes on two quiet cores where all is compiled, command.
+# The parts: name, minutes on two quiet cores where ccache has all, command.
 names=() commands=()
 declare -A minutes
 part() {
@@ -70,7 +70,7 @@ part fuzz 9 "$here/fuzz/run.sh 60"
 # The campaigns: name, cases.
 campaigns="arguments 1500 arrays 150 damage 120 edits 120 limits 280 memory 12 mutations 800 poses 100 signals 80"
 read -ra cases <<<"$campaigns"
-for ((i = 0; i < ${#cases[@]}; i += 2)); do part "campaign-${cases[i]}" 3 "campaign ${cases[i]} ${cases[i + 1]}"; done
+for ((i = 0; i < ${#cases[@]}; i += 2)); do part "campaign-${cases[i]}" 2 "campaign ${cases[i]} ${cases[i + 1]}"; done
 
 seed="" results=$PELAGIC_ROOT/build/nightly chosen=()
 while [ $# -gt 0 ]; do

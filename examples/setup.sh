@@ -72,3 +72,14 @@ build() {
             -DPELAGIC_PYTHON_HEADERS="$(find "$PELAGIC_PYTHONS" -mindepth 1 -maxdepth 1 2>/dev/null | sort | paste -sd ';')" &&
         cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}")
 }
+
+# in_memory: what this shell's programs write for a while lies in memory, where there is room and programs may lie there: bakes wait
+# for the disk at each file.
+in_memory() {
+    [ "$(df --output=avail --block-size=1M /dev/shm 2>/dev/null | tail -n 1)" -ge 4096 ] 2>/dev/null || return 0
+    local memory
+    memory=$(mktemp -d /dev/shm/pelagic-tests.XXXXXX)
+    # shellcheck disable=SC2064
+    trap "rm -rf '$memory'" EXIT
+    if cp /bin/true "$memory/true" && "$memory/true"; then export TMPDIR=$memory; fi
+}

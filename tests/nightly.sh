@@ -1,69 +1,84 @@
 #!/usr/bin/env bash
-# What is too long for each change: every test in release and under the sanitizers, six million rays, ten thousand random scenes,
-# an hour of fuzzing, and the campaigns in full, in parts. A night begins parts while they fit its time, and the next one goes on
-# where it stopped, also on another commit, until each part has a result; then a new round begins.
-#   tests/nightly.sh [--minutes M] [--results DIR] [PART…]
+# What is too long for each change, in one night: two hours of two cores, an hour more where nothing has been compiled before.
+#   tests/nightly.sh [--seed N] [--results DIR] [PART…]
 #   tests/nightly.sh --list
-# M: of a night, default 150. DIR: where results and each part's output are kept, default build/nightly. PART: only these, again
-# where they have a result. Ends with a line for each part; the exit status is 0 if none of those that have run has failed.
+# Each night asks another share of the tests, other rays, scenes and cases of the campaigns: N says which, default the number of the
+# day; with it a night begins anew. One that was stopped goes on where it was, with its N, also on another commit.
+# DIR: where results and each part's output are kept, default build/nightly. PART: only these, again where they have a result. Ends
+# with a line for each part; the exit status is 0 if none of those that have run has failed.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-usage() { sed -n '2,8s/^# //p' "$0"; }
+usage() { sed -n '2,9s/^# //p' "$0"; }
 # shellcheck source=../examples/setup.sh
 source "$here/../examples/setup.sh"
 
-# rays, random_scenes: longer than ctest runs them.
+# share N: this night's of N, as run.sh takes it.
+share() { echo "$((seed % $1 + 1))/$1"; }
+at_night() { "$here/run.sh" release --label nightly --share "$(share 3)"; }
+openusd() { "$here/run.sh" release --label openusd; }
+# What a unity build would hide: a file that doesn't include what it needs, or that has another's template. Compiled, not run.
+each_source() { install_packages && build each-source all benches; }
+# Half of the short tests, and some of the others. The campaigns' program as well: what damaged files do to memory is seen there.
+sanitize() {
+    local failed=0
+    "$here/run.sh" sanitize --label unit --share "$(share 2)" || failed=1
+    "$here/run.sh" sanitize --label slow --share "$(share 8)" || failed=1
+    "$here/run.sh" sanitize --label gl --share "$(share 8)" || failed=1
+    campaign mutations 100 --program "$PELAGIC_ROOT/build/sanitize/pelagic" || failed=1
+    return $failed
+}
+tsan() { "$here/run.sh" tsan --share "$(share 2)"; }
+# The next Debian's Blender and the newest in turn, a third of the scripts each.
+blender() {
+    local suites=(trixie sid)
+    "$here/addon/in_debian.sh" "${suites[seed % 2]}" --tests-information "$((seed / 2 % 3 + 1)),,3"
+}
+# rays, random_scenes: others than ctest runs.
 rays() {
     install_packages && build release test_procedural_rays &&
-        PELAGIC_RAYS=6000000 "$PELAGIC_ROOT/build/release/tests/test_procedural_rays"
+        PELAGIC_SEED=$seed PELAGIC_RAYS=1000000 "$PELAGIC_ROOT/build/release/tests/test_procedural_rays"
 }
 random_scenes() {
     install_packages && build release test_random_scenes &&
-        PELAGIC_SCENES=10000 "$PELAGIC_ROOT/build/release/tests/test_random_scenes"
+        PELAGIC_SEED=$((seed * 400)) PELAGIC_SCENES=400 ctest --test-dir "$PELAGIC_ROOT/build/release/tests/random" \
+            --tests-regex '^Batch/' --parallel 2 --no-tests=error --output-on-failure
 }
-at_night() { "$here/run.sh" release --label nightly && "$here/run.sh" release --label openusd; }
-# What a unity build would hide: a file that doesn't include what it needs, or that gets another's function of the same name.
-each_source() {
-    install_packages && build each-source && ctest --test-dir "$PELAGIC_ROOT/build/each-source" --label-regex '^unit$' --parallel "$(nproc)"
-}
-benches() {
-    install_packages && build release benches
-}
+# campaign NAME COUNT [OPTION…]: so many cases, from where the night before ended.
 campaign() {
-    install_packages && build release pelagic pelagic_python && "$here/campaigns/run.sh" "$1"
+    install_packages && build release pelagic pelagic_python &&
+        "$here/campaigns/run.sh" "$1" -- --first "$((seed * $2))" --count "$2" "${@:3}"
 }
 
-# The parts: name, minutes that it takes at most on two quiet cores, command.
+# The parts: name, minutes on two quiet cores where ccache has all, command.
 names=() commands=()
 declare -A minutes
 part() {
     names+=("$1") commands+=("$3")
     minutes[$1]=$2
 }
-part release 60 "$here/run.sh release"
-part at-night 60 at_night
-part each-source 45 each_source
-for share in 1 2 3 4; do part "sanitize-$share" 75 "$here/run.sh sanitize --share $share/4"; done
-for share in 1 2; do part "tsan-$share" 75 "$here/run.sh tsan --share $share/2"; done
-for suite in trixie sid; do part "blender-$suite" 60 "$here/addon/in_debian.sh $suite"; done
-part packages 45 "$here/package/debian.sh"
-part older-cpus 30 "$here/farm/older_cpus.sh"
-part benches 10 benches
-part rays 30 rays
-part random-scenes 75 random_scenes
-for target in "$here"/fuzz/*_fuzz.cpp; do
-    name=$(basename "$target" _fuzz.cpp)
-    part "fuzz-$name" 15 "$here/fuzz/run.sh 500 $name"
-done
-for script in "$here"/campaigns/*.py; do
-    name=$(basename "$script" .py)
-    [[ $name = common* ]] || part "campaign-$name" 60 "campaign $name"
-done
+part at-night 15 at_night
+part openusd 5 openusd
+part each-source 3 each_source
+part sanitize 25 sanitize
+part tsan 15 tsan
+part blender 15 blender
+part packages 25 "$here/package/debian.sh"
+part older-cpus 5 "$here/farm/older_cpus.sh"
+part rays 5 rays
+part random-scenes 5 random_scenes
+part fuzz 9 "$here/fuzz/run.sh 60"
+# The campaigns: name, cases.
+campaigns="arguments 1500 arrays 150 damage 120 edits 120 limits 280 memory 12 mutations 800 poses 100 signals 80"
+read -ra cases <<<"$campaigns"
+for ((i = 0; i < ${#cases[@]}; i += 2)); do part "campaign-${cases[i]}" 2 "campaign ${cases[i]} ${cases[i + 1]}"; done
 
-night=150 results=$PELAGIC_ROOT/build/nightly chosen=()
+seed="" results=$PELAGIC_ROOT/build/nightly chosen=()
 while [ $# -gt 0 ]; do
     case $1 in
-    --minutes) night=${2:-} && shift ;;
+    --seed)
+        seed=${2:-} && shift
+        [[ $seed =~ ^(0|[1-9][0-9]{0,7})$ ]] || { echo "nightly.sh: --seed \"$seed\"; wanted: a whole number" >&2 && exit 2; }
+        ;;
     --results) results=${2:-} && shift ;;
     --list)
         for name in "${names[@]}"; do echo "$name (${minutes[$name]} min)"; done
@@ -77,37 +92,40 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-[[ $night =~ ^[0-9]+$ ]] || { echo "nightly.sh: --minutes \"$night\"; wanted: a whole number" >&2 && exit 2; }
 mkdir -p "$results" && results=$(cd "$results" && pwd) || exit 2
 
 # A part's result is a line in its file: how it ended, on which commit, in how many minutes, when.
 is_done() { [ -f "$results/$1" ]; }
-is_asked_for() { [ ${#chosen[@]} -eq 0 ] || [[ " ${chosen[*]} " == *" $1 "* ]]; }
-round_is_whole() {
+night_is_whole() {
     local name
     for name in "${names[@]}"; do is_done "$name" || return 1; done
 }
+asked_seed=$seed
+seed=${seed:-$(cat "$results/seed" 2>/dev/null || echo $(($(date +%s) / 86400)))}
 if [ ${#chosen[@]} -gt 0 ]; then
-    for name in "${chosen[@]}"; do rm -f "$results/$name"; done
-elif round_is_whole; then
-    for name in "${names[@]}"; do rm -f "$results/$name"; done
+    rm -f "${chosen[@]/#/$results/}"
+else
+    chosen=("${names[@]}")
+    if [ -n "$asked_seed" ] || night_is_whole; then
+        rm -f "${names[@]/#/$results/}"
+        seed=${asked_seed:-$(($(date +%s) / 86400))}
+    fi
+    echo "$seed" >"$results/seed"
 fi
+echo "This is --seed $seed"
 
-begun=$SECONDS is_first=true
+in_memory
 commit=$(git -C "$PELAGIC_ROOT" describe --always --dirty)
 for i in "${!names[@]}"; do
     name=${names[i]}
-    is_asked_for "$name" && ! is_done "$name" || continue
-    # The first one in any case: a part that is longer than a night would never run.
-    if ! $is_first && [ $(((SECONDS - begun) / 60 + minutes[$name])) -gt "$night" ]; then continue; fi
-    is_first=false
+    if [[ " ${chosen[*]} " != *" $name "* ]] || is_done "$name"; then continue; fi
     echo "== $name"
     start=$SECONDS
     # In a shell of its own: what it changes there is gone with it.
     (${commands[i]}) 2>&1 | tee "$results/$name.log"
     ended=${PIPESTATUS[0]}
     [ "$ended" -eq 0 ] && outcome=passed || outcome="FAILED ($ended)"
-    echo "$outcome, $commit, $(((SECONDS - start + 59) / 60)) min, $(date -u '+%F %R')" >"$results/$name"
+    echo "$outcome, $commit, --seed $seed, $(((SECONDS - start + 59) / 60)) min, $(date -u '+%F %R')" >"$results/$name"
 done
 
 echo "== results"

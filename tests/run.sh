@@ -6,7 +6,7 @@
 # LABEL: unit (three minutes on two cores, once built), slow, gl (OpenGL) or external (with Blender, node, clang-format); default:
 # all of these. Those that run at night are left out, unless LABEL is theirs: nightly, or openusd, which installs Chromium.
 # --share K/N: each Nth test, beginning with the Kth.
-# --nightly takes hours, and goes on where the last night stopped: tests/nightly.sh --help.
+# --nightly takes two hours, and goes on where it was stopped: tests/nightly.sh --help.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 [ "${1:-}" != --nightly ] || exec "$here/nightly.sh" "${@:2}"
@@ -55,14 +55,7 @@ install_packages program preview python blender tests
 [ "$preset" != tsan ] || "$here/sanitizers/onetbb.sh"
 build "$preset"
 cd "$PELAGIC_ROOT"
-# In memory where there is room and programs may lie there: bakes wait for the disk at each file.
-if [ "$(df --output=avail --block-size=1M /dev/shm 2>/dev/null | tail -n 1)" -ge 4096 ] 2>/dev/null; then
-    memory=$(mktemp -d /dev/shm/pelagic-tests.XXXXXX)
-    trap 'rm -rf "$memory"' EXIT
-    if cp /bin/true "$memory/true" && "$memory/true"; then
-        export TMPDIR=$memory
-    fi
-fi
+in_memory
 # None of the tests minds another beside it; each uses all cores itself, and takes up to 2 GiB. One more than there are cores
 # works while the others wait.
 cores=$(nproc)

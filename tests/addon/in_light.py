@@ -21,7 +21,7 @@ from pictures import cycles_exr
 from pelagic_ocean import courses, exchange, farm, floating, in_light
 
 PROGRAM, FOLDER = sys.argv[-1], Path(tempfile.mkdtemp())
-SIZE = (200, 112)
+SIZE = (144, 80)
 
 
 def select(*objects):
@@ -99,8 +99,8 @@ with checking("its materials come along"):
     assert np.allclose(told["lamp"]["glow"], (1.0, 0.86, 0.6), atol=1e-3) and math.isclose(body.glow_cd_m2, 1000.0, rel_tol=1e-3)
 
 with checking("the command line renders it, and its silhouette is Cycles'"):
-    ended = subprocess.run([PROGRAM, "render", str(FOLDER / "trawler.toml"), "--out", str(FOLDER), "--frames", "48", "--samples", "2", "--layers",
-                            "none"], capture_output=True, text=True)
+    ended = subprocess.run([PROGRAM, "render", str(FOLDER / "trawler.toml"), "--out", str(FOLDER), "--frames", "48", "--samples", "1", "--size", "40x22",
+                            "--layers", "none"], capture_output=True, text=True)
     assert ended.returncode == 0 and (FOLDER / "Ocean.0048.exr").is_file(), ended.stderr
     matte = pelagic.render(shot, 48, SIZE, 3, layers=["cryptomatte"])["cryptomatte"][::-1].reshape(SIZE[1], SIZE[0], 6, 2)
     water = matte[0, 0, 0, 0]  # a corner below, where nothing else is
@@ -108,11 +108,11 @@ with checking("the command line renders it, and its silhouette is Cycles'"):
     by_program = seen.sum(-1) > 0.5
     # What water hides of it is hidden: its waves are there, and are nothing.
     sea.is_holdout, scene.render.film_transparent = True, True
-    by_cycles = cycles_exr(FOLDER / "mask.exr", SIZE, 16)[..., 3] > 0.5
+    by_cycles = cycles_exr(FOLDER / "mask.exr", SIZE, 8)[..., 3] > 0.5
     sea.is_holdout, scene.render.film_transparent = False, False
     both = (by_program & by_cycles).sum() / (by_program | by_cycles).sum()
     print(f"    {by_program.sum()} pixels by the program, {by_cycles.sum()} by Cycles, of either both have {both:.4f}")
-    assert by_program.sum() > 700 and both >= 0.97
+    assert by_program.sum() > 350 and both >= 0.97
 
 with checking("imported again it is at the same place, with its wake, afloat and in colour; a round trip keeps it"):
     fresh_file()

@@ -154,6 +154,7 @@ with checking("what feeds the sea makes another one"):
         assert set(field.key["feeds"]) <= ONLY_SHOWN or place in play.SEA_FIELDS, field.path
 
 with checking("every property at both ends"):
+    obj.pelagic.effects.foam_decay_s = 0.5  # whose past is most of each sea's time
     tried, refusals = 0, []
     for field in properties.FIELDS:
         group = getattr(obj.pelagic, field.table)

@@ -110,7 +110,7 @@ def steps():
                 assert np.array_equal(numbers(obj.data, name), values), (how, name)
 
         first, built = numbers(obj.data), simulation._built
-        obj.pelagic.effects.foam_decay_s = 8.0
+        obj.pelagic.effects.foam_decay_s = 4.0
         yield lambda: simulation._built is not built and simulation.is_behind
         assert "foam_age" in obj.data.attributes and not has_foam()
         yield from wait_for_foam("slider")

@@ -1,8 +1,8 @@
 """What the campaigns share: many runs of the program, each judged, a case that can be run again, and a last line with
 the counts.
 
-A campaign is a script that draws its cases from a seed, so that a number names a case: `--only 17` runs that one again
-and keeps its files.
+A campaign is a script whose cases have numbers, each drawn from its own: `--only 17` runs that one again and keeps its
+files, and `--first 5000` begins there.
 """
 
 import argparse
@@ -38,13 +38,13 @@ class Run:
 
 
 class Campaign:
-    """Cases 0 … count − 1, each judged by judge(random, folder), which raises Failure where something is wrong.
-    random.case is the case's number."""
+    """Cases first … first + count − 1, each judged by judge(random, folder), which raises Failure where something is wrong.
+    random.case is the case's number, in a list of cases modulo its length."""
 
     def __init__(self, description, count, arguments=None):
         parser = argparse.ArgumentParser(description=description)
         parser.add_argument("--count", type=int, default=count, help=f"cases (default {count})")
-        parser.add_argument("--seed", type=int, default=1, help="of the cases (default 1)")
+        parser.add_argument("--first", type=int, default=0, help="number of the first case (default 0)")
         parser.add_argument("--only", type=int, help="run this case alone, and keep its files")
         parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="cases side by side (default: processors)")
         parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/release/pelagic")
@@ -96,12 +96,13 @@ class Campaign:
     def go(self, judge, all_together=None):
         """Judges the cases and ends the process: exit status 0 only if none failed. all_together() is asked after them:
         a sentence if what it gathered is wrong."""
-        cases = [self.options.only] if self.options.only is not None else range(self.options.count)
+        first = self.options.first
+        cases = [self.options.only] if self.options.only is not None else range(first, first + self.options.count)
         failures, start = [], time.monotonic()
 
         def case(number):
             folder = pathlib.Path(tempfile.mkdtemp(prefix=f"pelagic-{number}-"))
-            draw = random.Random(f"{self.options.seed}/{number}")
+            draw = random.Random(number)
             draw.case = number
             try:
                 judge(draw, folder)

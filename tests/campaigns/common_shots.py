@@ -1,4 +1,4 @@
-"""Random shots over the whole table of keys, as the module tells it: a new key is drawn without a word here."""
+"""Values of any key of the whole table, as the module tells it: a new key is drawn without a word here."""
 
 import math
 
@@ -13,7 +13,7 @@ BUOY = ROOT / "examples/data/made-up-99002w2024.txt"
 # inputs ask for the rest.
 _SMALL = {
     "shot.frames": lambda draw: _frames(draw),
-    "shot.loop_s": lambda draw: 0.0,  # a whole number of frames: see shot()
+    "shot.loop_s": lambda draw: 0.0,  # others must be whole numbers of frames
     "sea.spectrum": lambda draw: draw.choice([word for word in _words("sea.spectrum") if word != "file"]),
     "sea.spectrum_file": None,
     "sea.spectrum_time": None,
@@ -114,10 +114,9 @@ def value(draw, row):
     if kind == "truth":
         return draw.random() < 0.5
     if kind == "word":
-        words = _words(row["path"])
-        return draw.choice(words) if words else row["default"]
+        return draw.choice(row["choices"]) if row["choices"] else row["default"]
     if kind == "words":
-        return [word for word in _words(row["path"]) if draw.random() < 0.6]
+        return [word for word in row["choices"] if draw.random() < 0.6]
     if kind == "entries":
         return _entries(draw, row)
     if kind == "pair" or kind == "point":
@@ -125,6 +124,8 @@ def value(draw, row):
         return [draw.uniform(max(low, -100.0), min(high, 100.0)) for _ in range(2 if kind == "pair" else 3)]
     if kind == "text":
         return draw.choice(["sea", "a", "7th-sea", "A_b-c", "x" * 200])
+    if kind == "data file":  # none lies there
+        return None
     raise AssertionError(f"{row['path']}: a type of value that this drawing doesn't know, {kind}")
 
 
@@ -151,106 +152,8 @@ def shot_text(keys):
     return "".join(f"[{table}]\n" + "".join(lines) for table, lines in tables.items())
 
 
-def write_cage(path, draw):
-    """A few faces of any size and slope, two of them triangles, with a crease and a corner, and perhaps a hole; any rule
-    for the boundary, of which 0 leaves the face in the middle of nine, and nothing of five; and any texture: none, of the
-    points, of the faces' corners, or of two halves that lie apart."""
-    side = draw.choice([3, 4])
-    size, far = draw.choice([0.0, 0.1, 10.0, 300.0, 1e5]), draw.choice([0.0, 0.0, 6e5])
-    lines = [f"v {far + size * (x + draw.uniform(-0.2, 0.2))} {size * y} {size * draw.choice([0.0, draw.uniform(-2, 2)])}"
-             for y in range(side) for x in range(side)]
-    quads = [(x + side * y, x + side * y + 1, x + side * y + side + 1, x + side * y + side)
-             for y in range(side - 1) for x in range(side - 1)]
-    faces = [*quads[:-1], quads[-1][:3], (quads[-1][0], *quads[-1][2:])]
-    texture = draw.choice(["none", "points", "corners", "halves"])
-    corners = 0
-    for face in faces:
-        words = []
-        for point in face:
-            coordinate = {"points": point, "corners": corners,
-                          "halves": point + side * side * (face[0] % side > 0)}.get(texture)
-            words.append(f"{point + 1}" + ("" if coordinate is None else f"/{coordinate + 1}"))
-            corners += 1
-        lines.append("f " + " ".join(words))
-    coordinates = {"none": 0, "points": side * side, "corners": corners, "halves": 2 * side * side}[texture]
-    lines[:0] = [f"vt {draw.choice([0.0, draw.uniform(-3, 3)])} {draw.uniform(0, 1)}" for _ in range(coordinates)]
-    lines += [f"t crease 2/1/0 {side} {side + 1} {draw.choice([0.0, 1.5, 10.0])}",
-              f"t corner 1/1/0 4 {draw.choice([0.0, 3.0])}"]
-    if draw.random() < 0.3:
-        lines.append(f"t hole 1/0/0 {draw.choice([0, 4])}")
-    if draw.random() < 0.6:
-        lines.append(f"t interpolateboundary 1/0/0 {draw.choice([0, 1, 2])}")
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
 def write_sky(path, draw=None):
     """A small lat-long picture of a sky, brighter towards the zenith."""
     height = 8
     rows = np.linspace(3.0, 0.5, height, dtype=np.float32)[:, None] * np.ones((1, 2 * height), np.float32)
     write_exr(path, {"R": rows * (draw.uniform(0, 2) if draw else 0.5), "G": rows * 0.8, "B": rows})
-
-
-def _make_fit(draw, keys):
-    """Mends most of what validate() refuses of keys that were drawn one by one: the refusals are a few of the cases."""
-    if keys.get("waves.model") == "trochoid":
-        if draw.random() < 0.5:
-            keys.pop("waves.cascades", None)
-        for entry in keys.get("waves.cascades") or []:
-            entry.pop("choppiness", None)
-        shortest, longest = keys.get("waves.shortest_m"), keys.get("waves.longest_m")
-        if shortest and longest and longest < 10 * shortest:
-            keys["waves.longest_m"] = min(10 * shortest, 1e6)
-    else:
-        for name in ("trains", "shortest_m", "longest_m", "coast"):
-            keys.pop(f"waves.{name}", None)
-    if keys.get("surface.kind", "patch") != "patch":
-        keys.pop("output.mesh_scheme", None)
-    if keys.get("output.cascade_tiles"):
-        keys["output.maps"] = keys.get("output.maps") or ["normal", "whitecaps"]
-    if volumes := keys.get("output.volumes"):
-        if "spray" in volumes:
-            keys["effects.spray"] = True
-            keys.pop("effects.whitecaps", None)
-        keys["output.voxel_m"] = max(keys.get("surface.size_m", 200.0) / draw.choice([1, 1.7, 5, 20, 40]), 1e-3)
-    elif keys.get("output.mesh") == "none":
-        keys["output.maps"] = keys.get("output.maps") or ["displacement"]
-
-
-def shot(draw, folder, each=0.35):
-    """Keys of a random shot, each key drawn with this probability: {path: value}."""
-    keys = {}
-    for row in _rows.values():
-        if "[]" in row["path"] or "." not in row["path"]:
-            continue
-        if draw.random() < each:
-            drawn = value(draw, row)
-            if drawn is not None:
-                keys[row["path"]] = drawn
-    keys.setdefault("shot.frames", _frames(draw))
-    if draw.random() < 0.8:  # auto goes as fine as somebody looks, and is dear
-        keys.setdefault("waves.cascades", _cascades(draw))
-    else:
-        keys.pop("waves.cascades", None)
-        keys["surface.size_m"] = draw.choice([200.0, 3e4])
-    for path in ("surface.resolution", "output.map_resolution", "camera.resolution"):
-        keys.setdefault(path, value(draw, _rows[path]))
-    if draw.random() < 0.95:
-        _make_fit(draw, keys)
-    if "shot.loop_s" in keys:
-        keys["shot.fps"] = draw.choice([1.0, 24.0, 25.0])
-        keys["shot.time_scale"] = draw.choice([1.0, 0.5])
-        keys["shot.loop_s"] = draw.choice([1, 24, 100]) / keys["shot.fps"]
-        keys["shot.frames"] = [1, 2]
-    if draw.random() < 0.15:
-        keys["surface.kind"], keys["surface.cage_file"] = "cage", str(folder / "cage.obj")
-        if draw.random() < 0.95:
-            keys.pop("output.mesh_scheme", None)
-        write_cage(folder / "cage.obj", draw)
-    if draw.random() < 0.05:
-        keys["sea.spectrum"] = "file"
-        keys["sea.spectrum_file"] = str(BUOY)
-        keys["sea.spectrum_time"] = f"2024-10-03T{draw.choice(['06', '07'])}:00:00Z"
-    if draw.random() < 0.1:
-        write_sky(folder / "sky.exr", draw)
-        keys["light.sky"] = "sky.exr"
-    return keys

@@ -99,15 +99,15 @@ def _matters(field, settings):
     kind, sized = settings.surface.kind, settings.output.maps or settings.output.volumes or settings.effects.spray or settings.uv_map
     has_size = kind in ("patch", "near-far")
     has_body = settings.water.body
-    is_coast = settings.waves.coast
+    has_picture = settings.waves.coast and not settings.sea.depth_file.lower().endswith(".obj")
     return {"water.floor_colour": has_body and settings.sea.use_depth_m, "water.crest_light": has_body,
             "water.bubbles": has_body and settings.effects.whitecaps,
             "surface.size_m": has_size or sized, "surface.resolution": has_size, "surface.cell_px": kind not in ("patch", "near-far"),
             "surface.earth_curvature": kind in ("projected-grid", "near-far"),
             # Of Pelagic's own pictures: here beyond is horizon, and the floor is level, of one colour and evenly lit.
             "surface.beyond": False, "water.caustics": False, "water.floor_pattern": False, "water.floor_pattern_m": False,
-            # Here only waves feel that floor, which must be a picture for them.
-            "sea.depth_size_m": is_coast, "sea.depth_east_m": is_coast, "sea.depth_north_m": is_coast}.get(field.path, True)
+            # Here only waves feel that floor; a mesh lies where it lies.
+            "sea.depth_size_m": has_picture, "sea.depth_east_m": has_picture, "sea.depth_north_m": has_picture}.get(field.path, True)
 
 
 def _draw_tables(layout, settings, tables, title):

@@ -518,7 +518,8 @@ void check_pictures(SceneChecker& check, const Scene& scene) {
         if (given != picture.fallback && (key.may_be_mesh || !is_mesh)) continue;
         check.refuse({key.path, value_text(key, value_of(scene, key)),
                       "is of a picture, and " + picture.path + " is " + value_text(picture, given),
-                      value_text(key, key.fallback) + ", or " + picture.path + " = \"PATH.exr\""});
+                      value_text(key, key.fallback) + ", or " + picture.path +
+                          (key.may_be_mesh ? " = \"PATH.exr\" or \"PATH.obj\"" : " = \"PATH.exr\"")});
     }
 }
 

@@ -39,6 +39,8 @@
 namespace pelagic {
 namespace {
 
+constexpr float kLeastDepth_m = 0.01f;  // of a floor that is lit: on land there is a film of water
+
 // What each type of water holds. Jerlov's: fitted through Lee's K_d (2005) to the K_d of his tables (1976), rms of its logarithm 0.05 … 0.18;
 // that hardly fixes how much they scatter.
 WaterChoice choice_of(const Water& water) {
@@ -324,6 +326,7 @@ Floor make_floor(const Scene& scene, double rest_m) {
         try {
             if (is_mesh) {
                 FloorDepths of = depths_of(read_floor_mesh(path).mesh(), rest_m, beyond_m);
+                for (float& depth : of.depths_m) depth = std::max(depth, kLeastDepth_m);
                 floor.set_depths(of.columns_rows, std::move(of.depths_m), of.from_m, of.size_m);
                 continue;
             }
@@ -342,7 +345,7 @@ Floor make_floor(const Scene& scene, double rest_m) {
                 depths.reserve(pixels.size());
                 for (const glm::vec3& pixel : pixels) {
                     if (!std::isfinite(pixel.x)) refuse("has depths that are no numbers", "depths in metres");
-                    depths.push_back(std::clamp(pixel.x, 0.01f, 1e5f));
+                    depths.push_back(std::clamp(pixel.x, kLeastDepth_m, 1e5f));
                 }
                 const double size_m = scene.sea.depth_size_m;
                 const glm::dvec2 size(size_m, size_m * picture.height / picture.width);

@@ -113,10 +113,10 @@ FloorDepths depths_of(const CageMesh& mesh, double rest_m, double beyond_m) {
     each_triangle([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
         raise(depths.depths_m, depths.columns_rows, in_texels(a), in_texels(b), in_texels(c));
     });
-    constexpr double kLeast_m = 0.01, kMost_m = 1e5;
+    constexpr double kMost_m = 1e5;
     for (float& depth : depths.depths_m)
         depth = static_cast<float>(
-            std::clamp(depth == kNone ? beyond_m : rest_m - static_cast<double>(depth), kLeast_m, kMost_m));
+            std::clamp(depth == kNone ? beyond_m : rest_m - static_cast<double>(depth), -kMost_m, kMost_m));
     return depths;
 }
 

@@ -22,7 +22,7 @@ class FloorMeshError : public std::runtime_error {
     std::string accepted_;
 };
 
-// Depths below the sea at rest [m], not less than a centimetre, rows from the south, over a rectangle of the world.
+// Depths below the sea at rest [m], negative on land, rows from the south, over a rectangle of the world.
 struct FloorDepths {
     glm::ivec2 columns_rows{0};
     std::vector<float> depths_m;

@@ -2,13 +2,14 @@
 // (core/waves/coast.cpp).
 //
 // Rows of `gusts` from kCoastRow on: the origin from the map's corner [m], and cells per metre; the number of cells, how far beyond the map
-// gains fade [m], and the wavenumber of the highest waves [rad/m]; n_min and 1/(n_max − n_min) of the filter.
+// gains fade [m], and the wavenumber of the highest waves [rad/m]; n_min and 1/(n_max − n_min) of the filter, how many trains
+// feel the floor, and how many of their pictures lie side by side.
 //
 // Of trains on a coast, train_table's rows 1 and 2 are: 1: height [m]; how far the train moves water to the side, over height times wavenumber [m],
 // for displacement and for waves that break; one over how far beyond the map its phase fades [1/m]; 2: kx, ky [rad/m] where it comes from.
 // The wavelength in row 3 is the longest that deeper water makes it.
 uniform sampler2D coast_cells;   // a texel a cell: the share that breaks, the heights' deviation [m], the gain of trains too short to feel the floor
-uniform sampler2D coast_trains;  // of each train that feels it a picture of the cells, kCoastAcross side by side: phase [cycles], gain
+uniform sampler2D coast_trains;  // of each train that feels it a picture of the cells: phase [cycles], gain
 
 // A place on the map, in cells from its corner, and how far beyond the map it is [m].
 struct CoastPlace {
@@ -72,10 +73,11 @@ vec3 coast_others(CoastTaps taps) {
 LocalTrain local_train(int train, CoastTaps taps, vec3 others) {
     vec4 numbers = texelFetch(train_table, ivec2(train, 1), 0);
     vec2 k = texelFetch(train_table, ivec2(train, 2), 0).xy;
-    if (train >= kCoastTrains) return LocalTrain(0.0, k, numbers.x * others.x, numbers.x * others.yz);
+    ivec2 pictures = ivec2(gusts[kCoastRow + 2].zw);
+    if (train >= pictures.x) return LocalTrain(0.0, k, numbers.x * others.x, numbers.x * others.yz);
     float t = taps.beyond_m * numbers.w;
     if (t >= 1.0) return LocalTrain(0.0, k, numbers.x, vec2(0.0));
-    ivec2 count = ivec2(gusts[kCoastRow + 1].xy), first = count * ivec2(train % kCoastAcross, train / kCoastAcross);
+    ivec2 count = ivec2(gusts[kCoastRow + 1].xy), first = count * ivec2(train % pictures.y, train / pictures.y);
     vec2 all = vec2(0.0), x_rate = vec2(0.0), y_rate = vec2(0.0);
     for (int j = 0; j < 3; ++j) {
         vec2 sum = vec2(0.0), rate = vec2(0.0);
@@ -102,8 +104,8 @@ LocalTrain local_train(int train, CoastTaps taps, vec3 others) {
 
 // How much of such waves a footprint shows: of width and stretch.
 float local_weight(vec3 footprint, float k, vec2 unit) {
-    float stretch = dot(footprint.yz, unit);
-    return footprint_weight(6.28318530717958647692 / (k * sqrt(stretch * stretch + footprint.x * footprint.x)), train_filter.x, train_filter.y);
+    float stretch = dot(footprint.yz, unit), along = sqrt(stretch * stretch + footprint.x * footprint.x);
+    return footprint_weight(6.28318530717958647692 / (k * max(along, 1e-6)), train_filter.x, train_filter.y);
 }
 
 // As cell_trains() and pixel_trains().
@@ -134,7 +136,7 @@ TrainSums coast_pixel_trains(vec2 rest_m, vec3 footprint, TrainSums sums) {
     CoastTaps taps = coast_taps(rest_m);
     vec3 others = coast_others(taps);
     SplitMetres x = split_metres(rest_m);
-    int shown = trains_above(footprint.x, train_filter.w), end = max(shown, kCoastTrains);
+    int shown = trains_above(footprint.x, train_filter.w), end = max(shown, int(gusts[kCoastRow + 2].z));
     float gain2 = others.x * others.x;
     PixelMoments m = sums.unresolved;
     vec4 low = gain2 * (vec4(m.xx, m.xy, m.yy, m.xxxx) + texelFetch(train_table, ivec2(end, 6), 0));
@@ -196,6 +198,6 @@ float surf_foam(vec2 rest_m, float height_m, float footprint_m) {
     float deviate = max(log(share / (1.0 - share)) / 1.702, -7.0);
     float crest = 0.5 * complementary_error(-4.0 * (height_m / here.y + deviate) * 0.70710678118654752440);
     vec4 filter_by = gusts[kCoastRow + 2];
-    float shown = footprint_weight(6.28318530717958647692 / (map.w * footprint_m), filter_by.x, filter_by.y);
+    float shown = footprint_weight(6.28318530717958647692 / (map.w * max(footprint_m, 1e-6)), filter_by.x, filter_by.y);
     return mix(share, crest, shown);
 }

@@ -80,6 +80,7 @@ std::vector<SeaLayout::Plane> SeaLayout::planes_of(const Plan& plan, int query) 
 SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(std::move(sea)), query_(query) {
     const Plan& plan = sea_->plan();
     planes_ = lay_out(plan, query, cells_, pixels_, breaking_);
+    coast_sizes_ = coast_sizes_of(plan);
     has_coverage_ = plan.queries[query].query.products[index(Product::Coverage)];
     is_choppy_ = !plan.dropped[index(Field::Dx)];
 
@@ -283,20 +284,27 @@ std::vector<glm::vec4> SeaLayout::train_texels() const {
     return texels;
 }
 
-glm::ivec2 SeaLayout::coast_size() const {
-    return has_coast() ? sea_->coast()->count : sea_->plan().masks->surf->count;
+int SeaLayout::CoastSizes::side() const {
+    return std::max({cells.x, cells.y, trains.x, trains.y});
 }
 
-// As square as can be.
-int SeaLayout::coast_across() const {
-    if (coast_trains() == 0) return 1;
-    const glm::dvec2 size(coast_size());
-    return std::max(1, static_cast<int>(std::lround(std::sqrt(coast_trains() * size.y / size.x))));
+std::size_t SeaLayout::CoastSizes::bytes() const {
+    const auto area = [](glm::ivec2 size) {
+        return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    };
+    return area(cells) * sizeof(glm::vec4) + area(trains) * sizeof(glm::vec2);
 }
 
-glm::ivec2 SeaLayout::coast_trains_size() const {
-    const int across = coast_across();
-    return coast_size() * glm::ivec2(across, (coast_trains() + across - 1) / across);
+SeaLayout::CoastSizes SeaLayout::coast_sizes_of(const Plan& plan) {
+    if (!plan.trains || plan.trains->coast_cells.x == 0)
+        return {.cells = plan.masks && plan.masks->surf ? plan.masks->surf->count : glm::ivec2(0)};
+    const glm::ivec2 cells = plan.trains->coast_cells;
+    const int trains = plan.trains->coast_trains;
+    if (trains == 0) return {.cells = cells};
+    // As square as can be.
+    const double square = std::sqrt(static_cast<double>(trains) * cells.y / cells.x);
+    const int across = std::clamp(static_cast<int>(std::lround(square)), 1, trains);
+    return {.cells = cells, .trains = cells * glm::ivec2(across, (trains + across - 1) / across)};
 }
 
 std::vector<glm::vec4> SeaLayout::coast_cell_texels() const {
@@ -314,9 +322,9 @@ std::vector<glm::vec4> SeaLayout::coast_cell_texels() const {
 }
 
 std::vector<glm::vec2> SeaLayout::coast_train_texels() const {
-    if (!has_coast()) return {};
+    if (coast_trains() == 0) return {};
     const Coast<float>& coast = *sea_->coast();
-    const glm::ivec2 size = coast_trains_size();
+    const glm::ivec2 size = coast_sizes_.trains;
     const int across = coast_across();
     std::vector<glm::vec2> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y),
                                   glm::vec2(0.0f));

@@ -39,11 +39,13 @@ class SeaLayout {
     int fronts() const { return has_gusts() ? static_cast<int>(sea_->gusts()->plan.fronts.size()) : 0; }
     int front_rows() const { return fronts() > 0 ? 2 * fronts() + 1 + 2 * Gusts::kBends : 0; }
     // Waves that feel a coast's floor (coast.glsl): whether any break there, whether they are trains, how many of these feel it, and how many of
-    // their pictures lie side by side. Its rows of the uniform block are the last.
+    // their pictures lie side by side in coast_trains. Its rows of the uniform block are the last.
     bool has_surf() const { return sea_->has_surf(); }
     bool has_coast() const { return sea_->coast() != nullptr; }
     int coast_trains() const { return has_coast() ? static_cast<int>(sea_->coast()->feeling) : 0; }
-    int coast_across() const;
+    int coast_across() const {
+        return std::max(coast_sizes_.trains.x / std::max(coast_sizes_.cells.x, 1), 1);
+    }
     int coast_rows() const { return has_surf() ? 3 : 0; }
     int coast_row() const {
         return has_surf() ? kGustRows + mask_rows() + kVesselRows * vessels() + front_rows() : 0;
@@ -122,9 +124,14 @@ class SeaLayout {
     glm::ivec2 mask_cells_size() const;
     std::vector<float> mask_cells() const;
 
-    // The textures coast_cells and coast_trains, where there is surf; the latter empty without trains.
-    glm::ivec2 coast_size() const;
-    glm::ivec2 coast_trains_size() const;
+    // The textures coast_cells and coast_trains, empty where a sea of this plan has none.
+    struct CoastSizes {
+        glm::ivec2 cells{0}, trains{0};
+        int side() const;           // the longest
+        std::size_t bytes() const;  // of both
+    };
+    static CoastSizes coast_sizes_of(const Plan& plan);
+    const CoastSizes& coast_sizes() const { return coast_sizes_; }
     std::vector<glm::vec4> coast_cell_texels() const;
     std::vector<glm::vec2> coast_train_texels() const;
 
@@ -156,6 +163,7 @@ class SeaLayout {
     std::vector<Plane> planes_;
     Levels cells_, pixels_, breaking_;
     std::vector<UnresolvedLevel> unresolved_;
+    CoastSizes coast_sizes_;
 };
 
 }  // namespace pelagic

@@ -108,12 +108,14 @@ std::vector<std::array<float, 4>> rows_of(const MasksPlan& plan, const SpectralM
 
 // Those of coast.glsl.
 template <class T>
-std::vector<std::array<float, 4>> rows_of(const CoastSurf<T>& coast, const FootprintFilter& filter,
+std::vector<std::array<float, 4>> rows_of(const SeaLayout& layout, const CoastSurf<T>& coast,
                                           glm::dvec2 origin_m) {
     const glm::dvec2 from = origin_m - coast.from_m;
-    return {row(from.x, from.y, 1.0 / coast.cell_m.x, 1.0 / coast.cell_m.y),
-            row(coast.count.x, coast.count.y, coast.fade_m, coast.peak_per_m),
-            row(filter.n_min, 1.0 / (filter.n_max - filter.n_min), 0.0, 0.0)};
+    const FootprintFilter& filter = layout.sea().plan().filter;
+    return {
+        row(from.x, from.y, 1.0 / coast.cell_m.x, 1.0 / coast.cell_m.y),
+        row(coast.count.x, coast.count.y, coast.fade_m, coast.peak_per_m),
+        row(filter.n_min, 1.0 / (filter.n_max - filter.n_min), layout.coast_trains(), layout.coast_across())};
 }
 
 // Those of wakes.glsl. A sea with vessels has no loop.
@@ -187,9 +189,9 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
     }
     if (fronts() > 0) append(front_rows_of(*sea_->gusts(), origin_m, time_within_loop_s));
     if (has_coast())
-        append(rows_of(*sea_->coast(), sea_->plan().filter, origin_m));
+        append(rows_of(*this, *sea_->coast(), origin_m));
     else if (has_surf())
-        append(rows_of(*sea_->plan().masks->surf, sea_->plan().filter, origin_m));
+        append(rows_of(*this, *sea_->plan().masks->surf, origin_m));
     return block;
 }
 

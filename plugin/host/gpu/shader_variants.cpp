@@ -151,7 +151,6 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            constant("kFronts", layout.fronts()) + constant("kFrontRows", layout.front_rows()) +
            constant("kCoast", layout.has_coast()) + constant("kSurf", layout.has_surf()) +
            constant("kCoastRows", layout.coast_rows()) + constant("kCoastRow", layout.coast_row()) +
-           constant("kCoastTrains", layout.coast_trains()) + constant("kCoastAcross", layout.coast_across()) +
            "const float kRoller = " + std::to_string(kRoller) + ";\n" +
            constant("kFrontBends", Gusts::kBends) + constant("kMasks", layout.masks()) +
            constant("kMaskRows", layout.mask_rows()) + constant("kMaskPictures", layout.has_mask_pictures()) +

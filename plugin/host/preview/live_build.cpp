@@ -20,6 +20,7 @@
 #include "plugin/host/gpu/sea_layout.h"
 #include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/live.h"
+#include "plugin/host/preview/sea_textures.h"
 #include "plugin/render/seen_drops.h"
 
 namespace pelagic {
@@ -42,6 +43,8 @@ MemoryNeed live_memory(const Plan& plan) {
                   static_cast<std::size_t>(plane.channels) * sizeof(float);
     need.add("the frame's grids as textures", 6 * packed,
              "lower the resolutions in waves.cascades, or quality.level");
+    if (const std::size_t coast = SeaLayout::coast_sizes_of(plan).bytes(); coast > 0)
+        need.add("the coast as textures", 2 * coast, "lower waves.trains");
     if (render_options(plan.from->scene).lighting.spray) add_seen_drops(need, plan);
     if (const Scene& scene = plan.from->scene; !scene.objects.empty())
         need.add("the objects", DrawnObjects::bytes(scene), "give simpler meshes");
@@ -79,6 +82,8 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     for (const std::string& warning : sea_warnings(*prepared))
         made.note += (made.note.empty() ? "" : "\n") + warning;
     Plan plan = plan_from(0.0);
+    if (const SeaLayout::CoastSizes coast = SeaLayout::coast_sizes_of(plan); coast.side() > limits.texture)
+        throw std::invalid_argument(too_large_coast(coast, limits.texture));
     const Plan whole = plan;
     std::string left_out;
     // Level by level of the pixels' footprints, of which the first lets everything pass.

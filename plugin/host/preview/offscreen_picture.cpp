@@ -136,6 +136,8 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
         need.add("the foam as textures",
                  2 * PackedFoam::bytes_for(*planned.plan.foam, planned.plan.foam_history_bytes()),
                  "lower effects.foam_decay_s");
+    if (const std::size_t coast = SeaLayout::coast_sizes_of(planned.plan).bytes(); coast > 0)
+        need.add("the coast as textures", 2 * coast, "lower waves.trains");
     const glm::ivec2 size = planned.scene.camera.resolution;
     need.add("the picture",
              static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *

@@ -33,6 +33,11 @@ static_assert(kCoastTrains + 1 == SeaTextures::kUnits);
 
 }  // namespace
 
+std::string too_large_coast(const SeaLayout::CoastSizes& sizes, int most) {
+    return "the waves that feel the floor need a texture of " + std::to_string(sizes.side()) +
+           " texels a side, and the driver's largest is " + std::to_string(most) + ": lower waves.trains";
+}
+
 bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     GLint largest_texture = 0, largest_block = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
@@ -74,9 +79,10 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     if (layout->has_mask_pictures()) {
         const glm::ivec2 size = layout->mask_cells_size();
         if (std::max(size.x, size.y) > largest_texture)
-            throw PreviewError("the pictures of waves.masks need a texture of " + std::to_string(size.x) +
-                               " x " + std::to_string(size.y) + ", and the driver's largest is " +
-                               std::to_string(largest_texture) + ": take smaller ones, or wider edges");
+            throw PreviewError("the pictures of waves.masks and a coast's gains need a texture of " +
+                               std::to_string(size.x) + " x " + std::to_string(size.y) +
+                               ", and the driver's largest is " + std::to_string(largest_texture) +
+                               ": take smaller ones, or wider edges");
         edit_texture(mask_cells.emplace());
         texels_as_they_are();
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
@@ -84,13 +90,8 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
                      layout->mask_cells().data());
     }
     if (layout->has_surf()) {
-        const glm::ivec2 cells = layout->coast_size(), trains = layout->coast_trains_size();
-        if (std::max({cells.x, cells.y, trains.x, trains.y}) > largest_texture)
-            throw PreviewError("the waves that feel the floor need a texture of " +
-                               std::to_string(std::max(cells.x, trains.x)) + " x " +
-                               std::to_string(std::max(cells.y, trains.y)) +
-                               ", and the driver's largest is " + std::to_string(largest_texture) +
-                               ": lower waves.trains");
+        const SeaLayout::CoastSizes& sizes = layout->coast_sizes();
+        if (sizes.side() > largest_texture) throw PreviewError(too_large_coast(sizes, largest_texture));
         const auto upload = [](std::optional<GlTexture>& texture, glm::ivec2 size, int channels,
                                const void* texels) {
             edit_texture(texture.emplace());
@@ -100,8 +101,9 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
             glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0,
                          format.format, GL_FLOAT, texels);
         };
-        upload(coast_cells, cells, 4, layout->coast_cell_texels().data());
-        if (layout->has_coast()) upload(coast_trains, trains, 2, layout->coast_train_texels().data());
+        upload(coast_cells, sizes.cells, 4, layout->coast_cell_texels().data());
+        if (layout->coast_trains() > 0)
+            upload(coast_trains, sizes.trains, 2, layout->coast_train_texels().data());
     }
     // A sea that changes has a layout for each time, and the same textures for all of them.
     const bool has_room = layout_ &&

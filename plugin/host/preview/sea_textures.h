@@ -15,6 +15,9 @@
 
 namespace pelagic {
 
+// What is wrong with a coast whose textures are larger than the driver's.
+std::string too_large_coast(const SeaLayout::CoastSizes& sizes, int most);
+
 class SeaTextures {
   public:
     static constexpr int kUnits = 13;  // bind() uses texture units 0 … kUnits − 1

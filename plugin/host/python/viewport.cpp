@@ -454,11 +454,11 @@ class GpuSea {
             made["mask_cells"] = view_of(owner, tables->mask_cells.data(), {size.y, size.x, 1});
         }
         if (!tables->coast_cells.empty()) {
-            const glm::ivec2 size = layout.coast_size();
+            const glm::ivec2 size = layout.coast_sizes().cells;
             made["coast_cells"] = view_of(owner, &tables->coast_cells[0].x, {size.y, size.x, 4});
         }
         if (!tables->coast_trains.empty()) {
-            const glm::ivec2 size = layout.coast_trains_size();
+            const glm::ivec2 size = layout.coast_sizes().trains;
             made["coast_trains"] = view_of(owner, &tables->coast_trains[0].x, {size.y, size.x, 2});
         }
         if (!tables->train_table.empty())
@@ -588,6 +588,7 @@ class GpuSea {
         std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
         if (foam_) sum += foam_->bytes() + foam_->history_bytes();
         const auto tables = now();
+        sum += tables->layout().coast_sizes().bytes();
         for (const SeaLayout::Plane& plane : tables->layout().planes())
             sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
         return sum;

@@ -291,7 +291,7 @@ TEST(Validate, FramesSeedAndLoop) {
     };
     expect_good(coast([](Scene&) {}));
     expect_refused(coast([](Scene& s) { s.sea.depth_file = "none"; }),
-                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\""});
+                   {"waves.coast", "true", "false, or sea.depth_file = \"PATH.exr\" or \"PATH.obj\""});
     expect_good(coast([](Scene& s) { s.sea.depth_file = "reef.obj"; }));
     const auto tiles = [&](auto&& change) {
         return coast([=](Scene& s) {

@@ -441,8 +441,6 @@ TEST(SeaTables, OfSizesChosenForTheSceneFitEverywhere) {
         }
 }
 
-// The levels' tiles are halves of each other; the driver holds what lies between them as well.
-// A sea that is shown wrong is worse than one that isn't.
 // A beach that falls to the west, with a bar, a channel and land in the east: 4 km by 0.8.
 std::shared_ptr<const DepthMap> beach() {
     constexpr glm::ivec2 kSize(200, 40);
@@ -456,21 +454,39 @@ std::shared_ptr<const DepthMap> beach() {
                                             glm::dvec2(4000.0, 800.0));
 }
 
+// Far from the map's corner, beside a mask and a gust's front, whose rows stand before the coast's.
 TEST(QueryOnTheGpu, OfWavesThatFeelTheFloor) {
     for (const WaveModel model : {WaveModel::Trochoid, WaveModel::Fft}) {
         Scene scene = scene_of_model(model);
         scene.sea.depth_m = 12.0;
         scene.sea.depth_file = "beach.exr";
+        scene.sea.gust_fronts = {{.east_m = 1300.0, .length_m = 400.0, .width_m = 300.0, .wind = 1.5}};
         scene.waves.coast = true;
         scene.waves.coast_depths = beach();
+        scene.waves.masks = {
+            {.east_m = 1400.0, .length_m = 300.0, .width_m = 200.0, .edge_m = 100.0, .waves = 0.5}};
         Query query = picture_query();
         query.cell_m = query.pixel_m;
         // Near the shore trains hide some times the slopes of the sea that comes in, by wavenumbers that are sums over nine cells.
         const float unresolved_mss = model == WaveModel::Trochoid ? 1e-5f : 2e-6f;
-        compare(scene, query, {.unresolved_mss = unresolved_mss, .cells_are_pixels = true}, 3000);
+        compare(scene, query,
+                {.origin_m = {1350.0, 20.0}, .unresolved_mss = unresolved_mss, .cells_are_pixels = true},
+                3000);
     }
 }
 
+TEST(SeaLayout, OfACalmHasNoCoast) {
+    Scene scene = scene_of_model(WaveModel::Fft);
+    scene.sea.wind_speed_mps = 0.0;
+    scene.sea.depth_file = "beach.exr";
+    scene.waves.coast = true;
+    scene.waves.coast_depths = beach();
+    const SeaLayout layout(std::make_shared<const Sea<float>>(make_plan(scene, {picture_query()})), 0);
+    EXPECT_FALSE(layout.has_surf());
+    EXPECT_EQ(layout.coast_sizes().bytes(), 0u);
+}
+
+// The levels' tiles are halves of each other; the driver holds what lies between them as well.
 TEST(SeaLayout, LeavesLittleOfItsTexturesEmpty) {
     struct Case {
         double wind_mps, finest_m, least;  // least: of small textures, which have less to choose from, less

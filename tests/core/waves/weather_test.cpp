@@ -847,34 +847,6 @@ TEST(Weather, OverADepthThatChangesEachTimeIsItsOwn) {
     }
 }
 
-// An ebb to a centimetre, the least that a depth may be: finite, and as calm as the law of its depth has it.
-TEST(Weather, OverADepthThatFallsToACentimetreIsCalm) {
-    for (const Kind& kind : kKinds)
-        for (const auto interpolation : {kLinear, kSmooth}) {
-            SCOPED_TRACE(kind.name);
-            Scene scene = over_depth(kind.model, kind.has_cascades, interpolation);
-            give_keys(scene, "sea.depth_m", {{1, 2.0}, {25, 0.2}, {49, 0.02}, {73, 0.01}, {97, 0.1}},
-                      interpolation);
-            auto frame = frame_over_time<float>(scene, {everything()});
-            const auto points = random_points<float>(100.0, 200);
-            for (const double of : {1.0, 37.0, 60.0, 72.9, 73.0, 80.0, 97.0, 5000.0}) {
-                frame.set(scene.shot.time_s(of));
-                const auto values = sample(frame, 0, points);
-                const double depth_m = value_at(scene.keyed[0].keys, false, of);
-                for (std::size_t i = 0; i < points.size(); ++i) {
-                    for (const auto product :
-                         {Displacement, Normal, Velocity, SlopeVariance, Product::JacobianMoments}) {
-                        const glm::vec3 value = values.vectors(VectorProduct::checked(product))[i];
-                        ASSERT_TRUE(std::isfinite(value.x + value.y + value.z)) << of << ' ' << i;
-                    }
-                    const float foam = values.numbers(Product::Breaking)[i];
-                    ASSERT_TRUE(foam >= 0.0f && foam <= 1.0f) << of << ' ' << i;
-                    ASSERT_LE(std::abs(values.vectors(Displacement)[i].z), depth_m) << of << ' ' << i;
-                }
-            }
-        }
-}
-
 // Single precision against double, where the depth changes eleven days after t = 0, and long after it has.
 TEST(Weather, OverADepthThatChangesPhasesAreExactLate) {
     for (const Kind& kind : kKinds) {

@@ -17,6 +17,7 @@ mirror=$(debian_mirror)
 root() {
     "${as_root[@]}" debootstrap --variant=minbase "$1" "$clean/$1" ${mirror:+"$mirror"}
     "${as_root[@]}" cp /etc/resolv.conf "$clean/$1/etc/"
+    echo force-unsafe-io | "${as_root[@]}" tee "$clean/$1/etc/dpkg/dpkg.cfg.d/no-sync" >/dev/null  # it is thrown away
     "${as_root[@]}" cp -r "$given" "$clean/$1/given"
 }
 # in_root SUITE: runs the script from standard input in it, in /given.

@@ -45,7 +45,7 @@ random_scenes() {
 }
 # campaign NAME COUNT [OPTION…]: so many cases, from where the night before ended.
 campaign() {
-    install_packages && build release pelagic pelagic_python &&
+    install_packages && build release pelagic pelagic_python && in_memory &&
         "$here/campaigns/run.sh" "$1" -- --first "$((seed * $2))" --count "$2" "${@:3}"
 }
 
@@ -114,7 +114,6 @@ else
 fi
 echo "This is --seed $seed"
 
-in_memory
 commit=$(git -C "$PELAGIC_ROOT" describe --always --dirty)
 for i in "${!names[@]}"; do
     name=${names[i]}

@@ -64,6 +64,7 @@ with checking("a trawler with its wake, put together by clicks, is in the shot: 
     fresh_file()
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = 1, 96
+    scene.render.resolution_x, scene.render.resolution_y = SIZE
     sea = add_ocean(sea__wind_speed_mps=3.0, surface__size_m=160.0, surface__kind="projected-grid")
     assert bpy.ops.wm.obj_import(filepath=str(ROOT / "examples/data/trawler.obj"), forward_axis="Y", up_axis="Z") == {"FINISHED"}
     trawler = bpy.context.selected_objects[0]
@@ -81,7 +82,6 @@ with checking("a trawler with its wake, put together by clicks, is in the shot: 
     eye.rotation_mode = "QUATERNION"
     eye.rotation_quaternion = (eye.location - Vector((-2.0, 0.0, 4.0))).to_track_quat("Z", "Y")
     eye.data.clip_end = 100e3
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
     scene.frame_set(48)
     assert not remarks(), remarks()
     shot = exported("trawler")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the benchmarks and prints their tables. Some twenty-five minutes on two cores.
+# Builds the benchmarks and prints their tables.
 #   tests/bench/run.sh [PROGRAM…]      default: all of them:
 #     frame construction query procedural sky water living_foam places bake cost_model preview rays trace farm window ocean baked played memory blender_water
 set -euo pipefail

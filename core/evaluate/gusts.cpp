@@ -52,15 +52,15 @@ HWY_INLINE N FrontsWind(const GustArgs<T>& args, N x, N y, N width, N axis_x, N 
         const GustsPlan::Front& front = plan.fronts[f];
         const glm::dvec2 from = args.phases->from_fronts[f];
         const N east = x + N(from.x), north = y + N(from.y), reach = N(front.reach_m) + beyond;
-        // Out of reach it is 1; what is no number isn't.
-        if (hn::AllTrue(hn::ScalableTag<T>(), hn::Ge((east * east + north * north).v, (reach * reach).v)))
-            continue;
+        // Out of reach it is 1, whatever the vector's other points are; what is no number isn't.
+        const auto is_beyond = hn::Ge((east * east + north * north).v, (reach * reach).v);
+        if (hn::AllTrue(hn::ScalableTag<T>(), is_beyond)) continue;
         const N along_x(front.along.x), along_y(front.along.y);
-        wind = wind * front_wind(east, north, along_x, along_y, N(front.half_m.x), N(front.half_m.y),
-                                 N(front.edge_m),
-                                 square_root(length2_along(width, axis_x, axis_y, along_x, along_y)),
-                                 square_root(length2_along(width, axis_x, axis_y, -along_y, along_x)),
-                                 N(front.wind), level);
+        const N own = front_wind(
+            east, north, along_x, along_y, N(front.half_m.x), N(front.half_m.y), N(front.edge_m),
+            square_root(length2_along(width, axis_x, axis_y, along_x, along_y)),
+            square_root(length2_along(width, axis_x, axis_y, -along_y, along_x)), N(front.wind), level);
+        wind = wind * select(is_beyond, N(1), own);
     }
     return minimum(maximum(wind, N(plan.weakest)), N(plan.strongest));
 }

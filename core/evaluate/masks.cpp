@@ -40,8 +40,8 @@ bool MaskChunk<T>::take(const MasksPlan& plan, std::span<const WakeStrip> strips
             has_ripples = has_ripples || at.ripples != T(1);
         }
     }
-    for (const WakeStrip& strip : strips) {
-        if (!plan.has_strips) break;
+    if (!plan.has_strips) return any;
+    for (const WakeStrip& strip : strips)
         strip.for_each(
             WakeStrip::Wanted::Calm, chunk.count,
             [&](std::size_t i) { return origin_m + glm::dvec2(chunk.rest_x[i], chunk.rest_y[i]); },
@@ -52,7 +52,6 @@ bool MaskChunk<T>::take(const MasksPlan& plan, std::span<const WakeStrip> strips
                 ripples[i] *= T(1) - calm;
                 any = has_ripples = true;
             });
-    }
     return any;
 }
 

@@ -87,7 +87,7 @@ WakeStrip::Pieces WakeStrip::near(glm::dvec2 low_m, glm::dvec2 high_m) const {
     const double most_m = std::min(nearest_m + half_m, reach_m_) + half_m + kRounding_m;
     const std::size_t known = std::exchange(pieces.count, 0);
     for (std::size_t p = 0; p < known; ++p)
-        if (off_m[p] <= most_m) pieces.of[pieces.count++] = pieces.of[p];
+        if (!(off_m[p] > most_m)) pieces.of[pieces.count++] = pieces.of[p];
     return pieces;
 }
 

@@ -31,7 +31,7 @@ class WakeStrip {
         return at(place_m, footprint_m, near(place_m, place_m), Wanted::Foam);
     }
     // Calls use(i, water) for some of the `count` places place_of(i), among them all where there is some of what is wanted. Neighbours
-    // share the search for what is near.
+    // share the search for what is near; places that lie far apart have none. What a place gets depends on no other.
     enum class Wanted { Foam, Calm };
     template <class PlaceOf, class FootprintOf, class Use>
     void for_each(Wanted wanted, std::size_t count, const PlaceOf& place_of, const FootprintOf& footprint_of,
@@ -40,13 +40,26 @@ class WakeStrip {
         for (std::size_t first = 0, end = 0; first < count; first = end) {
             end = std::min(first + kNeighbours, count);
             glm::dvec2 low_m(std::numeric_limits<double>::infinity()), high_m = -low_m;
+            std::array<glm::dvec2, kNeighbours> places_m;
+            std::array<std::size_t, kNeighbours> of;
+            std::size_t within = 0;
             for (std::size_t i = first; i < end; ++i) {
-                low_m = glm::min(low_m, place_of(i));  // but for what is no number
-                high_m = glm::max(high_m, place_of(i));
+                const glm::dvec2 place_m = place_of(i);
+                if (!whole_.meets(place_m, place_m)) continue;  // nor does what is no number
+                low_m = glm::min(low_m, place_m);
+                high_m = glm::max(high_m, place_m);
+                places_m[within] = place_m;
+                of[within++] = i;
             }
-            const Pieces pieces = near(low_m, high_m);
-            for (std::size_t i = first; pieces.count > 0 && i < end; ++i)
-                use(i, at(place_of(i), footprint_of(i), pieces, wanted));
+            if (within == 0) continue;
+            const glm::dvec2 size_m = high_m - low_m;
+            const bool is_shared = std::max(size_m.x, size_m.y) <= kSharedReaches * reach_m_;
+            Pieces pieces;
+            if (is_shared) pieces = near(low_m, high_m);
+            for (std::size_t p = 0; p < within; ++p) {
+                if (!is_shared) pieces = near(places_m[p], places_m[p]);
+                if (pieces.count > 0) use(of[p], at(places_m[p], footprint_of(of[p]), pieces, wanted));
+            }
         }
     }
 
@@ -72,6 +85,8 @@ class WakeStrip {
     double reach_m() const { return reach_m_; }  // from the path: beyond it there is none
 
   private:
+    // Of a larger rectangle, in reaches, so many pieces are near that each place's own search is cheaper, as measured.
+    static constexpr double kSharedReaches = 6.0;
     // Of the path, by their first points.
     struct Pieces {
         std::array<std::uint8_t, kMostPoints> of;

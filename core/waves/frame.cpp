@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -138,9 +139,10 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
         for (int g = 0; g < static_cast<int>(planned.grids.size()); ++g) {
             const Grid& grid = planned.grids[g];
             const int n = grid.resolution;
-            // The sea's keep the bits of files that are there.
-            GridState made{transforms.of(n, planned.vessel ? LineTransform<T>::Parts::Paired
-                                                           : LineTransform<T>::Parts::Apart),
+            // The sea's keep the bits of files that are there, and powers of two their recorded plans.
+            const bool is_paired = planned.vessel && !std::has_single_bit(static_cast<unsigned>(n));
+            GridState made{transforms.of(n, is_paired ? LineTransform<T>::Parts::Paired
+                                                      : LineTransform<T>::Parts::Apart),
                            {},
                            {}};
             if (grid.sampling == Sampling::Spline) {

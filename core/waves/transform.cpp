@@ -142,11 +142,10 @@ void LineTransform<T>::execute(const T* from, T* to) const {
         Fftw<T>::execute(plan_->handle, input + stride, input, to + stride, to);
         return;
     }
-    thread_local Buffer<T> input, output;
+    thread_local Buffer<T> pairs;  // before and after
     const auto n = static_cast<std::size_t>(n_);
-    if (input.size() < 2 * n)
-        for (Buffer<T>* pairs : {&input, &output}) *pairs = Buffer<T>(2 * n);
-    T *in = input.data(), *out = output.data();
+    if (pairs.size() < 4 * stride) pairs = Buffer<T>(4 * stride);
+    T *in = pairs.data(), *out = in + 2 * stride;
     for (std::size_t i = 0; i < n; ++i) {
         in[2 * i] = from[i];
         in[2 * i + 1] = from[stride + i];

@@ -19,8 +19,9 @@ namespace pelagic {
 template <class T>
 class LineTransform {
   public:
-    // What FFTW is given: real and imaginary parts apart, as they lie, or copied into pairs and back. Pairs take a third of the time
-    // where n is no power of two, since FFTW has few vector codelets for parts that lie apart; they round otherwise.
+    // What FFTW is given: real and imaginary parts apart, as they lie, or copied into pairs and back. Pairs are for lengths that are no
+    // power of two, since FFTW has few vector codelets for parts that lie apart: a line of 480 takes about half as long. Powers of two
+    // have recorded plans for parts apart. Pairs round otherwise.
     enum class Parts { Apart, Paired };
     explicit LineTransform(int n,
                            Parts parts = Parts::Apart);  // throws std::runtime_error where FFTW has no plan

@@ -445,6 +445,31 @@ TEST(GustFronts, LeaveWhatLiesBeyondThemAsItIs) {
     }
 }
 
+// On the rim of a large one with a narrow edge, where roundings tell, a point has what it has whatever points are computed beside it.
+TEST(GustFronts, EndForEachPointByItself) {
+    constexpr double kSize_m = 1e5, kEdge_m = 1.0;
+    Scene scene = with_front(
+        {.speed_mps = 0.0, .length_m = kSize_m, .width_m = kSize_m, .edge_m = kEdge_m, .wind = 4.0});
+    scene.sea.gust_size_m = 60.0;
+    constexpr std::size_t kLongest = 16;  // values of a vector
+    const auto beside = [&](glm::vec2 companion) {
+        std::vector<glm::vec2> points;
+        for (int i = 0; i < 4000; ++i) {
+            const double turn = kTwoPi * i / 4000.0;
+            points.emplace_back((0.5 * kSize_m + kEdge_m) * glm::dvec2(std::cos(turn), std::sin(turn)));
+            points.insert(points.end(), kLongest - 1, companion);
+        }
+        const auto values = sample(
+            frame_of<float>(scene, {unfiltered(products(Product::Normal, Product::SlopeVariance))}, 3.0), 0,
+            points);
+        std::vector<float> rim;
+        for (std::size_t i = 0; i < points.size(); i += kLongest)
+            rim.push_back(values.vectors(SlopeVariance)[i].x);
+        return rim;
+    };
+    EXPECT_EQ(beside({0.0f, 0.0f}), beside({1e6f, 0.0f}));
+}
+
 // Of a front that is smaller than its footprint a point sees a part, by its area, so that none appears and goes between pixels; and of an ellipse
 // along its long axis alone.
 TEST(GustFronts, FadeWhereAPixelIsLarger) {

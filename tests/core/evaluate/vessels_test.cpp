@@ -11,6 +11,9 @@
 #include <complex>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <initializer_list>
+#include <limits>
+#include <random>
 #include <tuple>
 
 #include "core/effects/sea_at_time.h"
@@ -19,6 +22,7 @@
 #include "core/scene/text.h"
 #include "core/waves/folding.h"
 #include "tests/core/waves/samples.h"
+#include "tests/core/waves/worst.h"
 
 namespace pelagic {
 namespace {
@@ -142,7 +146,7 @@ TEST(Vessels, MakeKelvinsWaves) {
         }
         EXPECT_LT(std::sqrt(error / all), 0.008) << waves;
         RecordProperty("error_at_" + std::to_string(static_cast<int>(waves)),
-                       std::to_string(std::sqrt(error / all)));
+                       number_text(std::sqrt(error / all)));
     }
     for (const double waves : {10.0, 20.0, 28.0}) {  // 32 waves behind the tile ends
         const double said = loudest_angle(waves * wave_m, wave_m, 15.0, 21.0, [&](double x, double y) {
@@ -157,7 +161,7 @@ TEST(Vessels, MakeKelvinsWaves) {
                                            [&](double, double) { return std::pow(values[next++].z, 2); });
         EXPECT_NEAR(found, said, 0.3) << waves;
         RecordProperty("off_deg_at_" + std::to_string(static_cast<int>(waves)),
-                       std::to_string(std::abs(found - said)));
+                       number_text(std::abs(found - said)));
     }
 }
 
@@ -179,9 +183,9 @@ TEST(Vessels, DragWavesOfTheirOwnSpeed) {
         ASSERT_GT(falls.size(), 10u);
         const double found = (falls.front() - falls.back()) / static_cast<double>(falls.size() - 1);
         EXPECT_NEAR(found / wave_m, 1.0, 0.01) << speed_mps;
-        worst = std::max(worst, std::abs(found / wave_m - 1.0));
+        worst = worse(worst, std::abs(found / wave_m - 1.0));
     }
-    RecordProperty("length_off", std::to_string(worst));
+    RecordProperty("length_off", number_text(worst));
 }
 
 // Fast ones leave a narrow wake (Darmon, Benzaquen & Raphaël 2014), the integral's.
@@ -207,15 +211,15 @@ TEST(Vessels, LeaveANarrowWakeWhenFast) {
         EXPECT_NEAR(found / said, 1.0, 0.03) << froude;
         EXPECT_LT(found, 0.9 * before);
         before = found;
-        worst = std::max(worst, std::abs(found / said - 1.0));
+        worst = worse(worst, std::abs(found / said - 1.0));
         by_froude.push_back(found * froude);
     }
-    RecordProperty("integral_off", std::to_string(worst));
+    RecordProperty("integral_off", number_text(worst));
     // Of an angle that is in proportion to 1/Fr, from 0.8 on and from 1.2.
     for (const std::size_t first : {0u, 1u}) {
         const auto [least, most] = std::minmax_element(by_froude.begin() + first, by_froude.end());
         RecordProperty(first ? "froude_off_from_1.2" : "froude_off_from_0.8",
-                       std::to_string((*most - *least) / (*most + *least)));
+                       number_text((*most - *least) / (*most + *least)));
     }
 }
 
@@ -237,7 +241,7 @@ TEST(Vessels, HaveAsManyModesAsTheirSlopesNeed) {
             all += glm::dot(slope, slope);
         }
         EXPECT_LE(lost / all, 1.5e-3) << speed_mps;  // of one line across, from which the mean differs
-        RecordProperty("lost_at_" + std::to_string(static_cast<int>(speed_mps)), std::to_string(lost / all));
+        RecordProperty("lost_at_" + std::to_string(static_cast<int>(speed_mps)), number_text(lost / all));
     }
 }
 
@@ -353,6 +357,39 @@ TEST(Vessels, AreTheSameAloneInARunAndOnOneThread) {
     EXPECT_EQ(sample(alone, 0, rest, far).vectors(Position), sample(plain, 0, rest, far).vectors(Position));
 }
 
+// And so are the strip's foam with its age and the slopes that pixels hide.
+TEST(Vessels, LeaveTheSameStripAloneInARunAndOnOneThread) {
+    Scene scene = still_water(turning());
+    scene.sea.wind_speed_mps = 6.0;
+    scene.effects.foam_decay_s = 0.0;  // the strip's alone
+    scene.quality.level = QualityLevel::Draft;
+    const Query query = filtered(products(Coverage, Product::FoamAge, SlopeVariance), 0.5);
+    const auto rest = random_points<float>(300.0, 10000);
+    const auto set_to = [&](std::initializer_list<double> times_s) {
+        SeaAtTime<float> sea(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
+        ProductArrays<float> values;
+        values.resize(query.products, rest.size());
+        for (const double t_s : times_s) {
+            sea.set(t_s);
+            sea.evaluate(0, {.origin_m = {}, .count = rest.size(), .rest_m = {rest.data()}},
+                         values.results());
+        }
+        return values;
+    };
+    const auto of_run = set_to({5.0, 6.0, 7.25});
+    const auto is_it = [&](const ProductArrays<float>& there) {
+        return there.numbers(Coverage) == of_run.numbers(Coverage) &&
+               there.numbers(Product::FoamAge) == of_run.numbers(Product::FoamAge) &&
+               there.vectors(SlopeVariance) == of_run.vectors(SlopeVariance);
+    };
+    EXPECT_TRUE(is_it(set_to({7.25})));
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_TRUE(is_it(set_to({7.25})));
+    EXPECT_FALSE(is_it(set_to({7.3})));
+    scene.waves.vessels.clear();
+    EXPECT_FALSE(is_it(set_to({7.25})));
+}
+
 TEST(Vessels, LieWithinTheirBoundsAndFadeToTheTilesBorder) {
     Scene scene = still_water(turning());
     scene.waves.masks = {{.waves = 0.0}};
@@ -452,7 +489,7 @@ TEST(Vessels, AreBoundedOverAllDepthsAndSpeedsOrRefused) {
     EXPECT_GT(allowed, 20);
     EXPECT_GT(refused, 8);
     EXPECT_GT(nearest, 0.3);  // the bound isn't an idle one
-    RecordProperty("nearest", std::to_string(nearest));
+    RecordProperty("nearest", number_text(nearest));
 }
 
 // A bow's bands open as long as they are seen: where the strip ends, to the side and at its oldest, nearly nothing is left. A wide pixel has
@@ -494,6 +531,7 @@ TEST(Vessels, StripsEndSoftlyAndKeepTheirFoam) {
 }
 
 // Neighbours share the search: each has what the nearest of all pieces gives it, on a path that crosses itself.
+// However far apart they are, and whatever is no place at all lies among them.
 TEST(Vessels, StripsAnswerNeighboursAsEachByItself) {
     Vessel vessel = turning();
     vessel.path = "-700 -60 -60, -400 40 40, -200 60 -20, 0 -40 -10, 180 -60 50";
@@ -519,11 +557,21 @@ TEST(Vessels, StripsAnswerNeighboursAsEachByItself) {
                               std::lerp(a.age_s, b.age_s, share), std::lerp(a.strength, b.strength, share)},
             footprint_m);
     };
-    for (const double apart_m : {0.7, 9.0})  // neighbours that a piece tells apart, and that it doesn't
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN(),
+                     kFar = std::numeric_limits<double>::infinity();
+    const std::array<glm::dvec2, 5> nowhere{
+        {{kNone, 0.0}, {0.0, kFar}, {-kFar, 0.0}, {kFar, kNone}, {1e300, -1e300}}};
+    // Neighbours that a piece tells apart, that it doesn't, and that aren't any.
+    for (const auto& [apart_m, is_scattered] :
+         {std::pair(0.7, false), std::pair(9.0, false), std::pair(0.7, true)})
         for (const double footprint_m : {0.05, 6.0}) {
             std::vector<glm::dvec2> places;
             for (double y = -110.0; y < 110.0; y += 5.0)
-                for (double x = -110.0; x < 110.0; x += apart_m) places.emplace_back(x, y);
+                for (double x = -110.0; x < 110.0; x += apart_m) {
+                    places.emplace_back(x, y);
+                    if (places.size() % 23 == 0) places.push_back(nowhere[places.size() % nowhere.size()]);
+                }
+            if (is_scattered) std::shuffle(places.begin(), places.end(), std::mt19937(1));
             std::vector<WakeWater<double>> foam(places.size(), {0.0, 0.0, 0.0}), calm = foam;
             for (const auto& [wanted, to] :
                  {std::pair(WakeStrip::Wanted::Foam, &foam), std::pair(WakeStrip::Wanted::Calm, &calm)})
@@ -533,7 +581,10 @@ TEST(Vessels, StripsAnswerNeighboursAsEachByItself) {
                     [&, to = to](std::size_t i, const WakeWater<double>& water) { (*to)[i] = water; });
             int wet = 0;
             for (std::size_t i = 0; i < places.size(); ++i) {
-                const WakeWater<double> at = expected(places[i], footprint_m);
+                const WakeWater<double> at = expected(places[i], footprint_m),
+                                        alone = strip.at(places[i], footprint_m);
+                ASSERT_EQ(foam[i].foam, alone.foam) << i;
+                ASSERT_EQ(foam[i].age_s, alone.age_s) << i;
                 ASSERT_NEAR(foam[i].foam, at.foam, 1e-9) << i;
                 if (at.foam > 1e-6) {
                     ASSERT_NEAR(foam[i].age_s, at.age_s, 1e-6) << i;

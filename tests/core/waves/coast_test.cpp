@@ -9,7 +9,9 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/constants.h"
+#include "core/scene/text.h"
 #include "core/spectrum/dispersion.h"
+#include "tests/core/waves/worst.h"
 
 namespace pelagic {
 namespace {
@@ -66,16 +68,18 @@ TEST(CoastTest, APlaneBeachIsSnells) {
                 EXPECT_NEAR(angle, std::asin(sine) * 180.0 / kPi, 1.0) << degrees << ' ' << depth_m;
                 EXPECT_NEAR(glm::length(gradient) / k, 1.0, 0.02) << degrees << ' ' << depth_m;
                 ++compared;
-                const auto widen = [](double& worst, double off) { worst = std::max(worst, std::abs(off)); };
+                const auto widen = [](double& worst, double off) {
+                    worst = test::worse(worst, std::abs(off));
+                };
                 widen(worst_height, std::sqrt(wave.energy[cell]) / expected - 1.0);
                 widen(worst_flux, wave.flux[cell].x / flux0 - 1.0);
                 widen(worst_deg, angle - std::asin(sine) * 180.0 / kPi);
             }
         EXPECT_GT(compared, 600);
     }
-    RecordProperty("height_off", std::to_string(worst_height));
-    RecordProperty("flux_off", std::to_string(worst_flux));
-    RecordProperty("off_deg", std::to_string(worst_deg));
+    RecordProperty("height_off", number_text(worst_height));
+    RecordProperty("flux_off", number_text(worst_flux));
+    RecordProperty("off_deg", number_text(worst_deg));
 }
 
 TEST(CoastTest, ThePhaseIsTheIntegralOfTheWavenumber) {
@@ -146,11 +150,11 @@ TEST(CoastTest, ASeaBreaksByThorntonAndGuza) {
         const std::size_t cell = depths.at(x, 2);
         const double height_m = std::sqrt(8.0 * m0[cell] * breaking.left[cell]);
         EXPECT_NEAR(height_m / depths.depth_m[cell] / expected, 1.0, 0.1) << depth_m;
-        worst = std::max(worst, std::abs(height_m / depths.depth_m[cell] / expected - 1.0));
+        worst = test::worse(worst, std::abs(height_m / depths.depth_m[cell] / expected - 1.0));
         EXPECT_NEAR(breaking.broken[cell],
                     std::min(1.0, std::pow(height_m / (0.42 * depths.depth_m[cell]), 4.0)), 1e-9);
     }
-    RecordProperty("height_off", std::to_string(worst));
+    RecordProperty("height_off", number_text(worst));
     // None offshore, and no energy from nowhere.
     EXPECT_LT(breaking.broken[depths.at(5, 2)], 0.01);
     for (int x = 1; x < 500; ++x)

@@ -52,10 +52,27 @@ TEST(LineTransform, IsTheSumWithAPositiveExponent) {
     }
 }
 
+// Whether FFTW knows a plan for such a line, as LineTransform asks for it, without searching.
+bool is_recorded(int n, Parts<float> parts) {
+    const std::size_t stride = line_stride<float>(n), imaginary = parts == Parts<float>::Paired ? 1 : stride;
+    Buffer<float> from(2 * stride), to(2 * stride);
+    const int step = parts == Parts<float>::Paired ? 2 : 1;
+    const fftwf_iodim line{n, step, step};
+    fftwf_plan plan = fftwf_plan_guru_split_dft(1, &line, 0, nullptr, from.data() + imaginary, from.data(),
+                                                to.data() + imaginary, to.data(),
+                                                FFTW_ESTIMATE | FFTW_PRESERVE_INPUT | FFTW_WISDOM_ONLY);
+    if (plan) fftwf_destroy_plan(plan);
+    return plan != nullptr;
+}
+
 // A different build of FFTW may reject the recorded plans. Then this fails, and only speed is lost.
 TEST(LineTransform, RecordedPlansAreThoseOfThisFftw) {
     EXPECT_EQ(fftwf_import_wisdom_from_string(kSingleLineWisdom), 1);
     EXPECT_EQ(fftwf_import_wisdom_from_string(kPairedLineWisdom), 1);
+    { const PlannedBy recorded(Planning::Recorded); }
+    for (int n = 256; n <= 16384; n *= 2) EXPECT_TRUE(is_recorded(n, Parts<float>::Apart)) << n;
+    for (const int n : {320, 400, 480, 560, 640}) EXPECT_TRUE(is_recorded(n, Parts<float>::Paired)) << n;
+    EXPECT_FALSE(is_recorded(240, Parts<float>::Paired));
 }
 
 // So that a comparison changes nobody's bits.

@@ -21,6 +21,7 @@
 #include "core/waves/sea_over_time.h"
 #include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
+#include "tests/core/waves/worst.h"
 
 namespace pelagic {
 namespace {
@@ -226,7 +227,7 @@ double expect_velocities_are_rates(const Scene& scene, std::initializer_list<dou
             all += glm::dot(rate, rate);
         }
         EXPECT_LT(std::sqrt(wrong / all), most) << t;
-        worst = std::max(worst, std::sqrt(wrong / all));
+        worst = worse(worst, std::sqrt(wrong / all));
     }
     return worst;
 }
@@ -238,7 +239,7 @@ TEST(Weather, VelocitiesHoldTheAmplitudesOwnChange) {
             SCOPED_TRACE(kind.name);
             Scene scene = rising(kind.model, kind.has_cascades);
             give_keys(scene, "sea.wind_speed_mps", {{1, 8.0}, {49, 22.0}, {97, 10.0}}, interpolation);
-            worst = std::max(worst, expect_velocities_are_rates(scene, {0.3, 1.1, 1.9, 2.7, 3.8}));
+            worst = worse(worst, expect_velocities_are_rates(scene, {0.3, 1.1, 1.9, 2.7, 3.8}));
         }
     RecordProperty("velocity_off", number_text(worst));
 }
@@ -272,10 +273,10 @@ TEST(Weather, HasTheHeightOfItsSpectrumAtEachFrame) {
             const double spectrum = prepared_at(prepared, scene.shot.time_s(f))->spectrum.m0();
             EXPECT_NEAR(spectrum / ((1.0 - w) * first + w * last), 1.0, 1e-9);
             EXPECT_NEAR(std::sqrt(found / spectrum), 1.0, 0.02) << f;
-            worst = std::max(worst, std::abs(std::sqrt(found / spectrum) - 1.0));
+            worst = worse(worst, std::abs(std::sqrt(found / spectrum) - 1.0));
         }
     }
-    RecordProperty("height_off", std::to_string(worst));
+    RecordProperty("height_off", number_text(worst));
 }
 
 // A wind that turns leaves the old waves, which calm as the new ones grow: the short way round.

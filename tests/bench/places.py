@@ -78,11 +78,11 @@ def main():
         recorded = test_report.get(name)
         measured = "not measured" if recorded is None else f"{factor * float(recorded):.2g}{unit}"
         is_met = has_passed and recorded is not None and factor * float(recorded) <= target
-        rows.append((what, measured if has_passed else f"{measured}: {test} failed", f"≤ {target:g}{unit}",
+        rows.append((what, measured if has_passed else f"{measured}: {test} didn't pass", f"≤ {target:g}{unit}",
                      "met" if is_met else "missed"))
     for what, program, tests in SAME:
         failed = [test for test in tests if not found[program].get(test, (False,))[0]]
-        rows.append((what, "same bits" if not failed else "failed: " + ", ".join(failed), "same bits", "missed" if failed else "met"))
+        rows.append((what, "same bits" if not failed else "didn't pass: " + ", ".join(failed), "same bits", "missed" if failed else "met"))
     costs = subprocess.run([build / "bench" / "bench_places", *sys.argv[2:]], stdout=subprocess.PIPE, text=True, check=True).stdout
     rows += [tuple(line.split("\t")) for line in costs.splitlines()]
     print("| what | measured | target | |\n|---|---|---|---|")

@@ -50,6 +50,15 @@ def licence_of(library):
     return owner, file
 
 
+COMMON = Path("/usr/share/common-licenses")
+
+
+def common_licences(licences):
+    """Name → text of those that Debian's copyright files only name; licences: their bytes."""
+    names = {name.decode().rstrip(".-") for text in licences for name in re.findall(rb"/usr/share/common-licenses/([\w.+-]+)", text)}
+    return {name: (COMMON / name).read_bytes() for name in sorted(names) if (COMMON / name).is_file()}
+
+
 def stripped(file):
     """The contents of a binary without what only debuggers need."""
     with tempfile.NamedTemporaryFile() as out:
@@ -73,9 +82,8 @@ def is_too_new(version):
 def elf_hash(name):
     value = 0
     for byte in name:
-        value = (value << 4) + byte
-        high = value & 0xF0000000
-        value = (value ^ high >> 24) & ~high
+        value = (value << 4) + byte  # up to 2^32 and a little more: what is above the lower 28 bits goes
+        value = (value ^ (value & 0xF0000000) >> 24) & 0x0FFFFFFF
     return value
 
 
@@ -126,6 +134,8 @@ def contents(binaries):
         files[f"{FOLDER}/lib/{name}"] = for_older_systems(stripped(path))
         owner, licence = licence_of(path)
         files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
+    licences = [data for name, data in files.items() if "/lib/licences/" in name]
+    files |= {f"{FOLDER}/lib/licences/common-licenses/{name}": data for name, data in common_licences(licences).items()}
     return files
 
 

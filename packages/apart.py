@@ -3,6 +3,7 @@ all that they define, since the loader gives a function to whoever asks for its 
 """
 
 import struct
+import sys
 
 import make_zip  # addon's
 
@@ -21,9 +22,10 @@ def own_file_name(name):
 class Library:
     """An ELF library of x86-64, to be changed in memory: strings that it names are appended, none is moved."""
 
-    def __init__(self, data):
+    def __init__(self, name, data):
+        self.name = name
         if data[:5] != b"\x7fELF\x02" or struct.unpack_from("<H", data, 18)[0] != 62:
-            raise ValueError("no ELF library of x86-64")
+            self._refuse("is no ELF library of x86-64")
         self.data = bytearray(data)
         segments, sections = struct.unpack_from("<QQ", data, 32)
         size, count, section_size, section_count = struct.unpack_from("<HHHH", data, 54)
@@ -35,6 +37,9 @@ class Library:
         self.strings_section = self.sections[link]
         at, size = struct.unpack_from("<QQ", data, self.strings_section + 24)
         self.strings = bytearray(data[at:at + size])
+
+    def _refuse(self, why):
+        sys.exit(f"{self.name} {why}: it can't get names of its own")
 
     def _section(self, kind):
         return next((s for s in self.sections if struct.unpack_from("<I", self.data, s + 4)[0] == kind), None)
@@ -88,9 +93,11 @@ class Library:
             if name in symbols:
                 struct.pack_into("<I", self.data, at, self._add(name + SUFFIX))
                 changes_own |= is_defined
+        if self._entry(RUNPATH) and self._entry(RPATH):
+            self._refuse("has both an RPATH and a RUNPATH")
         entry = self._entry(RUNPATH) or self._entry(RPATH) or self._entry(NULL)
         if entry == self._dynamic()[-1]:
-            raise ValueError("there is no room for an RPATH")
+            self._refuse("has no room for an RPATH")
         struct.pack_into("<qQ", self.data, entry, RPATH, self._add(rpath))
         self._write(changes_own)
 
@@ -104,13 +111,17 @@ class Library:
         offset = len(self.data)
         self.data += table + self.strings
         # A note's entry in the list of segments, which can't grow, becomes this one's: they are for debuggers.
-        note = next(s for s in self.segments if s > loads[-1] and struct.unpack_from("<I", self.data, s)[0] == NOTE)
+        note = next((s for s in self.segments if s > loads[-1] and struct.unpack_from("<I", self.data, s)[0] == NOTE), None)
+        if note is None:
+            self._refuse("has no note (PT_NOTE) after what is loaded")
         size = len(table) + len(self.strings)
         struct.pack_into("<IIQQQQQQ", self.data, note, LOAD, 4, offset, address, address, size, size, PAGE)
         struct.pack_into("<Q", self.data, self._entry(STRTAB) + 8, address + len(table))
         struct.pack_into("<Q", self.data, self._entry(STRSZ) + 8, len(self.strings))
         struct.pack_into("<QQQ", self.data, self.strings_section + 16, address + len(table), offset + len(table), len(self.strings))
         if table:
+            if self._entry(HASH) or not self._entry(GNU_HASH):
+                self._refuse("has another table of its symbols than DT_GNU_HASH alone")
             # Of the older kind, whose order isn't the symbols' own: they stay where they are.
             struct.pack_into("<qQ", self.data, self._entry(GNU_HASH), HASH, address)
             section = self._section(SECTION_GNU_HASH)
@@ -128,10 +139,10 @@ class Library:
 def apart(libraries, user, rpath):
     """libraries: SONAME → bytes, each of which may need others of them; user: the bytes of the one that needs them.
     The same under their new names, and the user, which looks for them in rpath."""
-    read = {name: Library(data) for name, data in libraries.items()}
+    read = {name: Library(name, data) for name, data in libraries.items()}
     symbols = set().union(*(library.defined() for library in read.values()))
     for library in read.values():
         library.rename(libraries, symbols, "$ORIGIN")  # a linker follows each one's own
-    user = Library(user)
+    user = Library("the library that needs them", user)
     user.rename(libraries, symbols, rpath)
     return {own_file_name(name): bytes(library.data) for name, library in read.items()}, bytes(user.data)

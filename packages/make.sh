@@ -15,6 +15,7 @@ install_packages program preview python packages
 build release pelagic pelagic_without_preview pelagic_procedural pelagic_python pelagic_openvdb_writer pelagic_ocio_module pelagic_rays_module
 release=$PELAGIC_ROOT/build/release
 "$here/man.sh" "$release/pelagic" "$release/man"
+rm -f "$folder"/{,lib,python3-,blender-}pelagic*.deb "$folder"/pelagic-*-linux-x86_64.tar.gz  # of other versions
 (cd "$release" && cpack -G DEB -B "$folder")
 rm -rf "$folder/_CPack_Packages"
 version=$("$release/pelagic" --version | sed -n '1s/^pelagic //p')

@@ -7,15 +7,18 @@ needs under names of its own.
 BUILD: a build's folder, with pelagic_without_preview, libpelagic, the modules and man.sh's pages. Made on Debian 12, whose libraries go in.
 
 The program is run by the C library's own loader, which bin/pelagic starts: so it needs nothing of the system but its kernel and a
-shell. The library lives in others' processes, whose C library and C++ runtime it takes; it needs those of 2021 (make_zip.NEWEST).
+shell with readlink. The library lives in others' processes, whose C library and C++ runtime it takes; it needs those of 2021 (make_zip.NEWEST).
 """
 
 import gzip
 import io
+import re
 import subprocess
 import sys
 import tarfile
+import tempfile
 from pathlib import Path
+from urllib.parse import quote
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "addon"))
@@ -26,17 +29,22 @@ import make_zip  # noqa: E402
 LOADER = "ld-linux-x86-64.so.2"
 LAUNCHER = f"""#!/bin/sh
 # Pelagic, run by the C library that it was built with (lib/pelagic/lib): nothing here needs the system's.
+unset LD_PRELOAD LD_AUDIT LD_LIBRARY_PATH  # of the system's libraries, which this C library can't load
 self=$(readlink -f -- "$0") || exit 127
 program=${{self%/bin/*}}/lib/pelagic
 exec "$program/lib/{LOADER}" --inhibit-cache --argv0 "$self" "$program/pelagic" "$@"
 """
-README = """Pelagic {version} for Linux on x86-64. https://www.gnu.org/licenses/gpl-3.0.html (LICENSE); licences of what is beside it: share/doc/pelagic/licences.
+README = """Pelagic {version} for Linux on x86-64. https://www.gnu.org/licenses/gpl-3.0.html (LICENSE); licences of what is beside it: share/doc/pelagic/licences; where its
+sources are: share/doc/pelagic/SOURCES.
 
-  bin/pelagic                   the command line, on any distribution with a kernel of 3.2 or later. All but "pelagic preview", which
-                                needs the system's window and drivers: no other C library can load those.
-  lib/libpelagic.so             the library for renderers and C (include/pelagic, lib/pkgconfig): glibc {glibc} and the C++ runtime of
-                                GCC 11 (GLIBCXX_{glibcxx}) or later, which are the system's. What else it needs (lib/libpelagic) has names
-                                of its own, so that a host may bring another oneTBB, OpenSubdiv or OpenEXR.
+  bin/pelagic                   the command line, with a C library of its own: it needs a kernel of 3.2 or later, /bin/sh and readlink.
+                                Run on Debian 11, on Debian 12 and in a root without a C library. All but "pelagic preview", which
+                                needs the system's window and drivers: no other C library can load those. Before it begins it unsets
+                                LD_PRELOAD, LD_AUDIT and LD_LIBRARY_PATH.
+  lib/libpelagic.so             the library for renderers and C (include/pelagic, lib/pkgconfig). It takes the system's glibc and C++
+                                runtime, and asks for none newer than {glibc} and GCC 11's (GLIBCXX_{glibcxx}); run with those of Debian 12
+                                (2.36). What else it needs (lib/libpelagic) has names of its own, so that a host may bring another
+                                oneTBB, OpenSubdiv or OpenEXR.
   share/man, share/bash-completion
   examples                      shots, C, and procedurals for renderers
 
@@ -60,6 +68,52 @@ def for_hosts(binary):
     return make_zip.for_older_systems(make_zip.stripped(binary))
 
 
+SOURCES = """The libraries beside Pelagic are Debian 12's, and so are those of which headers or archives are compiled into it. Each line: the
+package, its version, and where Debian keeps its source. Changed: debugging symbols are stripped; in libraries of lib/libpelagic, and in
+libpelagic, names of files, of functions and of the versions of glibc and GCC that are asked for, by Pelagic's packages/apart.py and
+addon/make_zip.py.
+Pelagic's own source: the repository from which this was made, version {version}.
+
+Libraries:
+{libraries}
+
+Of which headers or archives may be compiled in:
+{compiled}
+"""
+
+
+def packages_to_compile():
+    """What the program is built with by examples/packages.txt, and the headers that those packages bring."""
+    text = (SOURCE / "examples/packages.txt").read_text()
+    section = text[text.index("[program]"):].split("\n[")[0]
+    named = [line for line in section.splitlines() if line.endswith("-dev")]
+    depends = subprocess.run(["dpkg-query", "-W", "-f", "${Depends}\n", *named], check=True, capture_output=True, text=True).stdout
+    return {*named, *re.findall(r"\b(lib[\w.+-]+-dev)\b", depends)} - {"libc6-dev"}
+
+
+def source_lines(packages):
+    lines = subprocess.run(["dpkg-query", "-W", "-f", "${Package}=${Version} ${source:Package} ${source:Version}\n", *packages],
+                           capture_output=True, text=True).stdout.splitlines()
+    found = [line.split() for line in sorted({*lines}) if len(line.split()) == 3 and not line.split()[0].endswith("=")]
+    return "\n".join(f"{package}  https://snapshot.debian.org/package/{quote(source)}/{quote(version)}/" for package, source, version in found)
+
+
+def expect_to_load(files):
+    """Every name that the finished library asks for is there, in one of its own libraries or the system's."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, data in files.items():
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if isinstance(data, str):
+                path.symlink_to(data)
+            else:
+                path.write_bytes(data)
+        script = "import ctypes, os, sys; ctypes.CDLL(sys.argv[1], os.RTLD_NOW)"
+        done = subprocess.run([sys.executable, "-c", script, f"{folder}/lib/libpelagic.so"], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"the finished libpelagic.so can't be loaded: {done.stderr.strip().splitlines()[-1] if done.stderr.strip() else done.returncode}")
+
+
 def contents(build):
     """Path → bytes, or a str: a link to it."""
     files = {"bin/pelagic": LAUNCHER.encode()}
@@ -76,14 +130,21 @@ def contents(build):
     renamed, library_bytes = apart.apart({name: for_hosts(path) for name, path in of_the_library.items()}, for_hosts(library),
                                          "$ORIGIN/libpelagic")
     files |= {f"lib/libpelagic/{name}": data for name, data in renamed.items()}
-    for path in {*of_the_program.values(), *of_the_library.values()} - {*modules}:
-        owner, licence = make_zip.licence_of(path)
-        files[f"share/doc/pelagic/licences/{owner}.txt"] = licence.read_bytes()
+    owners = dict(make_zip.licence_of(path) for path in {*of_the_program.values(), *of_the_library.values()} - {*modules})
+    compiled = packages_to_compile() - {*owners}
+    licences = owners | {package: Path(f"/usr/share/doc/{package}/copyright") for package in compiled}
+    licences = {package: file.read_bytes() for package, file in licences.items() if file.is_file()}
+    files |= {f"share/doc/pelagic/licences/{package}.txt": text for package, text in licences.items()}
+    files |= {f"share/doc/pelagic/licences/common-licenses/{name}": text
+              for name, text in make_zip.common_licences(licences.values()).items()}
     version = library.name.removeprefix("libpelagic.so.")
     short = version.rpartition(".")[0]
     files[f"lib/{library.name}"] = library_bytes
     files[f"lib/libpelagic.so.{short}"] = library.name
     files["lib/libpelagic.so"] = f"libpelagic.so.{short}"
+    expect_to_load({name: data for name, data in files.items() if name.startswith("lib/libpelagic")})
+    files["share/doc/pelagic/SOURCES"] = SOURCES.format(version=version, libraries=source_lines(owners),
+                                                        compiled=source_lines(compiled)).encode()
 
     files["lib/pkgconfig/pelagic.pc"] = (build / "plugin/host/procedural/pelagic.pc").read_bytes()
     files["include/pelagic/procedural.h"] = (SOURCE / "plugin/host/procedural/include/pelagic/procedural.h").read_bytes()

@@ -348,18 +348,20 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     files::FileReader reader(file);
     const std::size_t step = asks_for_frames ? size : kSmallRecord;
     std::string bytes;
-    for (std::size_t got = step; got == step && bytes.find(kFrames) == std::string::npos;) {
+    std::size_t begin = std::string::npos;
+    for (std::size_t got = step; got == step && begin == std::string::npos;) {
+        stop_if(cancel);
         const std::size_t before = bytes.size();
         bytes.resize(before + step);
         got = reader.read(std::span(bytes).subspan(before));
         bytes.resize(before + got);
+        begin = bytes.find(kFrames, before - std::min(before, kFrames.size()));
     }
     std::string ending(kLast.size(), '\0');
     reader.seek(size - ending.size());
     ending.resize(reader.read(ending));
     stop_if(cancel);
     const std::string_view text = bytes;
-    const std::size_t begin = text.find(kFrames);
     if (!reader.problem().empty() || begin == std::string_view::npos || ending != kLast) return whole();
     RecordReading reading;
     const auto parsed = [](std::string part) { return Json::parse(part, nullptr, false); };
@@ -367,6 +369,7 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     if (!reading.shot) return whole();
     if (!asks_for_frames) return reading;
     for (std::size_t at = text.find(kBegin, begin); at != std::string_view::npos;) {
+        stop_if(cancel);
         const std::size_t key = at + kBegin.size(), next = text.find(kBegin, key);
         int number = 0;
         const auto [end, error] = std::from_chars(text.data() + key, text.data() + text.size(), number);

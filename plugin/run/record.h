@@ -94,7 +94,9 @@ inline constexpr std::size_t kFewFrames = 16;
 bool is_read_in_part(const std::filesystem::path& file, std::span<const int> frames);
 
 // The same of these frames, rising, and the numbers of all that have an entry and aren't stale; null: nobody asks for them. In part, other entries
-// aren't looked at for what was altered; else all of them are handed over.
+// aren't looked at for what was altered, nor is what lies between them; else all of them are handed over. So a long record that is
+// broken in its middle stays as it is until the shot is whole, or its part about the shot is written anew: its frames that
+// are asked for are made again, like any that aren't recorded.
 RecordReading read_frames(const std::filesystem::path& file, std::span<const int> frames,
                           const std::function<void(int, FrameRecord)>& take, std::set<int>* numbers,
                           const std::atomic<bool>* cancel = nullptr);

@@ -270,7 +270,9 @@ const char* const kPreviewThreads =
     "Default: one for each core that the process may use";
 
 const char* const kNoPreview =
-    "This build has no preview; configure with -DPELAGIC_PREVIEW=ON for one.\n"
+    "This program has no preview. The tarball's has none: what draws is the system's, which a program\n"
+    "with a C library of its own can't load. Debian's package pelagic has one, and a build that was\n"
+    "configured with -DPELAGIC_PREVIEW=ON.\n"
     "Without a window: pelagic render SHOT.toml --frames 1 --size 640x360 --samples 1";
 
 const char* const kExplain =

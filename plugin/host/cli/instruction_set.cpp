@@ -75,7 +75,7 @@ void restart_for_instruction_set([[maybe_unused]] int argc, [[maybe_unused]] con
     if (tunables.ends_with(kWithout)) return;
     if (!tunables.empty()) tunables += ':';
     tunables += kWithout;
-    const std::string program = own_program().string();
+    const std::string program = own_program_to_restart().string();
     if (setenv("GLIBC_TUNABLES", tunables.c_str(), 1) == 0)
         execv(program.c_str(), const_cast<char* const*>(argv));
     throw WrongUsage("--instruction-set sse4: the program can't be started anew (" + program + ": " +

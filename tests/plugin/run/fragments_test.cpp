@@ -285,5 +285,45 @@ TEST_F(Fragments, OfALongRecordWaitUntilItIsWhole) {
                      .problem.empty());
 }
 
+// A task of few frames doesn't write a long record anew for what is broken in its middle; what it lost is made again, as by a run of the
+// whole shot, and then it is whole.
+TEST_F(Fragments, OfALongRecordThatIsBrokenWaitUntilItIsWhole) {
+    constexpr int kFrames = 600, kBroken = 300;
+    const std::string expected = text_of_one(kFrames);
+    const auto make = [&](int from, int to) {
+        const auto run = begun(kFrames);
+        run->begin(record(), {}, {}, true);
+        for (int frame = from; frame <= to; ++frame) run->set(frame, frame_record(frame));
+        run->finish(record());
+    };
+    make(1, kFrames - 1);
+    std::string broken = text();
+    ASSERT_GT(broken.size(), kSmallRecord);
+    const std::string key = "\"" + std::to_string(kBroken) + "\": {";
+    ASSERT_NE(broken.find(key), std::string::npos);
+    broken[broken.find(key) + key.size() - 1] = '[';
+    std::ofstream(record(), std::ios::binary) << broken;
+    make(kFrames, kFrames);
+    EXPECT_EQ(text(), broken);
+
+    const auto some = [&](int frame) {
+        std::map<int, std::string> found;
+        std::set<int> numbers;
+        const std::vector<int> asked{frame};
+        const RecordsReading reading = read_some(
+            record(), asked, [&](int number, const FrameRecord& entry) { found[number] = entry.fingerprint; },
+            numbers);
+        EXPECT_FALSE(reading.problem.empty());
+        return found;
+    };
+    EXPECT_TRUE(some(kBroken - 1).contains(kBroken - 1));
+    EXPECT_FALSE(some(kBroken).contains(kBroken));
+    EXPECT_TRUE(some(kFrames).contains(kFrames));
+
+    make(kBroken, kFrames - 1);
+    EXPECT_EQ(text(), expected);
+    EXPECT_FALSE(fs::exists(folder_ / "record"));
+}
+
 }  // namespace
 }  // namespace pelagic

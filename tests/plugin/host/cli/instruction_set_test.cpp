@@ -89,6 +89,26 @@ TEST_F(InstructionSet, BelowAvx2TheProgramIsStartedAnew) {
     EXPECT_EQ(starts("sse4"), 2);
     unsetenv("LD_SHOW_AUXV");
 }
+
+// As the tarball's program is. The system then calls the loader the program.
+TEST_F(InstructionSet, AProgramThatALoaderRunsIsStartedAnewByItsOwnName) {
+    const std::filesystem::path loader = "/lib64/ld-linux-x86-64.so.2";
+    if (!std::filesystem::exists(loader)) GTEST_SKIP() << "the loader has another name";
+    const std::string name =
+        std::filesystem::relative(PELAGIC_PROGRAM, std::filesystem::canonical(folder_.path())).string();
+    const auto by_loader = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), name);
+        const Ended ended = run({.arguments = arguments, .folder = folder_.path(), .program = loader});
+        EXPECT_EQ(ended.status, 0) << ended.err;
+    };
+    ASSERT_EQ(make("bake", "itself", "sse4").status, 0);
+    by_loader({"bake", "small.toml", "--out", "by-loader", "--instruction-set", "sse4"});
+    EXPECT_EQ(difference("itself", "by-loader"), "");
+    by_loader({"farm", "small.toml", "--out", "farmed"});
+    const std::string script = read_file(folder_.path() / "farmed/farm/small.bake.sh");
+    EXPECT_TRUE(has(script, "/" + name)) << "not by its whole path" << script;
+    EXPECT_FALSE(has(script, "ld-linux")) << script;
+}
 #endif
 
 TEST_F(InstructionSet, FilesOfAnotherAreKeptAndSaidOrMadeAgain) {

@@ -23,7 +23,9 @@ TEST(NoPreview, IsSaidWhateverIsAskedOfIt) {
         EXPECT_TRUE(verb.command->parsed());
         testing::internal::CaptureStderr();
         EXPECT_EQ(verb.run(), kWrongUsage);
-        EXPECT_NE(testing::internal::GetCapturedStderr().find("-DPELAGIC_PREVIEW=ON"), std::string::npos);
+        const std::string said = testing::internal::GetCapturedStderr();
+        for (const char* const word : {"-DPELAGIC_PREVIEW=ON", "C library", "package pelagic"})
+            EXPECT_NE(said.find(word), std::string::npos) << word;
         EXPECT_NE(program.help().find("preview"), std::string::npos);
         EXPECT_NE(verb.command->help().find("-DPELAGIC_PREVIEW=ON"), std::string::npos);
     }

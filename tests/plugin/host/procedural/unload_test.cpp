@@ -94,6 +94,7 @@ TEST_P(UnloadRounds, LeavesNothingBehind) {
     const std::size_t bytes = resident_bytes(), held = libraries();
     const std::ptrdiff_t running = running_threads();
     for (int round = 0; round < 90; ++round) round_of(GetParam());
+    RecordProperty("frame_kib", static_cast<int>(frame_bytes / 1024));
     RecordProperty("grown_kib", static_cast<int>(resident_bytes() / 1024) - static_cast<int>(bytes / 1024));
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what is freed
     EXPECT_LT(resident_bytes(), bytes + 10 * frame_bytes);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is too long for each change, in one night: two hours of two cores, an hour more where nothing has been compiled before.
+# What is too long for each change, in one night: two and a half hours of two cores, an hour more where nothing has been compiled before.
 #   tests/nightly.sh [--seed N] [--results DIR] [PART…]
 #   tests/nightly.sh --list
 # Each night asks another share of the tests, other rays, scenes and cases of the campaigns: N says which, default the one after the

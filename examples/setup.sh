@@ -78,7 +78,7 @@ build() {
 in_memory() {
     [ "$(df --output=avail --block-size=1M /dev/shm 2>/dev/null | tail -n 1)" -ge 4096 ] 2>/dev/null || return 0
     local memory
-    memory=$(mktemp -d /dev/shm/pelagic-tests.XXXXXX)
+    memory=$(mktemp -d /dev/shm/pelagic-tests.XXXXXX) || return 0
     # shellcheck disable=SC2064
     trap "rm -rf '$memory'" EXIT
     if cp /bin/true "$memory/true" && "$memory/true"; then export TMPDIR=$memory; fi

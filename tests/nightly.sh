@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# What is too long for each change, in one night: two hours of two cores, an hour more where nothing has been compiled before.
+# What is too long for each change, in one night: two and a half hours of two cores, an hour more where nothing has been compiled before.
 #   tests/nightly.sh [--seed N] [--results DIR] [PART…]
 #   tests/nightly.sh --list
-# Each night asks another share of the tests, other rays, scenes and cases of the campaigns: N says which, default the number of the
-# day; with it a night begins anew. One that was stopped goes on where it was, with its N, also on another commit.
-# DIR: where results and each part's output are kept, default build/nightly. PART: only these, again where they have a result. Ends
-# with a line for each part; the exit status is 0 if none of those that have run has failed.
+# Each night asks another share of the tests, other rays, scenes and cases of the campaigns: N says which, default the one after the
+# last night's (the first has the number of the day); with it a night begins anew. One that was stopped goes on where it was, with
+# its N, also on another commit. PART: only these, again where they have a result; of another N than the night's they aren't its results.
+# DIR: where results and each part's output are kept, default build/nightly. Ends with a line for each part and one for each failure
+# of this and earlier nights: `--seed N PART` is kept until that passes, and until then the exit status is 1.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-usage() { sed -n '2,9s/^# //p' "$0"; }
+usage() { sed -n '2,10s/^# //p' "$0"; }
 # shellcheck source=../examples/setup.sh
 source "$here/../examples/setup.sh"
 
@@ -16,7 +17,7 @@ source "$here/../examples/setup.sh"
 share() { echo "$((seed % $1 + 1))/$1"; }
 at_night() { "$here/run.sh" release --label nightly --share "$(share 3)"; }
 openusd() { "$here/run.sh" release --label openusd; }
-# What a unity build would hide: a file that doesn't include what it needs, or that has another's template. Compiled, not run.
+# What a unity build would hide: a missing include, a missing definition. Compiled, not run.
 each_source() { install_packages && build each-source all benches; }
 # Half of the short tests, and some of the others. The campaigns' program as well: what damaged files do to memory is seen there.
 sanitize() {
@@ -24,6 +25,7 @@ sanitize() {
     "$here/run.sh" sanitize --label unit --share "$(share 2)" || failed=1
     "$here/run.sh" sanitize --label slow --share "$(share 8)" || failed=1
     "$here/run.sh" sanitize --label gl --share "$(share 8)" || failed=1
+    "$here/run.sh" sanitize --label external --share "$(share 16)" || failed=1
     campaign mutations 100 --program "$PELAGIC_ROOT/build/sanitize/pelagic" || failed=1
     return $failed
 }
@@ -38,10 +40,11 @@ rays() {
     install_packages && build release test_procedural_rays &&
         PELAGIC_SEED=$seed PELAGIC_RAYS=1000000 "$PELAGIC_ROOT/build/release/tests/test_procedural_rays"
 }
+# Both halves of the scenes side by side, and not under ctest: a scene that hangs says its number by an alarm of its own.
 random_scenes() {
     install_packages && build release test_random_scenes &&
-        PELAGIC_SEED=$((seed * 400)) PELAGIC_SCENES=400 ctest --test-dir "$PELAGIC_ROOT/build/release/tests/random" \
-            --tests-regex '^Batch/' --parallel 2 --no-tests=error --output-on-failure
+        printf '%s\n' 0 1 | PELAGIC_SEED=$((seed * 400)) PELAGIC_SCENES=400 xargs -P 2 -I{} \
+            "$PELAGIC_ROOT/build/release/tests/test_random_scenes" '--gtest_filter=Batch/*/{}'
 }
 # campaign NAME COUNT [OPTION…]: so many cases, from where the night before ended.
 campaign() {
@@ -59,7 +62,7 @@ part() {
 part at-night 15 at_night
 part openusd 5 openusd
 part each-source 3 each_source
-part sanitize 25 sanitize
+part sanitize 28 sanitize
 part tsan 15 tsan
 part blender 15 blender
 part packages 25 "$here/package/debian.sh"
@@ -94,49 +97,68 @@ while [ $# -gt 0 ]; do
 done
 mkdir -p "$results" && results=$(cd "$results" && pwd) || exit 2
 
-# A part's result is a line in its file: how it ended, on which commit, in how many minutes, when.
+# A part's result is a line in its file: how it ended, on which commit, in how many minutes, when. The night's number is in `seed`.
 is_done() { [ -f "$results/$1" ]; }
 night_is_whole() {
     local name
     for name in "${names[@]}"; do is_done "$name" || return 1; done
 }
-asked_seed=$seed
-seed=${seed:-$(cat "$results/seed" 2>/dev/null || echo $(($(date +%s) / 86400)))}
-if [ ${#chosen[@]} -gt 0 ]; then
-    rm -f "${chosen[@]/#/$results/}"
-else
+begin_night() {
+    rm -f "${names[@]/#/$results/}"
+    night=$1
+    echo "$night" >"$results/seed"
+}
+[ ${#chosen[@]} -gt 0 ] && is_whole_night=false || is_whole_night=true
+night=$(cat "$results/seed" 2>/dev/null)
+if $is_whole_night && [ -n "$seed" ]; then
+    begin_night "$seed"
+elif [ -z "$night" ]; then
+    begin_night $(($(date +%s) / 86400))
+elif $is_whole_night && night_is_whole; then
+    begin_night $((night + 1))
+fi
+seed=${seed:-$night}
+if $is_whole_night; then
     chosen=("${names[@]}")
-    if [ -n "$asked_seed" ] || night_is_whole; then
-        rm -f "${names[@]/#/$results/}"
-        seed=${asked_seed:-$(($(date +%s) / 86400))}
-    fi
-    echo "$seed" >"$results/seed"
+elif [ "$seed" = "$night" ]; then
+    rm -f "${chosen[@]/#/$results/}"
 fi
 echo "This is --seed $seed"
 
 commit=$(git -C "$PELAGIC_ROOT" describe --always --dirty)
 for i in "${!names[@]}"; do
     name=${names[i]}
-    if [[ " ${chosen[*]} " != *" $name "* ]] || is_done "$name"; then continue; fi
+    if [[ " ${chosen[*]} " != *" $name "* ]] || { [ "$seed" = "$night" ] && is_done "$name"; }; then continue; fi
     echo "== $name"
-    start=$SECONDS
+    start=$SECONDS log=$results/$name-$seed.log
     # In a shell of its own: what it changes there is gone with it.
-    (${commands[i]}) 2>&1 | tee "$results/$name.log"
+    (${commands[i]}) 2>&1 | tee "$log"
     ended=${PIPESTATUS[0]}
     [ "$ended" -eq 0 ] && outcome=passed || outcome="FAILED ($ended)"
-    echo "$outcome, $commit, --seed $seed, $(((SECONDS - start + 59) / 60)) min, $(date -u '+%F %R')" >"$results/$name"
+    result="$outcome, $commit, --seed $seed, $(((SECONDS - start + 59) / 60)) min, $(TZ=UTC printf '%(%F %R)T' -1)"
+    # That of a failure stays with it.
+    [ "$ended" -ne 0 ] || mv "$log" "$results/$name.log"
+    if [ -s "$results/failures" ]; then
+        grep -v "^--seed $seed $name: " "$results/failures" >"$results/failures.new"
+        mv "$results/failures.new" "$results/failures"
+    fi
+    [ "$ended" -eq 0 ] || echo "--seed $seed $name: $result" >>"$results/failures"
+    [ "$seed" != "$night" ] || echo "$result" >"$results/$name"
 done
 
-echo "== results"
-failures=0 left=0
+echo "== results of --seed $night"
+left=0
 for name in "${names[@]}"; do
     if is_done "$name"; then
         echo "$name: $(cat "$results/$name")"
-        grep -q ^passed "$results/$name" || failures=$((failures + 1))
     else
         echo "$name: not yet"
         left=$((left + 1))
     fi
 done
 [ $left -eq 0 ] || echo "$left of ${#names[@]} parts to go: the same command goes on with them"
-[ $failures -eq 0 ]
+if [ -s "$results/failures" ]; then
+    echo "== failures, with what runs each again; their output is $results/PART-N.log"
+    cat "$results/failures"
+    exit 1
+fi

@@ -6,7 +6,7 @@
 # LABEL: unit (three minutes on two cores, once built), slow, gl (OpenGL) or external (with Blender, node, clang-format); default:
 # all of these. Those that run at night are left out, unless LABEL is theirs: nightly, or openusd, which installs Chromium.
 # --share K/N: each Nth test, beginning with the Kth.
-# --nightly takes two hours, and goes on where it was stopped: tests/nightly.sh --help.
+# --nightly takes two and a half hours, and goes on where it was stopped: tests/nightly.sh --help.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 [ "${1:-}" != --nightly ] || exec "$here/nightly.sh" "${@:2}"

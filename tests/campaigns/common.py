@@ -12,6 +12,7 @@ import os
 import pathlib
 import random
 import resource
+import shlex
 import shutil
 import subprocess
 import sys
@@ -121,7 +122,8 @@ class Campaign:
             for done, failed in enumerate(pool.map(case, cases), 1):
                 if failed:
                     failures.append(failed)
-                    print(f"case {failed[0]}: {failed[1]}", flush=True)
+                    again = shlex.join([sys.executable, *sys.argv, "--only", str(failed[0])])
+                    print(f"case {failed[0]}: {failed[1]}\nagain: {again}", flush=True)
                 if done % max(1, len(cases) // 10) == 0:
                     print(f"{done} of {len(cases)}, {len(failures)} failed, {time.monotonic() - start:.0f} s", flush=True)
         if all_together and (wrong := all_together()):

@@ -124,7 +124,7 @@ def value(draw, row):
         return [draw.uniform(max(low, -100.0), min(high, 100.0)) for _ in range(2 if kind == "pair" else 3)]
     if kind == "text":
         return draw.choice(["sea", "a", "7th-sea", "A_b-c", "x" * 200])
-    if kind == "data file":  # none lies there
+    if kind == "data file":  # none lies there: edits lays some out
         return None
     raise AssertionError(f"{row['path']}: a type of value that this drawing doesn't know, {kind}")
 
@@ -145,11 +145,11 @@ def as_toml(value):
 
 def shot_text(keys):
     """The text of a shot file: keys is {path: value}."""
-    tables = {}
+    tables = {"": []}
     for path, value in keys.items():
-        table, name = path.split(".")
+        table, _, name = path.rpartition(".")
         tables.setdefault(table, []).append(f"{name} = {as_toml(value)}\n")
-    return "".join(f"[{table}]\n" + "".join(lines) for table, lines in tables.items())
+    return "".join((f"[{table}]\n" if table else "") + "".join(lines) for table, lines in tables.items())
 
 
 def write_sky(path, draw=None):

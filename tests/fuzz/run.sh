@@ -2,12 +2,13 @@
 # Fuzzes the readers and the C interface with libFuzzer, under the sanitizers of addresses and undefined behaviour.
 #   tests/fuzz/run.sh [SECONDS] [NAME…]      SECONDS: of each target, default 60; NAME: of NAME_fuzz.cpp, default all
 # Installs clang 16 where it is missing: 14 has no parentheses round the values of an aggregate. Prints for each target how many
-# inputs it ran, and what it covers. Inputs that break something are kept in build/fuzz/findings/NAME, and make the exit status 1;
-# what has been found to go new ways is in build/fuzz/corpus/NAME, where the next run begins.
+# inputs it ran, and what it covers. Inputs that break something are kept in build/fuzz/findings/NAME, and make the exit status 1:
+# also of the next runs, which run them first, until they break nothing and join build/fuzz/corpus/NAME. There the next run
+# begins: with what has been found to go new ways.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
-    sed -n '2,7s/^# //p' "$0"
+    sed -n '2,8s/^# //p' "$0"
     exit 0
 fi
 seconds=60
@@ -41,7 +42,18 @@ status=0
 for name in "${names[@]}"; do
     corpus=build/fuzz/corpus/$name findings=build/fuzz/findings/$name
     mkdir -p "$corpus" "$findings"
-    options=(-max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -artifact_prefix="$findings/")
+    options=(-timeout=60 -rss_limit_mb=4096)
+    for finding in "$findings"/*; do
+        [ -f "$finding" ] || continue
+        if "build/fuzz/tests/${name}_fuzz" "${options[@]}" "$finding" >"build/fuzz/$name.log" 2>&1; then
+            mv "$finding" "$corpus"
+        else
+            status=1
+            grep -E 'broken promise|runtime error|ERROR: ' -A1 "build/fuzz/$name.log"
+            echo "$name: still breaks; again: build/fuzz/tests/${name}_fuzz $finding"
+        fi
+    done
+    options+=(-max_total_time="$seconds" -artifact_prefix="$findings/")
     [ ! -f "$here/$name.dict" ] || options+=(-dict="$here/$name.dict")
     "build/fuzz/tests/${name}_fuzz" "${options[@]}" "$corpus" "$here/corpus/$name" >"build/fuzz/$name.log" 2>&1
     ended=$?

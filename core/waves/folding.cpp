@@ -241,16 +241,6 @@ std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
             " m (effects.breaking_from_m), have no choppiness; waves.cascades[].choppiness gives them some"};
 }
 
-// The highest crest over the floor that waves feel there: a solitary wave's, all of whose height is over the level; infinite where they feel none.
-double highest_over_floor_m(const Scene& scene, glm::dvec2 place_m) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    if (!scene.waves.coast || !scene.waves.coast_depths) return kInfinity;
-    const DepthMap& map = *scene.waves.coast_depths;
-    const bool is_on_map = glm::clamp(place_m, map.from_m(), map.from_m() + map.size_m()) == place_m;
-    const double depth_m = is_on_map ? map.mean_m(place_m, place_m) : scene.sea.depth_m;
-    return depth_m > kCoastShore_m ? kMostCoastHeight * depth_m : kInfinity;
-}
-
 std::vector<std::string> hero_warning(const PreparedScene& prepared) {
     const std::vector<HeroWave>& heroes = prepared.scene.waves.heroes;
     if (heroes.empty()) return {};
@@ -281,16 +271,9 @@ std::vector<std::string> hero_warning(const PreparedScene& prepared) {
             warnings.push_back(name + "the crest folds over itself at its top; at most " +
                                tenths(raise * kSteepestHero / shape.compression * hero.height_m) +
                                " m in this sea, or a lower waves.choppiness");
-        else {
-            const double over_floor_m = highest_over_floor_m(prepared.scene, {hero.east_m, hero.north_m}),
-                         met_m = kHighestHero * deviation_m / raise;
-            if (hero.height_m > over_floor_m && over_floor_m < met_m)
-                warnings.push_back(name + "crests have broken over so little water; at most " +
-                                   tenths(over_floor_m) + " m, or a place in deeper water");
-            else if (std::abs(hero.height_m) > met_m)
-                warnings.push_back(name + "no such sea has one as high; at most " + tenths(met_m) +
-                                   " m is met, or a higher sea");
-        }
+        else if (std::abs(raised_m) > kHighestHero * deviation_m)
+            warnings.push_back(name + "no such sea has one as high; at most " +
+                               tenths(kHighestHero * deviation_m / raise) + " m is met, or a higher sea");
     }
     // Of heroes far apart the sums are equal.
     for (const HeroTrain& train : trains)

@@ -1,9 +1,9 @@
 // Waves that feel a coast's floor at a point, as AddCoastTrains() (core/evaluate/coast-inl.h) has them, and the foam of surf, coast_foam()
 // (core/waves/coast.cpp).
 //
-// Rows of `gusts` from kCoastRow on: the origin from the map's corner [m], and cells per metre; the number of cells, how far beyond the map
-// gains fade [m], and the wavenumber of the highest waves [rad/m]; n_min and 1/(n_max − n_min) of the filter, how many trains
-// feel the floor, and how many of their pictures lie side by side.
+// Rows of `gusts` from kCoastRow on: where the origin is in its cell, 0 … 1, and cells per metre; the number of cells, how far beyond the map
+// gains fade [m], and the wavenumber of the highest waves [rad/m]; n_min and 1/(n_max − n_min) of the filter, how many trains feel the floor, and how
+// many of their pictures lie side by side; the cell that the origin is in.
 //
 // Of trains on a coast, train_table's rows 1 and 2 are: 1: height [m]; how far the train moves water to the side, over height times wavenumber [m],
 // for displacement and for waves that break; one over how far beyond the map its phase fades [1/m]; 2: kx, ky [rad/m] where it comes from.
@@ -11,16 +11,25 @@
 uniform sampler2D coast_cells;   // a texel a cell: the share that breaks, the heights' deviation [m], the gain of trains too short to feel the floor
 uniform sampler2D coast_trains;  // of each train that feels it a picture of the cells: phase [cycles], gain
 
-// A place on the map, in cells from its corner, and how far beyond the map it is [m].
+// A place on the map: the cell that it is in, where in it, 0 … 1, and how far beyond the map it is [m]. Cells are counted from the origin's: as numbers
+// of single precision places near it are exact.
 struct CoastPlace {
-    vec2 cells, beyond_m;
+    ivec2 cell;
+    vec2 within, beyond_m;
 };
 
 CoastPlace coast_place(vec2 rest_m) {
     vec4 from = gusts[kCoastRow];
-    vec2 place_m = from.xy + rest_m, size = gusts[kCoastRow + 1].xy;
-    vec2 on_m = clamp(place_m, vec2(0.0), size / from.zw);
-    return CoastPlace(min(on_m * from.zw, size), place_m - on_m);
+    vec2 at = from.xy + rest_m * from.zw, whole = floor(at), within = at - whole;
+    vec2 cell = whole + gusts[kCoastRow + 3].xy, last = gusts[kCoastRow + 1].xy - 1.0, beyond = vec2(0.0);
+    for (int axis = 0; axis < 2; ++axis) {
+        if (cell[axis] >= 0.0 && cell[axis] <= last[axis]) continue;
+        bool is_before = !(cell[axis] > 0.0);
+        beyond[axis] = is_before ? cell[axis] + within[axis] : cell[axis] - last[axis] - 1.0 + within[axis];
+        cell[axis] = is_before ? 0.0 : last[axis];
+        within[axis] = is_before ? 0.0 : 1.0;
+    }
+    return CoastPlace(ivec2(cell), within, beyond / from.zw);
 }
 
 // What is left of a map's part at so many times the distance over which it fades, and its derivative.
@@ -41,8 +50,8 @@ CoastTaps coast_taps(vec2 rest_m) {
     CoastPlace place = coast_place(rest_m);
     ivec2 count = ivec2(gusts[kCoastRow + 1].xy);
     vec2 per_m = gusts[kCoastRow].zw;
-    ivec2 own = min(ivec2(place.cells), count - 1), before = max(own - 1, 0), after = min(own + 1, count - 1);
-    MaskWeights x = mask_weights(place.cells.x - float(own.x) - 0.5), y = mask_weights(place.cells.y - float(own.y) - 0.5);
+    ivec2 own = place.cell, before = max(own - 1, 0), after = min(own + 1, count - 1);
+    MaskWeights x = mask_weights(place.within.x - 0.5), y = mask_weights(place.within.y - 0.5);
     float far_m = length(place.beyond_m), fade_m = gusts[kCoastRow + 1].z;
     vec2 outwards = far_m > 0.0 ? place.beyond_m / far_m : vec2(0.0), fade = coast_fade(far_m / fade_m);
     return CoastTaps(ivec3(before.x, own.x, after.x), ivec3(before.y, own.y, after.y), vec3(x.before, x.here, x.after),
@@ -187,9 +196,10 @@ float surf_foam(vec2 rest_m, float height_m, float footprint_m) {
     vec4 map = gusts[kCoastRow + 1];
     CoastPlace place = coast_place(rest_m);
     float left = coast_fade(length(place.beyond_m) / map.z).x;
-    vec2 at = clamp(place.cells - 0.5, vec2(0.0), map.xy - 1.0);
-    ivec2 first = ivec2(at), last = min(first + 1, ivec2(map.xy) - 1);
-    vec2 t = at - vec2(first);
+    // From the middle of one cell to the next.
+    vec2 half_on = place.within - 0.5, back = vec2(lessThan(half_on, vec2(0.0)));
+    ivec2 lower = place.cell - ivec2(back), first = max(lower, 0), last = min(lower + 1, ivec2(map.xy) - 1);
+    vec2 t = half_on + back;
     vec4 here = mix(mix(texelFetch(coast_cells, first, 0), texelFetch(coast_cells, ivec2(last.x, first.y), 0), t.x),
                     mix(texelFetch(coast_cells, ivec2(first.x, last.y), 0), texelFetch(coast_cells, last, 0), t.x), t.y);
     float share = left * kRoller * here.x;

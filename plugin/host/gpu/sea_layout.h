@@ -46,7 +46,7 @@ class SeaLayout {
     int coast_across() const {
         return std::max(coast_sizes_.trains.x / std::max(coast_sizes_.cells.x, 1), 1);
     }
-    int coast_rows() const { return has_surf() ? 3 : 0; }
+    int coast_rows() const { return has_surf() ? 4 : 0; }
     int coast_row() const {
         return has_surf() ? kGustRows + mask_rows() + kVesselRows * vessels() + front_rows() : 0;
     }

@@ -110,12 +110,13 @@ std::vector<std::array<float, 4>> rows_of(const MasksPlan& plan, const SpectralM
 template <class T>
 std::vector<std::array<float, 4>> rows_of(const SeaLayout& layout, const CoastSurf<T>& coast,
                                           glm::dvec2 origin_m) {
-    const glm::dvec2 from = origin_m - coast.from_m;
+    const glm::dvec2 from = (origin_m - coast.from_m) / coast.cell_m, cell = glm::floor(from);
     const FootprintFilter& filter = layout.sea().plan().filter;
     return {
-        row(from.x, from.y, 1.0 / coast.cell_m.x, 1.0 / coast.cell_m.y),
+        row(from.x - cell.x, from.y - cell.y, 1.0 / coast.cell_m.x, 1.0 / coast.cell_m.y),
         row(coast.count.x, coast.count.y, coast.fade_m, coast.peak_per_m),
-        row(filter.n_min, 1.0 / (filter.n_max - filter.n_min), layout.coast_trains(), layout.coast_across())};
+        row(filter.n_min, 1.0 / (filter.n_max - filter.n_min), layout.coast_trains(), layout.coast_across()),
+        row(cell.x, cell.y, 0.0, 0.0)};
 }
 
 // Those of wakes.glsl. A sea with vessels has no loop.

@@ -123,7 +123,7 @@ TEST_F(FloorPictures, ThatAreNoneAreRefusedByName) {
     const fs::path wall = folder_ / "wall.obj";
     scene = {};
     scene.sea.depth_file = wall.string();
-    EXPECT_NE(refusal(scene).find("is missing"), std::string::npos) << refusal(scene);
+    EXPECT_NE(refusal(scene).find("does not exist"), std::string::npos) << refusal(scene);
     files::write_atomically(wall, "v 0 0 0\nv 1 0 0\nv 1 0 -9\nv 0 0 -9\nf 1 2 3 4\n");
     EXPECT_NE(refusal(scene).find("no area from above"), std::string::npos) << refusal(scene);
     files::write_atomically(wall, "v 0 0 0\nf 1 2 3\n");

@@ -13,6 +13,7 @@
 #include "core/scene/text.h"
 #include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/own_program.h"
+#include "plugin/host/cli/text.h"
 
 namespace pelagic::cli {
 namespace {

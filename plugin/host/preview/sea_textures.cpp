@@ -31,6 +31,16 @@ enum Unit : int {
 };
 static_assert(kCoastTrains + 1 == SeaTextures::kUnits);
 
+// A texture of floats from memory, rows without gaps.
+void fill(const GlTexture& texture, glm::ivec2 size, int channels, const void* texels) {
+    edit_texture(texture);
+    texels_as_they_are();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    const TexelFormat format = float_texels(channels);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0, format.format,
+                 GL_FLOAT, texels);
+}
+
 }  // namespace
 
 std::string too_large_coast(const SeaLayout::CoastSizes& sizes, int most) {
@@ -83,27 +93,14 @@ bool SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
                                std::to_string(size.x) + " x " + std::to_string(size.y) +
                                ", and the driver's largest is " + std::to_string(largest_texture) +
                                ": take smaller ones, or wider edges");
-        edit_texture(mask_cells.emplace());
-        texels_as_they_are();
-        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, size.x, size.y, 0, GL_RED, GL_FLOAT,
-                     layout->mask_cells().data());
+        fill(mask_cells.emplace(), size, 1, layout->mask_cells().data());
     }
     if (layout->has_surf()) {
         const SeaLayout::CoastSizes& sizes = layout->coast_sizes();
         if (sizes.side() > largest_texture) throw PreviewError(too_large_coast(sizes, largest_texture));
-        const auto upload = [](std::optional<GlTexture>& texture, glm::ivec2 size, int channels,
-                               const void* texels) {
-            edit_texture(texture.emplace());
-            texels_as_they_are();
-            glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-            const TexelFormat format = float_texels(channels);
-            glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0,
-                         format.format, GL_FLOAT, texels);
-        };
-        upload(coast_cells, sizes.cells, 4, layout->coast_cell_texels().data());
+        fill(coast_cells.emplace(), sizes.cells, 4, layout->coast_cell_texels().data());
         if (layout->coast_trains() > 0)
-            upload(coast_trains, sizes.trains, 2, layout->coast_train_texels().data());
+            fill(coast_trains.emplace(), sizes.trains, 2, layout->coast_train_texels().data());
     }
     // A sea that changes has a layout for each time, and the same textures for all of them.
     const bool has_room = layout_ &&
@@ -162,16 +159,8 @@ void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
     if (!foam_textures_) foam_textures_.emplace();
     foam_ = std::move(foam);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    const auto upload = [](const GlTexture& texture, glm::ivec2 size, int channels, const void* texels) {
-        edit_texture(texture);
-        texels_as_they_are();
-        const TexelFormat format = float_texels(channels);
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0, format.format,
-                     GL_FLOAT, texels);
-    };
-    upload(foam_textures_->nodes, foam_->nodes_size(), foam_->channels(), foam_->nodes().data());
-    upload(foam_textures_->pages, foam_->pages_size(), 1, foam_->pages().data());
+    fill(foam_textures_->nodes, foam_->nodes_size(), foam_->channels(), foam_->nodes().data());
+    fill(foam_textures_->pages, foam_->pages_size(), 1, foam_->pages().data());
 }
 
 void SeaTextures::upload_once(Frame<float>&& frame, int query) {

@@ -169,7 +169,7 @@ class DaylightAir final : public AirModel {
             places_.resize(std::size_t{Air::kPlaceRows} * Air::kWidth);
             tbb::parallel_for(0, Air::kWidth, [&](int i) {
                 const double x = 2.0 * i / (Air::kWidth - 1) - 1.0, elevation = 0.5 * kPi * x * x * x;
-                const Disc disc = disc_at(atmosphere, elevation, kSunAngularRadius);
+                const Disc disc = disc_at(atmosphere.turbidity(), elevation, kSunAngularRadius);
                 // The last that is seen of it is on the horizon.
                 const double rise = elevation <= -kSunAngularRadius
                                         ? kSunAngularRadius

@@ -10,6 +10,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -38,7 +41,22 @@ double two_lobe(double cosine, double g) {
 
 constexpr std::size_t kBandCount = kBands;
 
+double thickness_of(const Thickness& vertical, const Matter& column, std::size_t b) {
+    return vertical.air[b] * column.air + vertical.haze[b] * column.haze + vertical.ozone[b] * column.ozone;
+}
+BandValues transmittance_of(const Thickness& vertical, const Matter& column) {
+    BandValues out;
+    for (std::size_t b = 0; b < kBandCount; ++b) out[b] = std::exp(-thickness_of(vertical, column, b));
+    return out;
+}
+
 }  // namespace
+
+BandValues transmittance_to_sea(double turbidity, double elevation_rad) {
+    const double cosine = std::sin(std::max(elevation_rad, 0.0));
+    return transmittance_of(vertical_thickness(turbidity),
+                            Columns::integrated(kEarth_km, to_top(kEarth_km, cosine)));
+}
 
 double air_phase(double cosine) {
     return 3.0 / (16.0 * kPi) * (1.0 + cosine * cosine);  // Rayleigh, without the molecules' anisotropy
@@ -56,31 +74,15 @@ class Atmosphere::Tables {
           sun_elevation_(sun_elevation_rad),
           highest_km_(highest_km),
           first_(highest_km > kNear_km ? kLeastNode : node_below(sun_elevation_rad - kReach)),
-          suns_(static_cast<std::size_t>(
-              1 - first_ + (highest_km > kNear_km ? -kLeastNode : node_above(sun_elevation_rad + kReach)))),
-          vertical_(vertical_thickness(turbidity)),
-          more_(kHeights * suns_) {
-        for (std::size_t j = 0; j < suns_; ++j) {
-            table_sun_.push_back(node_elevation(first_ + static_cast<int>(j)));
-            twilight_.push_back(twilight(table_sun_.back()));
-        }
-        const std::vector<double> turns = haze_turns();
-        Columned air(suns_);
-        tbb::parallel_for(std::size_t{0}, kHeights, [&](std::size_t i) { gather(i, turns, air); });
-        tbb::parallel_for(std::size_t{0}, suns_, [&](std::size_t j) {
-            if (table_sun_[j] >= kNight) scatter(j, air);
-        });
+          vertical_(vertical_thickness(turbidity)) {
+        const int last = highest_km > kNear_km ? -kLeastNode : node_above(sun_elevation_rad + kReach);
+        for (int node = first_; node <= last; ++node) twilight_.push_back(twilight(node_elevation(node)));
+        suns_ = suns_to(last);
     }
 
     double turbidity() const { return turbidity_; }
     double sun_elevation() const { return sun_elevation_; }
     double highest_km() const { return highest_km_; }
-
-    BandValues transmittance(const Matter& column) const {
-        BandValues out;
-        for (std::size_t b = 0; b < kBandCount; ++b) out[b] = std::exp(-thickness(column, b));
-        return out;
-    }
 
     BandValues transmittance(const SightLine& line) const { return sighted(line).passed; }
 
@@ -164,9 +166,9 @@ class Atmosphere::Tables {
         double along, up, across;
     };
 
-    double thickness(const Matter& column, std::size_t b) const {
-        return vertical_.air[b] * column.air + vertical_.haze[b] * column.haze +
-               vertical_.ozone[b] * column.ozone;
+    static const Columns& columns() {
+        static const Columns columns;
+        return columns;
     }
 
     // The sunlight at a point: transmittance times the fraction of the disc above the local horizon. Returns
@@ -179,7 +181,7 @@ class Atmosphere::Tables {
                               kSunAngularRadius);
             if (part <= 0.0) return false;
         }
-        light = transmittance(columns_(radius, cosine));
+        light = transmittance_of(vertical_, columns()(radius, cosine));
         for (double& value : light) value *= part;
         return true;
     }
@@ -258,7 +260,7 @@ class Atmosphere::Tables {
             const Matter here = density(piece.radius - kEarth_km);
             for (std::size_t b = 0; b < kBandCount; ++b) {
                 // The integral over a segment of constant density, exact for thick segments as well.
-                const double extinction = thickness(here, b);
+                const double extinction = thickness_of(vertical_, here, b);
                 const double passed = std::exp(-extinction * (to - from));
                 const double seen =
                     ray.passed[b] * (extinction > 0.0 ? (1.0 - passed) / extinction : to - from);
@@ -280,6 +282,7 @@ class Atmosphere::Tables {
     }
     static constexpr double kCrowding = 2.6;
 
+    using Turns = std::array<std::array<double, kOrders>, kRays>;
     using Bands = std::array<float, kBandCount>;
     // Light by ray and order m: that at the azimuth a from the sun's is the sum of cos(m a) times them.
     template <int kCount>
@@ -328,25 +331,26 @@ class Atmosphere::Tables {
         return kernel;
     }
 
-    // The air as the table's rays see it.
+    // The air as the table's rays see it, whatever the sun.
     struct Columned {
-        explicit Columned(std::size_t suns) : once(kHeights * suns) {}
+        std::vector<Ray> rays{kHeights * kRays};  // by height
         // The share of light at a height that is scattered into a ray's start: by its height, ray, and that height.
         std::vector<Bands> by_air{kHeights * kRays * kHeights}, by_haze{kHeights * kRays * kHeights};
         std::vector<Bands> from_ground{kHeights * kRays};  // of its irradiance
-        std::vector<Field<kOrders>> once;                  // light scattered once: by height and sun
         // By height: the factors of 1 − A (lower and upper triangle), A: scattering of light that is the same at all heights.
         std::vector<std::array<std::array<std::array<Bands, kRays>, kRays>, kOrders>> factors{kHeights};
     };
+    // What air, haze and ground send into each ray under one sun, by height; dark where it is night.
+    using Scattering = std::vector<Source>;
 
     // One height's rays.
-    void gather(std::size_t height, const std::vector<double>& haze_turns, Columned& air) const {
+    void gather(std::size_t height, Columned& air) const {
         const double x = static_cast<double>(height) / (kHeights - 1);
         const double radius = kEarth_km + kTop_km * x * x * x;
         std::array<BandValues, kRays> by_air{}, by_haze{};
         for (std::size_t i = 0; i < kRays; ++i) {
-            const double elevation = ray_elevation(static_cast<double>(i) + 0.5);
-            const Ray ray = marched(radius, elevation, kGatherSteps);
+            Ray& ray = air.rays[height * kRays + i];
+            ray = marched(radius, ray_elevation(static_cast<double>(i) + 0.5), kGatherSteps);
             Bands* from_air = &air.by_air[(height * kRays + i) * kHeights];
             Bands* from_haze = &air.by_haze[(height * kRays + i) * kHeights];
             for (const Piece& piece : ray.pieces) {
@@ -366,24 +370,6 @@ class Atmosphere::Tables {
                 for (std::size_t b = 0; b < kBandCount; ++b)
                     air.from_ground[height * kRays + i][b] =
                         static_cast<float>(ray.passed[b] * kGroundAlbedo / kPi);
-            for (std::size_t j = 0; j < suns_; ++j) {
-                if (table_sun_[j] < kNight) continue;
-                auto& once = air.once[height * suns_ + j][i];
-                for (int k = 0; k < kOrders; ++k) {
-                    const double azimuth = kPi * (k + 0.5) / kOrders;
-                    const Sun sun(table_sun_[j], azimuth);
-                    BandValues sum{};
-                    add_once(ray, sun,
-                             {air_phase(sun.turned_into(elevation)), haze_turns[turn_index(i, j, k)],
-                              kGroundAlbedo / kPi},
-                             sum);
-                    for (int m = 0; m < kOrders; ++m) {
-                        const double weight = (m > 0 ? 2.0 : 1.0) / kOrders * std::cos(m * azimuth);
-                        for (std::size_t b = 0; b < kBandCount; ++b)
-                            once[m][b] += static_cast<float>(weight * sum[b]);
-                    }
-                }
-            }
         }
         for (int m = 0; m < kOrders; ++m) {
             auto& a = air.factors[height][m];
@@ -403,6 +389,28 @@ class Atmosphere::Tables {
         }
     }
 
+    // The light under a sun that is scattered once, in one height's rays.
+    Field<kOrders> scattered_once(const Columned& air, std::size_t height, double sun_elevation,
+                                  const Turns& haze_turns) const {
+        Field<kOrders> once{};
+        for (std::size_t i = 0; i < kRays; ++i) {
+            const double elevation = ray_elevation(static_cast<double>(i) + 0.5);
+            for (int k = 0; k < kOrders; ++k) {
+                const double azimuth = kPi * (k + 0.5) / kOrders;
+                const Sun sun(sun_elevation, azimuth);
+                BandValues sum{};
+                add_once(air.rays[height * kRays + i], sun,
+                         {air_phase(sun.turned_into(elevation)), haze_turns[i][k], kGroundAlbedo / kPi}, sum);
+                for (int m = 0; m < kOrders; ++m) {
+                    const double weight = (m > 0 ? 2.0 : 1.0) / kOrders * std::cos(m * azimuth);
+                    for (std::size_t b = 0; b < kBandCount; ++b)
+                        once[i][m][b] += static_cast<float>(weight * sum[b]);
+                }
+            }
+        }
+        return once;
+    }
+
     template <int kCount>
     static void scatter_into(Field<kCount>& out, const Kernel& kernel, const Field<kOrders>& light) {
         for (int i = 0; i < kRays; ++i)
@@ -415,8 +423,9 @@ class Atmosphere::Tables {
     }
 
     // One sun's light of all orders, L = L₁ + (scattering of L): by the factors as if it were the same at all heights, and
-    // what that leaves unsolved again, kPasses times. Fills that sun's part of the table.
-    void scatter(std::size_t j, const Columned& air) {
+    // what that leaves unsolved again, kPasses times.
+    static Scattering scattering_of(const std::vector<Field<kOrders>>& once, const Columned& air) {
+        Scattering more(kHeights);
         std::vector<Field<kOrders>> light(kHeights);
         for (int pass = 0; pass <= kPasses; ++pass) {
             Bands irradiance{};  // of the ground
@@ -426,7 +435,7 @@ class Atmosphere::Tables {
                     irradiance[b] += static_cast<float>(kPi * (high * high - low * low)) * light[0][k][0][b];
             }
             for (std::size_t h = 0; h < kHeights; ++h) {
-                Field<kOrders> rest = air.once[h * suns_ + j];
+                Field<kOrders> rest = once[h];
                 for (std::size_t i = 0; i < kRays; ++i) {
                     for (int m = 0; m < kOrders; ++m)
                         for (std::size_t b = 0; b < kBandCount; ++b) rest[i][m][b] -= light[h][i][m][b];
@@ -438,7 +447,7 @@ class Atmosphere::Tables {
                         const Bands &by_air = air.by_air[ray * kHeights + from],
                                     &by_haze = air.by_haze[ray * kHeights + from];
                         if (by_air[0] == 0.0f) continue;
-                        const Source& source = more_[from * suns_ + j];
+                        const Source& source = more[from];
                         for (int m = 0; m < kAirOrders; ++m)
                             for (std::size_t b = 0; b < kBandCount; ++b)
                                 rest[i][m][b] += by_air[b] * source.by_air[i][m][b];
@@ -465,10 +474,61 @@ class Atmosphere::Tables {
                 }
             }
             for (std::size_t h = 0; h < kHeights; ++h) {
-                scatter_into<kAirOrders>(more_[h * suns_ + j].by_air, air_kernel(), light[h]);
-                scatter_into<kOrders>(more_[h * suns_ + j].by_haze, haze_kernel(), light[h]);
+                scatter_into<kAirOrders>(more[h].by_air, air_kernel(), light[h]);
+                scatter_into<kOrders>(more[h].by_haze, haze_kernel(), light[h]);
             }
         }
+        return more;
+    }
+
+    // The table's suns from the first to the last. Suns have the same places whichever of them a table needs, and are kept, with their air:
+    // a sun that moves needs few others from frame to frame. Without the lock while they are made: a thread that waits inside for the
+    // others may be given other work, which may be another sky's.
+    std::vector<std::shared_ptr<const Scattering>> suns_to(int last) const {
+        struct Kept {
+            double turbidity = 0.0;
+            std::shared_ptr<const Columned> air;
+            std::map<int, std::shared_ptr<const Scattering>> suns;
+        };
+        static std::mutex mutex;
+        static Kept kept;
+        Kept now;
+        {
+            const std::lock_guard lock(mutex);
+            if (kept.turbidity == turbidity_) now = kept;
+        }
+        std::vector<int> missing;
+        for (int node = first_; node <= last; ++node)
+            if (!now.suns.contains(node)) missing.push_back(node);
+        if (!missing.empty()) {
+            now.turbidity = turbidity_;
+            if (!now.air) {
+                const auto air = std::make_shared<Columned>();
+                tbb::parallel_for(std::size_t{0}, kHeights, [&](std::size_t i) { gather(i, *air); });
+                now.air = air;
+            }
+            std::vector<std::shared_ptr<const Scattering>> made(missing.size());
+            tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
+                const double sun = node_elevation(missing[m]);
+                made[m] = std::make_shared<const Scattering>(sun < kNight ? Scattering(kHeights)
+                                                                          : scattering_under(sun, *now.air));
+            });
+            for (std::size_t m = 0; m < missing.size(); ++m) now.suns[missing[m]] = made[m];
+            const std::lock_guard lock(mutex);
+            if (kept.turbidity == turbidity_) now.suns.merge(std::map(kept.suns));
+            kept = now;
+        }
+        std::vector<std::shared_ptr<const Scattering>> suns;
+        for (int node = first_; node <= last; ++node) suns.push_back(now.suns.at(node));
+        return suns;
+    }
+    Scattering scattering_under(double sun_elevation, const Columned& air) const {
+        const Turns turns = haze_turns(sun_elevation);
+        std::vector<Field<kOrders>> once(kHeights);
+        tbb::parallel_for(std::size_t{0}, kHeights, [&](std::size_t height) {
+            once[height] = scattered_once(air, height, sun_elevation, turns);
+        });
+        return scattering_of(once, air);
     }
 
     // Weights of the light that haze, air and ground send into a ray.
@@ -489,32 +549,25 @@ class Atmosphere::Tables {
         }
     }
 
-    std::size_t turn_index(std::size_t ray, std::size_t sun, int azimuth) const {
-        return (ray * suns_ + sun) * kOrders + static_cast<std::size_t>(azimuth);
-    }
-
-    // The haze's phase function for each ray of gather() and each sun, averaged over the ray's solid angle,
+    // The haze's phase function for each ray of gather() and each azimuth of a sun, averaged over the ray's solid angle,
     // which is wider than the forward lobe.
-    std::vector<double> haze_turns() const {
+    static Turns haze_turns(double sun_elevation) {
         constexpr int kParts = 6;
-        std::vector<double> means(kRays * suns_ * kOrders);
-        tbb::parallel_for(std::size_t{0}, std::size_t{kRays}, [&](std::size_t i) {
-            for (std::size_t j = 0; j < suns_; ++j)
-                for (int k = 0; k < kOrders; ++k) {
-                    double sum = 0.0, weight = 0.0;
-                    for (int a = 0; a < kParts; ++a) {
-                        const double azimuth = kPi * (k + (a + 0.5) / kParts) / kOrders;
-                        const Sun sun(table_sun_[j], azimuth);
-                        for (int e = 0; e < kParts; ++e) {
-                            const double elevation =
-                                ray_elevation(static_cast<double>(i) + (e + 0.5) / kParts);
-                            sum += std::cos(elevation) * haze_phase(sun.turned_into(elevation));
-                            weight += std::cos(elevation);
-                        }
+        Turns means{};
+        for (int i = 0; i < kRays; ++i)
+            for (int k = 0; k < kOrders; ++k) {
+                double sum = 0.0, weight = 0.0;
+                for (int a = 0; a < kParts; ++a) {
+                    const double azimuth = kPi * (k + (a + 0.5) / kParts) / kOrders;
+                    const Sun sun(sun_elevation, azimuth);
+                    for (int e = 0; e < kParts; ++e) {
+                        const double elevation = ray_elevation(i + (e + 0.5) / kParts);
+                        sum += std::cos(elevation) * haze_phase(sun.turned_into(elevation));
+                        weight += std::cos(elevation);
                     }
-                    means[turn_index(i, j, k)] = sum / weight;
                 }
-        });
+                means[i][k] = sum / weight;
+            }
         return means;
     }
 
@@ -541,7 +594,8 @@ class Atmosphere::Tables {
     // height and elevation.
     class Row {
       public:
-        explicit Row(const Tables& tables) : tables_(tables), made_(tables.suns_), by_sun_(tables.suns_) {}
+        explicit Row(const Tables& tables)
+            : tables_(tables), made_(tables.suns_.size()), by_sun_(tables.suns_.size()) {}
 
         void move_to(const Piece& piece) {
             std::ranges::fill(made_, 0);
@@ -552,7 +606,7 @@ class Atmosphere::Tables {
             for (std::size_t i = 0; i < 4; ++i)
                 for (std::size_t k = 0; k < 4; ++k) {
                     Part& part = parts_[4 * i + k];
-                    part.source = up.nodes[i] * tables_.suns_;
+                    part.height = up.nodes[i];
                     part.ray = ray.nodes[k];
                     const double weight = up.weights[i] * ray.weights[k];
                     for (std::size_t b = 0; b < kBandCount; ++b) {
@@ -566,8 +620,8 @@ class Atmosphere::Tables {
         void add(double sine, double side, BandValues& sum) {
             const double elevation = std::asin(std::clamp(sine, -1.0, 1.0));
             const Cubic across(std::clamp(sun_index(elevation) - tables_.first_, 0.0,
-                                          static_cast<double>(tables_.suns_ - 1)),
-                               tables_.suns_);
+                                          static_cast<double>(tables_.suns_.size() - 1)),
+                               tables_.suns_.size());
             std::array<double, kOrders> turns{1.0, side};
             for (int m = 2; m < kOrders; ++m) turns[m] = 2.0 * side * turns[m - 1] - turns[m - 2];
             const double now = twilight(elevation);
@@ -590,7 +644,7 @@ class Atmosphere::Tables {
             made_[sun] = 1;
             std::array<Bands, kOrders> out{};
             for (const Part& part : parts_) {
-                const Source& from = tables_.more_[part.source + sun];
+                const Source& from = (*tables_.suns_[sun])[part.height];
                 for (int m = 0; m < kAirOrders; ++m)
                     for (std::size_t b = 0; b < kBandCount; ++b)
                         out[m][b] += part.by_air[b] * from.by_air[part.ray][m][b];
@@ -605,7 +659,7 @@ class Atmosphere::Tables {
         static constexpr double kHazeless_km = 16.0 * kHazeScale_km;  // where 1e-7 of it is left
         // What of the table's nodes around the piece, and how much of it.
         struct Part {
-            std::size_t source, ray;
+            std::size_t height, ray;
             Bands by_air, by_haze;
         };
         const Tables& tables_;
@@ -616,12 +670,10 @@ class Atmosphere::Tables {
     };
 
     double turbidity_, sun_elevation_, highest_km_;
-    int first_;  // of the table's suns, and how many
-    std::size_t suns_;
-    std::vector<double> table_sun_, twilight_;
+    int first_;  // of the table's suns
+    std::vector<double> twilight_;
     Thickness vertical_;
-    Columns columns_;
-    std::vector<Source> more_;  // by height and sun elevation
+    std::vector<std::shared_ptr<const Scattering>> suns_;
 };
 
 Atmosphere::Atmosphere(double turbidity, double sun_elevation_rad, double highest_km)
@@ -636,11 +688,6 @@ double Atmosphere::sun_elevation_rad() const {
 }
 double Atmosphere::highest_km() const {
     return tables_->highest_km();
-}
-
-BandValues Atmosphere::transmittance(double elevation_rad) const {
-    const double cosine = std::sin(std::max(elevation_rad, 0.0));
-    return tables_->transmittance(Columns::integrated(kEarth_km, to_top(kEarth_km, cosine)));
 }
 
 BandValues Atmosphere::transmittance(const SightLine& line) const {

@@ -37,14 +37,13 @@ class Atmosphere {
   public:
     // turbidity T ≥ 1: at 0.55 μm, air and haze together have T times the optical thickness of air alone. The
     // sun's elevation is as seen by the observer at sea level. highest_km: from how high up the air will be looked at;
-    // above 1 km it takes up to twice as long. What is seen from further down is the same.
+    // above 1 km it takes up to twice as long. What is seen from further down is the same. After another of the same turbidity it takes
+    // less: what suns near this one's place scatter is kept.
     Atmosphere(double turbidity, double sun_elevation_rad, double highest_km = 1.0);
     double turbidity() const;
     double sun_elevation_rad() const;
     double highest_km() const;
 
-    // Transmittance from space to sea level at this elevation ≥ 0, along a straight ray (no refraction).
-    BandValues transmittance(double elevation_rad) const;
     // Transmittance along a line of sight.
     BandValues transmittance(const SightLine& line) const;
 
@@ -74,6 +73,9 @@ class Atmosphere {
     class Tables;
     std::unique_ptr<const Tables> tables_;
 };
+
+// From space to sea level, along a straight ray (no refraction) from this elevation ≥ 0. It needs no atmosphere to be made.
+BandValues transmittance_to_sea(double turbidity, double elevation_rad);
 
 // Phase functions [1/sr] of the cosine of the scattering angle.
 double air_phase(double cosine);

@@ -8,14 +8,15 @@
 
 namespace pelagic {
 
-Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
+Disc disc_at(double turbidity, double elevation_rad, double radius_rad) {
     constexpr int kStrips = 16;
     const double lowest = std::max(-radius_rad, -elevation_rad);
     Disc disc;
     disc.elevation_rad = elevation_rad;
     if (lowest >= radius_rad) return disc;
     const auto at = [&](double up) {
-        return into_gamut(colour_of(air.transmittance(elevation_rad + up))) / (kPi * radius_rad * radius_rad);
+        return into_gamut(colour_of(transmittance_to_sea(turbidity, elevation_rad + up))) /
+               (kPi * radius_rad * radius_rad);
     };
     disc.low = at(lowest);
     disc.middle = at(0.5 * (lowest + radius_rad));
@@ -26,7 +27,7 @@ Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
     for (int i = 0; i < kStrips; ++i) {
         const double up = lowest + (i + 0.5) * height;
         const double area = 2.0 * std::sqrt(std::max(0.0, radius_rad * radius_rad - up * up)) * height;
-        const glm::dvec3 light = area * colour_of(air.transmittance(elevation_rad + up));
+        const glm::dvec3 light = area * colour_of(transmittance_to_sea(turbidity, elevation_rad + up));
         sum += light;
         moment += luminance(light) * up;
     }

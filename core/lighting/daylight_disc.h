@@ -15,6 +15,6 @@ struct Disc {
 };
 
 // Integrates strips of equal elevation: near the horizon the lower edge is redder and darker than the upper.
-Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad);
+Disc disc_at(double turbidity, double elevation_rad, double radius_rad);
 
 }  // namespace pelagic

@@ -38,6 +38,18 @@ void check(const char* name, double value, glm::dvec2 range) {
                                 std::to_string(range.x) + " to " + std::to_string(range.y) + " is accepted");
 }
 
+// [rad]
+double elevation_of(const Daylight& daylight) {
+    return daylight.sun_elevation_deg * kDegree;
+}
+double azimuth_of(const Daylight& daylight) {
+    return std::remainder(daylight.sun_azimuth_deg, 360.0) * kDegree;
+}
+glm::dvec2 heading_of(const Daylight& daylight) {
+    const double azimuth = azimuth_of(daylight);
+    return {std::cos(azimuth), std::sin(azimuth)};
+}
+
 class ScatteredTable {
   public:
     explicit ScatteredTable(const Atmosphere& air) : entries_((kElevations + 1) * (kAzimuths + 1)) {
@@ -91,29 +103,19 @@ class ScatteredTable {
 
 }  // namespace
 
-Sky daylight_sky(const Daylight& daylight, int map_size) {
+Sky daylight_sun(const Daylight& daylight) {
     check("sun_elevation_deg", daylight.sun_elevation_deg, {-90.0, 90.0});
     check("sun_azimuth_deg", daylight.sun_azimuth_deg, {-1e6, 1e6});
     check("turbidity", daylight.turbidity, {1.7, 10.0});
-    SkyMap::check_size(map_size);
-
-    const double elevation = daylight.sun_elevation_deg * kDegree;
-    const double azimuth = std::remainder(daylight.sun_azimuth_deg, 360.0) * kDegree;
-    const auto atmosphere = std::make_shared<const Atmosphere>(daylight.turbidity, elevation);
-    const Atmosphere& air = *atmosphere;
-    const ScatteredTable table(air);
-
+    const double elevation = elevation_of(daylight);
+    const glm::dvec2 heading = heading_of(daylight);
     Sky sky;
-    sky.air = daylight_air(atmosphere, azimuth);
     const double radius = static_cast<double>(sky.sun_angular_radius);
-    const Disc disc = disc_at(air, elevation, radius);
-    const glm::dvec2 heading(std::cos(azimuth), std::sin(azimuth));
+    const Disc disc = disc_at(daylight.turbidity, elevation, radius);
     sky.sun_direction = glm::dvec3(heading * std::cos(disc.elevation_rad), std::sin(disc.elevation_rad));
     sky.sun_radiance = disc.radiance;
     sky.sun_irradiance =
         disc.radiance * (kPi * radius * radius * std::max(0.0, std::sin(disc.elevation_rad)));
-
-    const glm::dvec3 sun(heading * std::cos(elevation), std::sin(elevation));
     sky.sun_lower = static_cast<float>(disc.elevation_rad - elevation);
     const auto over_mean = [&](glm::dvec3 at) {
         glm::vec3 ratio(1.0f);
@@ -124,6 +126,18 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
     sky.limb_low = over_mean(disc.low);
     sky.limb_middle = over_mean(disc.middle);
     sky.limb_high = over_mean(disc.high);
+    return sky;
+}
+
+Sky daylight_sky(const Daylight& daylight, int map_size) {
+    Sky sky = daylight_sun(daylight);
+    SkyMap::check_size(map_size);
+    const double elevation = elevation_of(daylight);
+    const glm::dvec2 heading = heading_of(daylight);
+    const auto atmosphere = std::make_shared<const Atmosphere>(daylight.turbidity, elevation);
+    const ScatteredTable table(*atmosphere);
+    sky.air = daylight_air(atmosphere, azimuth_of(daylight));
+    const glm::dvec3 sun(heading * std::cos(elevation), std::sin(elevation));
     SkyDome dome;
     dome.radiance = [&](glm::vec3 direction) {
         const glm::dvec3 to(direction);

@@ -129,9 +129,10 @@ std::string weather_time_text(const Plan& plan, int query, double t_s) {
 std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
     const Scene& scene = plan.from->scene;
     Fingerprint hash;
-    hash.add(plan.queries[output.query].query.name)
-        .add("revision " + std::to_string(output.row->revision))
-        .add(canonical(plan.from->weather ? without_keyed(scene) : scene, output.key_parts))
+    hash.add(plan.queries[output.query].query.name).add("revision " + std::to_string(output.row->revision));
+    // Of the sea nothing is in it, and of the light its frame's: with a picture's bytes, which its part adds (plugin/bake/sky_part.cpp).
+    if (output.row->kind == OutputKind::Sky) return hash.text();
+    hash.add(canonical(plan.from->weather ? without_keyed(scene) : scene, output.key_parts))
         .add(plan_text(plan, output.query));
     if (plan.from->weather) {
         const bool is_of_camera = output.has_surface && !plan.surface->is_constant();

@@ -84,6 +84,7 @@ bool may_meet_hulls(const PlannedOutput& output) {
         case OutputKind::Map:
             return output.map == MapKind::Whitecaps;
         case OutputKind::Tile:
+        case OutputKind::Sky:
             return false;
     }
     return false;

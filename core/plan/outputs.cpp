@@ -8,6 +8,7 @@
 #include "core/plan/products.h"
 #include "core/plan/spray_drops.h"
 #include "core/scene/names.h"
+#include "core/scene/number_keys.h"
 
 namespace pelagic {
 namespace {
@@ -150,6 +151,17 @@ void add_drops(const OutputRow& row, const OutputContext& context, std::vector<O
     requests.push_back({.row = &row, .query = std::move(query)});
 }
 
+// A stage shows it round the mesh. Its query has nothing to answer, and the mesh's footprints: others would be levels of their own.
+void add_sky(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
+    const Scene& scene = context.prepared.scene;
+    if (scene.output.mesh == MeshFormat::None || !has_keys(scene, "light")) return;
+    Query query = requests.front().query;
+    query.name = "sky";
+    query.products.reset();
+    query.points = 0;
+    requests.push_back({.row = &row, .query = std::move(query)});
+}
+
 const std::array kOutputTable = std::to_array<OutputRow>({
     {OutputKind::Mesh, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Mesh), 9, add_mesh},
     {OutputKind::Map, key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Maps), 7, add_patch_maps},
@@ -159,6 +171,7 @@ const std::array kOutputTable = std::to_array<OutputRow>({
      key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality,
                KeyPart::Volumes, KeyPart::Spray),
      2, add_drops},
+    {OutputKind::Sky, key_parts(KeyPart::Light), 1, add_sky},
 });
 
 }  // namespace

@@ -2,7 +2,7 @@
 // encoder and its files are a part of plugin/bake.
 //
 // There are the mesh, maps over the patch's square, the same maps over each cascade's own periodic tile, and volumes and drops of
-// spray over the patch's square.
+// spray over the patch's square. Beside a mesh under a light that changes there is each frame's sky, which asks nothing of the sea.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ namespace pelagic {
 
 struct OutputRow;
 
-enum class OutputKind { Mesh, Map, Tile, Volume, Drops };
+enum class OutputKind { Mesh, Map, Tile, Volume, Drops, Sky };
 
 // One output of a scene, and what it asks of the sea.
 struct OutputRequest {

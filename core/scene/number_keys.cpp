@@ -126,6 +126,12 @@ void refuse_keys(const Scene& scene, std::string_view table) {
         if (number.path.starts_with(table)) refuse(number);
 }
 
+bool has_keys(const Scene& scene, std::string_view table) {
+    return std::ranges::any_of(scene.keyed, [&](const KeyedNumber& number) {
+        return number.path.starts_with(std::string(table) + '.');
+    });
+}
+
 std::string why_no_keys(std::string_view path) {
     if (path == "sea.gust_size_m") return ": patches far away would race over the sea as they grow";
     if (path.find("[]") != std::string_view::npos || path.starts_with("shot.") ||

@@ -25,8 +25,6 @@
 namespace pelagic {
 namespace {
 
-constexpr double kMostSkies = 10000.0;  // 3 GB of files, and half an hour before the first frame
-
 void refuse_invalid(const Scene& scene) {
     std::vector<Problem> all = problems_of(scene);
     if (all.empty()) all = unbaked_keys(scene);
@@ -72,18 +70,14 @@ std::vector<Problem> unbaked_keys(const Scene& scene) {
     const auto asks = [&](MapKind map) {
         return std::ranges::find(scene.output.maps, map) != scene.output.maps.end();
     };
-    const auto [first, last] = light_keys(scene);
     std::vector<Problem> problems;
     for (const KeyedNumber& number : scene.keyed) {
         const Key& key = key_of(number.path);
         const bool is_foam = number.path.starts_with("effects.foam_"),
                    is_camera = number.path.starts_with("camera.");
         const bool is_plankton = number.path == "water.chlorophyll_mg_m3";
-        const bool is_endless = scene.output.mesh != MeshFormat::None && number.path.starts_with("light.") &&
-                                static_cast<double>(last) - first > kMostSkies;
         const char* what =
-            is_endless ? "changes over more than ten thousand frames, and a bake's stage has a sky for each"
-            : is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
+            is_foam || (is_plankton && scene.output.mesh != MeshFormat::None)
                 ? "changes over the shot, and what a bake says of water and foam is one for all frames"
             : !is_camera && asks(MapKind::Floor)
                 ? "changes over the shot, and a map of the floor has one light for all frames"

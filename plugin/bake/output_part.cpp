@@ -20,6 +20,7 @@ std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan) {
         {OutputKind::Tile, make_map_part},
         {OutputKind::Volume, make_volume_part},
         {OutputKind::Drops, make_drops_part},
+        {OutputKind::Sky, make_sky_part},
     });
     const auto squares = std::make_shared<SquareCache>();
     std::vector<std::unique_ptr<OutputPart>> parts;

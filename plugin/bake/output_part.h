@@ -57,7 +57,9 @@ class OutputPart {
     virtual FilePattern pattern() const = 0;
     std::string file(int frame) const { return pattern().file(frame); }
     // What the file of a frame is made of (core/plan/fingerprint.h), and the output for all frames alike.
-    std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
+    virtual std::string fingerprint(int frame) const {
+        return frame_fingerprint(plan_, output_, base_, frame);
+    }
     const std::string& fingerprint() const { return base_; }
 
     // Whether there are hulls that its water isn't in.
@@ -126,6 +128,8 @@ std::unique_ptr<OutputPart> make_volume_part(const Plan& plan, const PlannedOutp
                                              const std::shared_ptr<SquareCache>&);
 std::unique_ptr<OutputPart> make_drops_part(const Plan& plan, const PlannedOutput& output,
                                             const std::shared_ptr<SquareCache>&);
+std::unique_ptr<OutputPart> make_sky_part(const Plan& plan, const PlannedOutput& output,
+                                          const std::shared_ptr<SquareCache>&);
 
 // A mean whose parts count by the area of sea that they stand for [any unit, ≥ 0]. 0 without any area.
 class AreaMean {

@@ -81,11 +81,10 @@ class SequenceOf final : public Sequence {
             if (slot.wants(p)) parts_[p]->write(slot.frame, *slot.outputs[p], sink);
     }
 
-    void write_static(std::span<const int> volume_frames, const FileSink& sink) const override {
+    void write_static(std::span<const int> frames, const FileSink& sink) const override {
         for (std::size_t p = 0; p < parts_.size(); ++p) {
             parts_[p]->write_static(sink);
-            if (sea_->plan().outputs[p].has_surface)
-                write_stage(sea_->plan(), *parts_[p], volume_frames, sink);
+            if (sea_->plan().outputs[p].has_surface) write_stage(sea_->plan(), *parts_[p], frames, sink);
         }
     }
 

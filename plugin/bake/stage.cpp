@@ -24,8 +24,8 @@
 #include "core/scene/number_keys.h"
 #include "core/surface/view.h"
 #include "pelagic/version.h"
+#include "plugin/bake/sky_part.h"
 #include "plugin/bake/volumes.h"
-#include "plugin/format/exr/exr.h"
 #include "plugin/format/usd/camera.h"
 #include "plugin/format/usd/text.h"
 #include "plugin/format/usd/volumes.h"
@@ -77,47 +77,7 @@ usd::Camera camera_of(const Scene& scene) {
         .focus_distance_m = scene.camera.focus_distance_m};
 }
 
-// A third of a degree a pixel: as fine as the texels of the sky's map near the horizon, where they are finest.
-constexpr int kDomeWidth = 1024;
-
 constexpr double kDegrees = 180.0 / kPi;
-
-// What a half holds to a thousandth wherever the picture isn't black beside its brightest part. Nights are darker, and
-// pictures of skies may have any unit.
-bool fits_halves(const LatLong& picture) {
-    float largest = 0.0f;
-    for (const glm::vec3& radiance : picture.radiance)
-        largest = std::max({largest, radiance.x, radiance.y, radiance.z});
-    return largest > 0.1f && largest < 65504.0f;
-}
-
-// The sky without the sun's disc, as a lat-long picture.
-std::string dome_file(const Scene& scene, const Sky& sky) {
-    const LatLong picture = lat_long(sky, kDomeWidth);
-    exr::Image image{.width = picture.width, .height = picture.height, .channels = {}};
-    // The encoder's rows rise: they begin with the last one.
-    const glm::vec3* bottom =
-        &picture.radiance[picture.radiance.size() - static_cast<std::size_t>(picture.width)];
-    constexpr std::array kNames{"R", "G", "B"};
-    for (int c = 0; c < 3; ++c)
-        image.channels.push_back(
-            {.name = kNames[c],
-             .data = &bottom->x + c,
-             .pixel_stride_bytes = sizeof(glm::vec3),
-             .row_stride_bytes = -picture.width * std::ptrdiff_t{sizeof(glm::vec3)},
-             .type = fits_halves(picture) ? exr::PixelType::Half : exr::PixelType::Float});
-    exr::Header header{
-        .attributes = {{"content", std::string("radiance of the sky without the sun's disc")},
-                       {"projection",
-                        std::string("lat-long: the middle column is +x, azimuth grows to the left, "
-                                    "the top row is +z; below the horizon what the sea reflects")},
-                       {"software", std::string("pelagic " PELAGIC_VERSION)}},
-        .compression = exr::Compression::Zip};
-    for (exr::Attribute& attribute : radiance_attributes(scene))
-        header.attributes.push_back(std::move(attribute));
-    describe(portable(scene), key_parts(KeyPart::Light), header.attributes);
-    return exr::encode_scanline(header, image);
-}
 
 // Of an intensity of 0 after sunset, and where a picture of a sky has none.
 usd::Sun sun_of(const Sky& sky) {
@@ -139,15 +99,6 @@ struct StageLight {
     usd::Sun sun;
 };
 
-// The sky of a frame, and those of the frames after it that have the same.
-std::string sky_file(const Shot& shot, int frame) {
-    return FilePattern{shot.name + ".sky.", ".exr"}.file(frame);
-}
-
-bool has_changing_light(const Scene& scene) {
-    return !same_sky(scene, scene_at(scene, scene.shot.first_frame));
-}
-
 // It takes a few tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake
 // again and again under the same light, and a bake looks at it before it does anything else.
 std::shared_ptr<const StageLight> light_of(const Scene& scene) {
@@ -168,6 +119,42 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     last_source = source;
     last = light;
     return light;
+}
+
+// A picture of a sky as its file has it, whatever gain and rotation the frames give it.
+Scene with_picture_alone(const Scene& scene) {
+    Scene alone = scene_at(scene, scene.shot.first_frame);
+    alone.light.sky_gain = 1.0;
+    alone.light.sky_rotation_deg = 0.0;
+    return alone;
+}
+
+// Of these frames, under a light that changes. No sky is made for it: each is its frame's (sky_part.cpp).
+std::vector<usd::FrameLight> changing_light(const Scene& scene, std::span<const int> frames) {
+    std::optional<usd::Sun> of_picture;
+    if (scene.light.sky != Light{}.sky) of_picture = light_of(with_picture_alone(scene))->sun;
+    const auto sun_at = [&](const Light& light) {
+        if (!of_picture) return sun_of(daylight_sun(daylight_of(light)));
+        usd::Sun sun = *of_picture;
+        sun.azimuth_deg += light.sky_rotation_deg;
+        sun.intensity *= light.sky_gain;
+        return sun;
+    };
+    std::vector<usd::FrameLight> all;
+    std::optional<Scene> lit;
+    usd::Sun sun;
+    for (const int frame : frames) {
+        Scene now = scene_at(scene, frame);
+        if (!lit || !same_sky(*lit, now)) {
+            const double before_deg = sun.azimuth_deg;
+            sun = sun_at(now.light);
+            // Hosts go straight from one angle to the next.
+            if (lit) sun.azimuth_deg = before_deg + std::remainder(sun.azimuth_deg - before_deg, 360.0);
+            lit = std::move(now);
+        }
+        all.push_back({frame, sun, {.lat_long_file = "./" + dome_pattern(scene.shot).file(frame)}});
+    }
+    return all;
 }
 
 usd::Material material_of(const Plan& plan, const WaterBody& water) {
@@ -252,7 +239,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
     stage.has_volumes = !volumes_of(plan).empty();
     stage.has_drops = scene.output.drops;
     stage.extents_hint = extents_of(plan);
-    if (has_changing_light(scene)) {
+    if (has_keys(scene, "light")) {
         stage.light = std::move(light);
     } else {
         if (light.front().sun.intensity > 0.0) stage.sun = light.front().sun;
@@ -284,47 +271,25 @@ std::size_t camera_layer_bytes(const Scene& scene) {
     return bytes;
 }
 
-std::pair<int, int> light_keys(const Scene& scene) {
-    std::pair<int, int> frames{scene.shot.first_frame, scene.shot.first_frame};
-    bool is_first = true;
-    for (const KeyedNumber& number : scene.keyed) {
-        if (!number.path.starts_with("light.")) continue;
-        const auto& keys = number.keys.keys;
-        frames = {is_first ? keys.front().frame : std::min(frames.first, keys.front().frame),
-                  is_first ? keys.back().frame : std::max(frames.second, keys.back().frame)};
-        is_first = false;
-    }
-    return frames;
-}
-
 void prepare_light(const Scene& scene) {
-    light_of(scene_at(scene, scene.shot.first_frame));
+    if (!has_keys(scene, "light"))
+        light_of(scene_at(scene, scene.shot.first_frame));
+    else if (scene.light.sky != Light{}.sky)
+        light_of(with_picture_alone(scene));
 }
 
-void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> volume_frames,
+void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> frames,
                  const FileSink& sink) {
     const Scene& scene = plan.from->scene;
     const std::string& name = scene.shot.name;
-    const bool is_changing = has_changing_light(scene);
     std::vector<usd::FrameLight> light;
-    std::optional<Scene> lit;
-    const auto [first_key, last_key] = light_keys(scene);
-    const int last = is_changing ? std::min(scene.shot.last_frame, last_key) : scene.shot.first_frame;
-    for (int frame = scene.shot.first_frame; frame <= std::max(last, scene.shot.first_frame);
-         frame = std::max(frame + 1, std::min(first_key, last))) {
-        Scene now = scene_at(scene, frame);
-        if (lit && same_sky(*lit, now)) continue;
-        lit = std::move(now);
-        const std::shared_ptr<const StageLight> made = light_of(*lit);
-        const std::string file = is_changing ? sky_file(scene.shot, frame) : usd::sky_file(name);
+    if (has_keys(scene, "light")) {
+        light = changing_light(scene, frames);
+    } else {
+        const std::shared_ptr<const StageLight> made = light_of(scene_at(scene, scene.shot.first_frame));
+        const std::string file = usd::sky_file(name);
         sink({.path = file, .content = [&](const usd::Sink& take) { take(made->dome); }});
-        light.push_back({frame, made->sun, {.lat_long_file = "./" + file}});
-        // Hosts go straight from one angle to the next.
-        if (const std::size_t n = light.size(); n > 1) {
-            const double before = light[n - 2].sun.azimuth_deg;
-            double& azimuth = light[n - 1].sun.azimuth_deg;
-            azimuth = before + std::remainder(azimuth - before, 360.0);
-        }
+        light = {{scene.shot.first_frame, made->sun, {.lat_long_file = "./" + file}}};
     }
     sink({.path = usd::camera_file(name),
           .content = [&](const usd::Sink& take) { usd::write_camera_crate(camera_of(scene), take); }});
@@ -332,7 +297,7 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
         const usd::VolumeLayer layer{.fps = scene.shot.fps,
                                      .first_frame = scene.shot.first_frame,
                                      .last_frame = scene.shot.last_frame,
-                                     .frames = {volume_frames.begin(), volume_frames.end()},
+                                     .frames = {frames.begin(), frames.end()},
                                      .volumes = std::move(volumes)};
         sink({.path = usd::volumes_file(name),
               .content = [&](const usd::Sink& take) { usd::write_volumes_text(layer, take); }});

@@ -166,13 +166,16 @@ std::string content_of(const std::string& path, const Problem& unreadable) {
 
 }  // namespace
 
+Daylight daylight_of(const Light& light) {
+    return {.sun_elevation_deg = light.sun_elevation_deg,
+            .sun_azimuth_deg = light.sun_azimuth_deg,
+            .turbidity = light.turbidity};
+}
+
 Sky make_sky(const Scene& scene) {
     refuse_keys(scene, "light");
     const Light& light = scene.light;
-    if (light.sky == Light{}.sky)
-        return daylight_sky({.sun_elevation_deg = light.sun_elevation_deg,
-                             .sun_azimuth_deg = light.sun_azimuth_deg,
-                             .turbidity = light.turbidity});
+    if (light.sky == Light{}.sky) return daylight_sky(daylight_of(light));
     try {
         const exr::RgbFile file(light.sky);
         LatLongRows rows{.width = file.width(),

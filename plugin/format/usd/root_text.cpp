@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "plugin/format/usd/drops.h"
@@ -388,13 +389,20 @@ void write_sky(Page& page, const Sky& sky) {
     page.close("}");
 }
 
-// The values of what changes, by frame, and the first for who asks at no time.
+// The values of what changes, by frame, but for those amid equal ones, and the first for who asks at no time.
 template <class Text>
 void write_samples(Page& page, const std::string& name, const std::vector<FrameLight>& light,
                    const Text& text) {
     page.line({name, " = ", text(light.front())});
     page.open({name, ".timeSamples = {"});
-    for (const FrameLight& at : light) page.line({number(std::int64_t{at.frame}), ": ", text(at), ","});
+    std::string before, now = text(light.front());
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const bool is_end = i == 0 || i + 1 == light.size();
+        std::string after = i + 1 < light.size() ? text(light[i + 1]) : "";
+        if (is_end || now != before || now != after)
+            page.line({number(std::int64_t{light[i].frame}), ": ", now, ","});
+        before = std::exchange(now, std::move(after));
+    }
     page.close("}");
 }
 

@@ -145,9 +145,9 @@ void print_keyed(const Scene& scene) {
     }
     if (!scene.keyed.empty())
         std::cout << "Pictures meter each frame's light; where the sky changes each bakes its own"
-                  << (scene.output.mesh == MeshFormat::None || same_sky(scene, first)
+                  << (scene.output.mesh == MeshFormat::None || !has_keys(scene, "light")
                           ? ""
-                          : ", and the stage has a dome for each frame of the shot")
+                          : ", and a baked frame has its sky as a file of its own")
                   << ".\n";
     for (const Problem& problem : unbaked_keys(scene))
         std::cout << "A bake refuses " << problem.key << ": it " << problem.problem << ".\n";

@@ -1,7 +1,9 @@
 // The clear sky against light meter readings and energy conservation.
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/lighting/air.h"
 #include "core/lighting/atmosphere.h"
 #include "core/lighting/background.h"
 #include "core/lighting/colour.h"
@@ -153,8 +156,7 @@ TEST(Daylight, DirectLightFollowsBouguersLaw) {
     // earth's curvature and the integration's steps.
     const int green = static_cast<int>((0.55 - kShortest_um) / (kLongest_um - kShortest_um) * kBands);
     const auto thickness = [&](double turbidity, double elevation) {
-        const Atmosphere air(turbidity, 1.0);
-        return -std::log(air.transmittance(elevation)[static_cast<std::size_t>(green)]);
+        return -std::log(transmittance_to_sea(turbidity, elevation)[static_cast<std::size_t>(green)]);
     };
     const double um = band_um(green);
     const double air = 0.097 * std::pow(0.55 / um, 4.0), haze = 0.097 * 0.55 / um;
@@ -376,6 +378,50 @@ TEST(Daylight, EveryPixelIsARadiance) {
     // No exception: SkyMap would throw for invalid radiances.
     for (const double turbidity : {1.7, 10.0})
         for (const double elevation : {90.0, 0.0, -8.0}) EXPECT_NO_THROW(sky_at(elevation, turbidity));
+}
+
+// What suns scatter is kept for those near them: a sky must not depend on those that were made before it, or are made beside it.
+TEST(Daylight, IsTheSameAfterOthersAndBesideThem) {
+    const auto made = [](double elevation_deg, double turbidity) {
+        return daylight_sky({.sun_elevation_deg = elevation_deg, .turbidity = turbidity}, 16);
+    };
+    const auto bits = [](const Sky& sky) {
+        std::vector<glm::vec3> all{sky.sun_radiance, sky.sky_irradiance};
+        for (const glm::vec2 u : {glm::vec2(0.1f), glm::vec2(0.6f, -0.3f), glm::vec2(-0.9f, 0.2f)})
+            all.push_back(sky.map.radiance(u, 0.0f));
+        const Air air = sky.air->seen_from(3e4);
+        for (const glm::vec4& texel : air.texels) all.emplace_back(texel);
+        return all;
+    };
+    constexpr std::array kElevations{-10.0, -3.0, 1.0, 8.0, 25.0, 70.0};
+    std::vector<std::vector<glm::vec3>> alone;
+    for (const double elevation : kElevations) {
+        made(5.0, 2.0);  // of another turbidity: nothing is kept
+        alone.push_back(bits(made(elevation, 3.0)));
+    }
+    made(5.0, 2.0);
+    for (std::size_t i = kElevations.size(); i-- > 0;)
+        EXPECT_TRUE(bits(made(kElevations[i], 3.0)) == alone[i]) << kElevations[i];
+    tbb::parallel_for(std::size_t{0}, 4 * kElevations.size(), [&](std::size_t i) {
+        const std::size_t of = i % kElevations.size();
+        if (i % 5 == 0) made(5.0, 2.0);
+        EXPECT_TRUE(bits(made(kElevations[of], 3.0)) == alone[of]) << kElevations[of];
+    });
+}
+
+TEST(Daylight, TheSunAloneIsThatOfItsSky) {
+    for (const double elevation : {-4.0, 0.1, 3.0, 50.0, 90.0}) {
+        const Daylight daylight{.sun_elevation_deg = elevation, .sun_azimuth_deg = 250.0, .turbidity = 4.0};
+        const Sky alone = daylight_sun(daylight), whole = daylight_sky(daylight, 16);
+        EXPECT_EQ(alone.map.size(), 0);
+        EXPECT_EQ(alone.sun_direction, whole.sun_direction);
+        EXPECT_EQ(alone.sun_radiance, whole.sun_radiance);
+        EXPECT_EQ(alone.sun_irradiance, whole.sun_irradiance);
+        EXPECT_EQ(alone.sun_lower, whole.sun_lower);
+        EXPECT_EQ(alone.limb_low, whole.limb_low);
+        EXPECT_EQ(alone.limb_high, whole.limb_high);
+    }
+    EXPECT_THROW(daylight_sun({.sun_elevation_deg = 91.0}), std::invalid_argument);
 }
 
 TEST(Daylight, RefusesWhatIsOutOfRange) {

@@ -292,7 +292,7 @@ std::string part_of(const std::string& text, const std::string& from, const std:
     return begin == std::string::npos ? "" : text.substr(begin, text.find(to, begin) - begin);
 }
 
-// A light that changes: sun and dome of each frame are those of a stage of its plain numbers, and a sky that stays has no file a frame.
+// A light that changes: sun and dome of each frame are those of a stage of its plain numbers.
 TEST_F(StageLightTest, OfNumbersThatHaveKeysIsEachFramesOwn) {
     Scene scene = small_scene();
     scene.shot.first_frame = 1;
@@ -305,20 +305,19 @@ TEST_F(StageLightTest, OfNumbersThatHaveKeysIsEachFramesOwn) {
                       turn = part_of(sun, "rotateXYZ.timeSamples", "}"),
                       dome = part_of(stage, "def DomeLight", "rotateXYZ");
     std::map<int, std::string> domes;
-    for (const int frame : {1, 3, 4}) {
+    for (int frame = 1; frame <= 5; ++frame) {
         const std::string file = "a-b.sky.000" + std::to_string(frame) + ".exr",
                           at = std::to_string(frame) + ": ";
         EXPECT_NE(dome.find(at + "@./" + file + "@"), std::string::npos) << dome;
         domes[frame] = text_of(folder_ / file);
         fs::remove(folder_ / file);  // of another shot than those below
     }
-    for (const int frame : {2, 5})
-        EXPECT_FALSE(fs::exists(folder_ / ("a-b.sky.000" + std::to_string(frame) + ".exr")));
+    EXPECT_FALSE(fs::exists(folder_ / "a-b.sky.exr"));
     EXPECT_NE(turn.find("3: (0, 85.49"), std::string::npos) << turn;
     EXPECT_NE(turn.find("4: (0, 91, 200),"), std::string::npos) << turn;  // the short way on
     EXPECT_NE(intensity.find("4: 0,"), std::string::npos) << intensity;
-    EXPECT_EQ(intensity.find("2: "), std::string::npos) << intensity;
-    for (const int frame : {1, 3}) {
+    EXPECT_NE(intensity.find("2: "), std::string::npos) << "on a straight line from 1 to 3\n" << intensity;
+    for (const int frame : {1, 2, 3}) {
         Scene plain = scene_at(scene, frame);
         const std::string of_plain = baked(plain);
         const std::string told = part_of(part_of(of_plain, "def DistantLight", "def DomeLight"),
@@ -352,16 +351,88 @@ TEST_F(StageLightTest, KeysThatABakeCantSayAreRefused) {
     EXPECT_NE(refusal("light.sun_elevation_deg", true).find("a map of the floor"), std::string::npos);
 }
 
-// Of a long range only the frames between keys are looked at, and there mustn't be endlessly many.
-TEST_F(StageLightTest, KeysOverALongRangeCostWhatChanges) {
+// A frame costs its own sky, however long its light changes.
+TEST_F(StageLightTest, KeysOverALongRangeCostTheirFrame) {
     Scene scene = small_scene();
     scene.shot.first_frame = -10'000'000;
     scene.shot.last_frame = 10'000'000;
     set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {3, 4.0}}});
-    EXPECT_NE(baked(scene, {2}).find("a-b.sky.0003.exr"), std::string::npos);
-    set_value(scene, key_of("light.turbidity"), NumberKeys{{{1, 2.0}, {20'000, 4.0}}});
-    EXPECT_THROW(baked(scene, {2}), std::invalid_argument);
-    EXPECT_LT(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 20);
+    set_value(scene, key_of("light.sun_elevation_deg"), NumberKeys{{{-10'000'000, 5.0}, {10'000'000, 60.0}}});
+    const std::string stage = baked(scene, {2});
+    EXPECT_NE(stage.find("2: @./a-b.sky.0002.exr@"), std::string::npos);
+    EXPECT_EQ(stage.find("a-b.sky.0003.exr"), std::string::npos);
+    const auto skies = [&] {
+        return std::ranges::count_if(fs::directory_iterator(folder_), [](const fs::directory_entry& entry) {
+            return entry.path().filename().string().starts_with("a-b.sky.");
+        });
+    };
+    EXPECT_EQ(skies(), 1);
+    baked(scene, {2, 7});
+    EXPECT_EQ(skies(), 2);
+}
+
+// What is there is kept, and what the light of a frame has become is made again: of that frame alone.
+TEST_F(StageLightTest, AFrameIsMadeAgainWhereItsOwnLightChanges) {
+    Scene scene = small_scene();
+    scene.shot.first_frame = 1;
+    scene.shot.last_frame = 4;
+    const auto bake_it = [&](double last_deg) {
+        set_value(scene, key_of("light.sun_elevation_deg"),
+                  NumberKeys{{{1, 30.0}, {3, 20.0}, {4, last_deg}}});
+        const RunReport report = bake(scene, {.out = folder_, .frames = {}, .progress = {}});
+        EXPECT_TRUE(report.damaged.empty());
+        return report.done;
+    };
+    EXPECT_EQ(bake_it(10.0), 4);
+    EXPECT_EQ(bake_it(10.0), 0);
+    const std::string third = text_of(folder_ / "a-b.sky.0003.exr"),
+                      fourth = text_of(folder_ / "a-b.sky.0004.exr");
+    EXPECT_EQ(bake_it(12.0), 1);
+    EXPECT_TRUE(text_of(folder_ / "a-b.sky.0003.exr") == third);
+    EXPECT_FALSE(text_of(folder_ / "a-b.sky.0004.exr") == fourth);
+    fs::remove(folder_ / "a-b.sky.0002.exr");
+    EXPECT_EQ(bake_it(12.0), 1);
+}
+
+// A picture of a sky that turns and darkens: its sun as the picture that is read with these numbers has it.
+TEST_F(StageLightTest, OfAPictureThatTurnsIsEachFramesOwn) {
+    Scene scene = small_scene();
+    scene.shot.first_frame = 1;
+    scene.shot.last_frame = 3;
+    write_sky(folder_ / "noon.exr", 1.0f);
+    scene.light.sky = (folder_ / "noon.exr").string();
+    set_value(scene, key_of("light.sky_rotation_deg"), NumberKeys{{{1, 10.0}, {3, 50.0}}});
+    set_value(scene, key_of("light.sky_gain"), NumberKeys{{{1, 1.0}, {3, 0.25}}});
+    const std::string stage = baked(scene);
+    const auto number_after = [](const std::string& text, const std::string& name) {
+        const std::size_t at = text.find(name);
+        return at == std::string::npos ? std::nan("") : std::strtod(text.c_str() + at + name.size(), nullptr);
+    };
+    std::map<int, std::string> domes;
+    for (const int frame : {1, 2, 3}) {
+        const fs::path file = folder_ / ("a-b.sky.000" + std::to_string(frame) + ".exr");
+        domes[frame] = text_of(file);
+        fs::remove(file);
+    }
+    for (const int frame : {1, 2, 3}) {
+        const std::string plain = baked(scene_at(scene, frame));
+        EXPECT_TRUE(text_of(folder_ / "a-b.sky.exr") == domes[frame]) << frame;
+        const std::string at = '\n' + std::string(12, ' ') + std::to_string(frame) + ": ";
+        const std::string sun = part_of(plain, "def DistantLight", "def DomeLight"),
+                          samples = part_of(stage, "inputs:intensity.timeSamples", "}"),
+                          turns = part_of(part_of(stage, "def DistantLight", "def DomeLight"),
+                                          "rotateXYZ.timeSamples", "}");
+        const double intensity = number_after(sun, "float inputs:intensity = ");
+        EXPECT_GT(intensity, 0.0);
+        EXPECT_NEAR(number_after(samples, at), intensity, 1e-5 * intensity) << frame;
+        const auto azimuth = [&](const std::string& text, const std::string& from) {
+            const std::size_t place = text.find(from);
+            const std::size_t comma = text.find(", ", text.find(", ", place) + 1);
+            return std::strtod(text.c_str() + comma + 2, nullptr);
+        };
+        EXPECT_NEAR(std::remainder(azimuth(turns, at) - azimuth(sun, "rotateXYZ = ("), 360.0), 0.0, 1e-3)
+            << frame;
+    }
 }
 
 TEST_F(StageLightTest, DoesNotReplaceThePictureThatItsSkiesAreMadeOf) {

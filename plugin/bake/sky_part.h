@@ -1,0 +1,18 @@
+// The sky round a baked mesh, as the stage's dome shows it.
+#pragma once
+
+#include <string>
+
+#include "core/lighting/sky.h"
+#include "pelagic/scene.h"
+#include "plugin/run/part.h"
+
+namespace pelagic {
+
+// The file of a sky without the sun's disc, a lat-long picture: its bytes. The scene, without keys, is what the sky was made of.
+std::string dome_file(const Scene& scene, const Sky& sky);
+
+// Its files where the light changes; where it stays the same there is one (usd::sky_file()).
+FilePattern dome_pattern(const Shot& shot);
+
+}  // namespace pelagic

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/lighting/atmosphere.h"
 #include "core/lighting/colour.h"
 
 namespace pelagic {

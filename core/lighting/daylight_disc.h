@@ -3,8 +3,6 @@
 
 #include <glm/vec3.hpp>
 
-#include "core/lighting/atmosphere.h"
-
 namespace pelagic {
 
 // The part of the sun's disc above the horizon.

@@ -46,6 +46,14 @@ std::string field_list(FieldSet set) {
     return text.empty() ? "no field" : text;
 }
 
+// A sky asks nothing.
+std::vector<PlannedQuery> asked_of_the_sea(const Plan& plan) {
+    std::vector<PlannedQuery> queries = plan.queries;
+    for (const PlannedOutput& output : plan.outputs)
+        if (output.row->kind == OutputKind::Sky) queries.erase(queries.begin() + output.query);
+    return queries;
+}
+
 std::string footprint_text(const std::vector<double>& footprints_m, double n_min) {
     std::string text = footprints_m.front() > 0.0
                            ? format("waves from %.4g m up", n_min * footprints_m.front())
@@ -73,7 +81,7 @@ std::string trains_text(const Plan& plan) {
             "  %d of them feel the floor, marched once over %d x %d cells, %s of those bytes; nine reads a point and train\n",
             trains.coast_trains, trains.coast_cells.x, trains.coast_cells.y,
             bytes_text(trains.coast_bytes(plan.knobs.double_precision)).c_str());
-    for (const PlannedQuery& planned : plan.queries) {
+    for (const PlannedQuery& planned : asked_of_the_sea(plan)) {
         const Query& query = planned.query;
         page += "  " + query.name + ": ";
         const FieldSet needed = fields_of(query.products) & ~plan.dropped;
@@ -155,7 +163,7 @@ std::string explain(const Plan& plan) {
     page += format("\n  capillary-gravity dispersion, viscous cutoff at %g rad/m\n", kViscousWavenumber);
 
     page += "\nOutputs\n";
-    for (const PlannedQuery& planned : plan.queries) {
+    for (const PlannedQuery& planned : asked_of_the_sea(plan)) {
         page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +
                 "\n";
         for (const ProductRow& row : kProductTable) {

@@ -130,8 +130,8 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
     const Scene& scene = plan.from->scene;
     Fingerprint hash;
     hash.add(plan.queries[output.query].query.name).add("revision " + std::to_string(output.row->revision));
-    // Of the sea nothing is in it, and of the light its frame's: with a picture's bytes, which its part adds (plugin/bake/sky_part.cpp).
-    if (output.row->kind == OutputKind::Sky) return hash.text();
+    if (output.row->kind == OutputKind::Sky)  // nothing of the sea is in it
+        return hash.add(canonical(scene, output.key_parts)).text();
     hash.add(canonical(plan.from->weather ? without_keyed(scene) : scene, output.key_parts))
         .add(plan_text(plan, output.query));
     if (plan.from->weather) {

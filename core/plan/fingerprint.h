@@ -27,7 +27,7 @@ class Fingerprint {
 
 // Of an output, for all frames alike.
 std::string output_fingerprint(const Plan& plan, const PlannedOutput& output);
-// Of its file of one frame; `whole` is the output's own.
+// Of its file of one frame; `whole` is the output's own. A sky's is its part's (plugin/bake/sky_part.cpp): of its frame's light, and no other's.
 std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole,
                               int frame);
 

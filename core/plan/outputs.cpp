@@ -154,8 +154,8 @@ void add_drops(const OutputRow& row, const OutputContext& context, std::vector<O
 // A stage shows it round the mesh. Its query has nothing to answer, and the mesh's footprints: others would be levels of their own.
 void add_sky(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
     const Scene& scene = context.prepared.scene;
-    if (scene.output.mesh == MeshFormat::None || !has_keys(scene, "light")) return;
-    Query query = requests.front().query;
+    if (scene.output.mesh == MeshFormat::None || !changes(scene, "light")) return;
+    Query query = requests.front().query;  // of the mesh, which is the table's first row
     query.name = "sky";
     query.products.reset();
     query.points = 0;

@@ -228,13 +228,17 @@ bool has_say(const Scene& scene, const Key& key, KeyPartSet parts);
 std::vector<DescribedKey> described(const Scene& scene, KeyPartSet parts);
 // The same as attributes of a file's header: {"pelagic.sea.fetch_m", a number or a text}.
 template <class Attribute>
-void describe(const Scene& scene, KeyPartSet parts, std::vector<Attribute>& attributes) {
-    for (const DescribedKey& key : described(scene, parts))
+void describe(const std::vector<DescribedKey>& keys, std::vector<Attribute>& attributes) {
+    for (const DescribedKey& key : keys)
         std::visit(
             [&](const auto& value) {
                 attributes.push_back({"pelagic." + key.path, value});
             },
             key.number_or_text());
+}
+template <class Attribute>
+void describe(const Scene& scene, KeyPartSet parts, std::vector<Attribute>& attributes) {
+    describe(described(scene, parts), attributes);
 }
 
 }  // namespace pelagic

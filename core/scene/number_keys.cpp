@@ -66,6 +66,11 @@ std::size_t keys_until(const NumberKeys& number, double frame) {
     return static_cast<std::size_t>(after - number.keys.begin());
 }
 
+bool stands_still(const NumberKeys& number) {
+    return std::ranges::all_of(
+        number.keys, [&](const NumberKeys::Key& key) { return key.value == number.keys.front().value; });
+}
+
 }  // namespace
 
 double value_at(const NumberKeys& number, bool is_angle, double frame) {
@@ -126,9 +131,9 @@ void refuse_keys(const Scene& scene, std::string_view table) {
         if (number.path.starts_with(table)) refuse(number);
 }
 
-bool has_keys(const Scene& scene, std::string_view table) {
+bool changes(const Scene& scene, std::string_view table) {
     return std::ranges::any_of(scene.keyed, [&](const KeyedNumber& number) {
-        return number.path.starts_with(std::string(table) + '.');
+        return number.path.starts_with(std::string(table) + '.') && !stands_still(number.keys);
     });
 }
 
@@ -165,8 +170,7 @@ void refuse_keyed_sea(const Scene& scene) {
 Scene without_still_keys(Scene scene) {
     for (const std::vector<KeyedNumber> keyed = scene.keyed; const KeyedNumber& number : keyed) {
         const auto& keys = number.keys.keys;
-        const auto is_first = [&](const NumberKeys::Key& key) { return key.value == keys.front().value; };
-        if (is_of_sea(number) && !keys.empty() && std::ranges::all_of(keys, is_first))
+        if (is_of_sea(number) && !keys.empty() && stands_still(number.keys))
             set_number(scene, number.path, keys.front().value);
     }
     return scene;

@@ -30,8 +30,8 @@ std::string why_no_keys(std::string_view path);
 // The path of the key in the table that holds it: a list's where it is an entry's.
 std::string_view table_key(const KeyedNumber& number);
 
-// Whether numbers of that table have keys ("light").
-bool has_keys(const Scene& scene, std::string_view table);
+// Whether numbers of that table ("light") change over the shot: have keys, and not all of one value.
+bool changes(const Scene& scene, std::string_view table);
 
 // Of numbers that the sea is made of.
 bool is_of_sea(const KeyedNumber& number);

@@ -1,6 +1,6 @@
 // A bake: plan, sea, and then frame after frame into files.
 //
-//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/volumes/…, DIR/NAME.json
+//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr or NAME.sky.####.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/volumes/…, DIR/NAME.json
 //
 // plugin/run says which files are kept and how frames follow each other. bake_memory() says how much is held; a bake that
 // needs more than there is is refused before it begins.

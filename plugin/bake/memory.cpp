@@ -46,7 +46,8 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
         if (plan.knobs.double_precision)
             during.add("values of the " + query.name, values * sizeof(double), memory.remedy);
         if (!query.lattice || squares.insert({query.points, query.lattice->spacing_m}).second)
-            during.add("points of the " + query.name, memory.once, memory.remedy);
+            during.add((query.points > 0 ? "points of the " : "tables of the ") + query.name, memory.once,
+                       memory.remedy);
         during.add("files of the " + query.name, in_flight * memory.slot, memory.remedy);
         // A thread encodes one file at a time. Those of an output in several frames meet where a thread is left beside the computing.
         const std::size_t at_once =

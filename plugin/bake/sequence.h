@@ -15,7 +15,7 @@ struct FrameSlot : RunSlot {
 };
 
 // In the plan's precision; its slots are FrameSlots. The plan must be one of a bake (plan_bake), and is copied. The files
-// that belong to no frame are the stage, whose volumes are those of the frames that are named, topology, manifest; none
+// that belong to no frame are the stage, whose volumes, and whose light where it changes, are those of the frames that are named, topology, manifest; none
 // without a mesh. Progress is told where a frame's foam has a long past.
 // Throws BuildCancelled. What `watch` has to cancel outlives it: frames look at it too.
 std::unique_ptr<Sequence> make_sequence(const Plan& plan, const BuildWatch& watch = {});

@@ -5,10 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <mutex>
+#include <vector>
 
 #include "core/plan/fingerprint.h"
-#include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/number_keys.h"
 #include "pelagic/version.h"
@@ -31,22 +32,35 @@ bool fits_halves(const LatLong& picture) {
     return largest > 0.1f && largest < 65504.0f;
 }
 
+// The keys of the light's table. Exposure, and what else is of the light of pictures, is none of a sky's.
+std::vector<DescribedKey> keys_of_sky(const Scene& scene) {
+    std::vector<DescribedKey> keys = described(portable(scene), key_parts(KeyPart::Light));
+    std::erase_if(keys, [](const DescribedKey& key) { return !key.path.starts_with("light."); });
+    return keys;
+}
+
 }  // namespace
 
-std::string dome_file(const Scene& scene, const Sky& sky) {
+std::string sky_text(const Scene& scene) {
+    std::string text;
+    for (const DescribedKey& key : keys_of_sky(scene)) text += key.path + " = " + key.text + '\n';
+    return text;
+}
+
+std::string dome_file(const Scene& scene, const Sky& sky, std::string_view fingerprint) {
     const LatLong picture = lat_long(sky, kDomeWidth);
+    const exr::PixelType type = fits_halves(picture) ? exr::PixelType::Half : exr::PixelType::Float;
     exr::Image image{.width = picture.width, .height = picture.height, .channels = {}};
     // The encoder's rows rise: they begin with the last one.
     const glm::vec3* bottom =
         &picture.radiance[picture.radiance.size() - static_cast<std::size_t>(picture.width)];
     constexpr std::array kNames{"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
-        image.channels.push_back(
-            {.name = kNames[c],
-             .data = &bottom->x + c,
-             .pixel_stride_bytes = sizeof(glm::vec3),
-             .row_stride_bytes = -picture.width * std::ptrdiff_t{sizeof(glm::vec3)},
-             .type = fits_halves(picture) ? exr::PixelType::Half : exr::PixelType::Float});
+        image.channels.push_back({.name = kNames[c],
+                                  .data = &bottom->x + c,
+                                  .pixel_stride_bytes = sizeof(glm::vec3),
+                                  .row_stride_bytes = -picture.width * std::ptrdiff_t{sizeof(glm::vec3)},
+                                  .type = type});
     exr::Header header{
         .attributes = {{"content", std::string("radiance of the sky without the sun's disc")},
                        {"projection",
@@ -56,7 +70,8 @@ std::string dome_file(const Scene& scene, const Sky& sky) {
         .compression = exr::Compression::Zip};
     for (exr::Attribute& attribute : radiance_attributes(scene))
         header.attributes.push_back(std::move(attribute));
-    describe(portable(scene), key_parts(KeyPart::Light), header.attributes);
+    if (!fingerprint.empty()) header.attributes.push_back({"fingerprint", std::string(fingerprint)});
+    describe(keys_of_sky(scene), header.attributes);
     return exr::encode_scanline(header, image);
 }
 
@@ -67,7 +82,7 @@ FilePattern dome_pattern(const Shot& shot) {
 namespace {
 
 struct SkySlot final : OutputSlot {
-    std::string file;
+    std::shared_ptr<const std::string> file;
 };
 
 class SkyPart final : public OutputPart {
@@ -78,8 +93,8 @@ class SkyPart final : public OutputPart {
     std::string fingerprint(int frame) const override {
         std::call_once(picture_read_, [&] { picture_ = sky_content(scene()); });
         return Fingerprint()
-            .add(base_)
-            .add(canonical(portable(scene_at(scene(), frame)), key_parts(KeyPart::Light)))
+            .add("sky revision " + std::to_string(output_.row->revision))
+            .add(sky_text(scene_at(scene(), frame)))
             .add(picture_)
             .text();
     }
@@ -89,26 +104,47 @@ class SkyPart final : public OutputPart {
     void compute(const SeaAtTime<double>&, int, OutputSlot&, const BuildWatch&) override {}
 
     OutputMemory memory() const override {
-        constexpr std::size_t kPixels = std::size_t{kDomeWidth} * kDomeWidth / 2, kTexel = 200,
-                              kTexels = std::size_t{256} * 256;  // of the sky's map while it is made
-        constexpr std::size_t kFile = kPixels * 3 * sizeof(float);
-        return {.slot = kFile,
-                .encoding = kPixels * sizeof(glm::vec3) + kFile + kTexels * kTexel,
+        constexpr std::size_t kPixels = std::size_t{kDomeWidth} * kDomeWidth / 2,
+                              kFile = kPixels * 3 * sizeof(float);
+        // The map while it is made, of a picture the largest, with the rows that are held (core/lighting/picture_sky.cpp); of daylight
+        // what the air's suns scatter, which is kept.
+        constexpr std::size_t kTexel = 160, kMiB = 1 << 20;
+        const bool is_picture = scene().light.sky != Light{}.sky;
+        const std::size_t texels = is_picture ? 1024 * 1024 : 256 * 256, rows = is_picture ? 48 * kMiB : 0;
+        return {.once = is_picture ? 0 : 12 * kMiB,
+                .slot = kFile,
+                .encoding = kPixels * sizeof(glm::vec3) + kFile + texels * kTexel + rows,
                 .remedy = "give light no keys"};
     }
 
     void encode(int frame, OutputSlot& slot) const override {
+        std::shared_ptr<const std::string>& file = static_cast<SkySlot&>(slot).file;
+        const std::string made_of = fingerprint(frame);
+        {
+            const std::lock_guard lock(mutex_);
+            if (last_made_of_ == made_of) {
+                file = last_;
+                return;
+            }
+        }
         const Scene now = scene_at(scene(), frame);
-        static_cast<SkySlot&>(slot).file = dome_file(now, make_sky(now));
+        file = std::make_shared<const std::string>(dome_file(now, make_sky(now), made_of));
+        const std::lock_guard lock(mutex_);
+        last_made_of_ = made_of;
+        last_ = file;
     }
     void write(int frame, const OutputSlot& slot, const FileSink& sink) const override {
-        const std::string& bytes = static_cast<const SkySlot&>(slot).file;
+        const std::string& bytes = *static_cast<const SkySlot&>(slot).file;
         sink({.path = file(frame), .content = [&](const auto& take) { take(bytes); }});
     }
 
   private:
     mutable std::once_flag picture_read_;
     mutable std::string picture_;  // its content, where the sky is one
+    // Where the light rests frames have the same.
+    mutable std::mutex mutex_;
+    mutable std::string last_made_of_;
+    mutable std::shared_ptr<const std::string> last_;
 };
 
 }  // namespace

@@ -18,7 +18,6 @@
 #include "core/lighting/lighting.h"
 #include "core/plan/unresolved_slopes.h"
 #include "core/plan/weather.h"
-#include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/number_keys.h"
@@ -105,9 +104,7 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::string last_source;
     static std::shared_ptr<const StageLight> last;
-    Scene lit = scene;
-    lit.effects = {};  // no foam's look is in it
-    const std::string source = canonical(lit, key_parts(KeyPart::Light)) + sky_content(scene);
+    const std::string source = sky_text(scene) + sky_content(scene);
     {
         const std::lock_guard lock(mutex);
         if (last && last_source == source) return last;
@@ -121,10 +118,10 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     return light;
 }
 
-// A picture of a sky as its file has it, whatever gain and rotation the frames give it.
+// A picture of a sky that turns, or changes its gain: as it lies, by the largest gain, which finds all that is wrong with it.
 Scene with_picture_alone(const Scene& scene) {
     Scene alone = scene_at(scene, scene.shot.first_frame);
-    alone.light.sky_gain = 1.0;
+    alone.light.sky_gain = scene.light.sky_gain > 0.0 ? scene.light.sky_gain : 1.0;
     alone.light.sky_rotation_deg = 0.0;
     return alone;
 }
@@ -132,12 +129,13 @@ Scene with_picture_alone(const Scene& scene) {
 // Of these frames, under a light that changes. No sky is made for it: each is its frame's (sky_part.cpp).
 std::vector<usd::FrameLight> changing_light(const Scene& scene, std::span<const int> frames) {
     std::optional<usd::Sun> of_picture;
-    if (scene.light.sky != Light{}.sky) of_picture = light_of(with_picture_alone(scene))->sun;
+    const Scene alone = with_picture_alone(scene);
+    if (scene.light.sky != Light{}.sky) of_picture = light_of(alone)->sun;
     const auto sun_at = [&](const Light& light) {
         if (!of_picture) return sun_of(daylight_sun(daylight_of(light)));
         usd::Sun sun = *of_picture;
         sun.azimuth_deg += light.sky_rotation_deg;
-        sun.intensity *= light.sky_gain;
+        sun.intensity *= light.sky_gain / alone.light.sky_gain;
         return sun;
     };
     std::vector<usd::FrameLight> all;
@@ -239,7 +237,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, std::vector<usd::F
     stage.has_volumes = !volumes_of(plan).empty();
     stage.has_drops = scene.output.drops;
     stage.extents_hint = extents_of(plan);
-    if (has_keys(scene, "light")) {
+    if (changes(scene, "light")) {
         stage.light = std::move(light);
     } else {
         if (light.front().sun.intensity > 0.0) stage.sun = light.front().sun;
@@ -272,7 +270,7 @@ std::size_t camera_layer_bytes(const Scene& scene) {
 }
 
 void prepare_light(const Scene& scene) {
-    if (!has_keys(scene, "light"))
+    if (!changes(scene, "light"))
         light_of(scene_at(scene, scene.shot.first_frame));
     else if (scene.light.sky != Light{}.sky)
         light_of(with_picture_alone(scene));
@@ -283,7 +281,7 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
     const Scene& scene = plan.from->scene;
     const std::string& name = scene.shot.name;
     std::vector<usd::FrameLight> light;
-    if (has_keys(scene, "light")) {
+    if (changes(scene, "light")) {
         light = changing_light(scene, frames);
     } else {
         const std::shared_ptr<const StageLight> made = light_of(scene_at(scene, scene.shot.first_frame));

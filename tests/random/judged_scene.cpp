@@ -123,7 +123,7 @@ void judge_level(const std::string& name, const Channels& channels) {
                                                                          : Is::Share;
         else if (is_of(MapKind::SlopeVariance) && channel != "B")
             is = Is::NotNegative;
-        else if (is_of(MapKind::Floor) || name.ends_with(".sky.exr"))
+        else if (is_of(MapKind::Floor) || name.find(".sky.") != std::string::npos)
             is = Is::NotNegative;
         const std::string what = name.substr(0, name.find('/')) + " " + channel;
         judge_numbers(values, is,

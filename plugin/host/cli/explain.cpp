@@ -145,7 +145,7 @@ void print_keyed(const Scene& scene) {
     }
     if (!scene.keyed.empty())
         std::cout << "Pictures meter each frame's light; where the sky changes each bakes its own"
-                  << (scene.output.mesh == MeshFormat::None || !has_keys(scene, "light")
+                  << (scene.output.mesh == MeshFormat::None || !changes(scene, "light")
                           ? ""
                           : ", and a baked frame has its sky as a file of its own")
                   << ".\n";

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "core/base/instruction_set.h"
+#include "core/base/text.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
+#include "core/scene/names.h"
 #include "core/scene/number_keys.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/measure.h"

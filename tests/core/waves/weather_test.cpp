@@ -708,6 +708,39 @@ TEST(Weather, OverADepthThatChangesVelocitiesAreRates) {
         }
 }
 
+// The sea ebbs to a film: waves go as the depth does, to nothing, and come back.
+TEST(Weather, OverADepthThatEbbsToACentimetreStaysFinite) {
+    const auto points = random_points<float>(60.0, 300);
+    for (const auto interpolation : {kLinear, kSmooth})
+        for (const Kind& kind : kKinds) {
+            SCOPED_TRACE(kind.name);
+            Scene scene = over_depth(kind.model, kind.has_cascades, interpolation);
+            give_keys(scene, "sea.depth_m",
+                      {{25, 10.0}, {49, 0.64}, {73, 0.04}, {80, 0.01}, {121, 0.16}, {145, 2.5}},
+                      interpolation);
+            auto frame = frame_over_time<float>(scene, {everything()});
+            for (const double f : {24.0, 60.0, 79.9, 80.0, 80.1, 97.0, 150.0}) {
+                frame.set(scene.shot.time_s(f));
+                const auto of = sample(frame, 0, points);
+                double highest_m = 0.0;
+                for (const auto& at : of.vectors(Displacement)) {
+                    ASSERT_TRUE(std::isfinite(at.x + at.y + at.z)) << f;
+                    highest_m = std::max(highest_m, std::abs(static_cast<double>(at.z)));
+                }
+                for (const auto& values :
+                     {of.vectors(Normal), of.vectors(Velocity), of.vectors(SlopeVariance)})
+                    for (const auto& at : values) ASSERT_TRUE(std::isfinite(at.x + at.y + at.z)) << f;
+                for (const float breaking : of.numbers(NumberProduct::checked(Product::Breaking)))
+                    ASSERT_TRUE(breaking >= 0.0f && breaking <= 1.0f) << f;
+                if (f == 80.0) {
+                    EXPECT_LT(highest_m, 0.01);
+                } else if (f == 24.0 || f == 150.0) {
+                    EXPECT_GT(highest_m, 0.1);
+                }
+            }
+        }
+}
+
 // The frequency that velocities have is how fast phases go, also where the depth changes as much as it may, and a smooth one steeply at a key.
 TEST(Weather, OverADepthThatChangesFrequenciesAreThePhasesRates) {
     for (const auto interpolation : {kLinear, kSmooth})

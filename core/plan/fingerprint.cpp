@@ -48,6 +48,8 @@ std::string plan_text(const Plan& plan, int query_index) {
     if (plan.trains && plan.trains->count > 0 && !query.only_cascade)
         text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +
                 ' ' + number_text(plan.trains->shortest_m) + '\n';
+    // To be raised where the same heroes give other bits.
+    if (plan.trains && plan.trains->hero_trains > 0 && !query.only_cascade) text += "heroes 2\n";
     // To be raised where the same depths give other bits: both, where coast_foam() or kRoller does.
     if (plan.trains && plan.trains->coast_cells.x > 0 && !query.only_cascade)
         text += "coast 1, " + std::to_string(plan.trains->coast_trains) + " of " +

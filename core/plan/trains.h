@@ -22,7 +22,7 @@ namespace pelagic {
 inline constexpr int kHeroTrains = 200;
 // Of the sea's energy: the waves that count in a hero's height, and those of which heroes are made and that are level at their tops.
 // Shorter ones ride on them.
-inline constexpr double kHeroHeightEnergy = 0.9995, kHeroEnergy = 0.9975;
+inline constexpr double kHeroHeightEnergy = 0.9998, kHeroEnergy = 0.9975;
 
 // The wavenumbers where they end [rad/m].
 struct HeroEnds {

@@ -76,11 +76,12 @@ TEST(HeroWaves, StandWhereTheyAreAskedForInAnySea) {
             scene.waves.cascades.clear();
         }
         if (seed == 5) scene.sea.depth_m = 15.0;
-        // But for the ripples that ride on it: a fiftieth of the sea's own height.
+        // But for the ripples that ride on it: a seventieth of the sea's own height.
         const glm::dvec3 found = top(scene, hero);
-        EXPECT_NEAR(found.z, hero.height_m, 0.015 * hero.height_m) << seed;
-        EXPECT_NEAR(found.x, 0.0, 0.1) << seed;
-        EXPECT_NEAR(found.y, 0.0, 0.1) << seed;
+        EXPECT_NEAR(found.z, hero.height_m, 0.01 * hero.height_m) << seed;
+        // The ripples' displacement is 5 cm, rms: three times that.
+        EXPECT_NEAR(found.x, 0.0, 0.15) << seed;
+        EXPECT_NEAR(found.y, 0.0, 0.15) << seed;
         worst = worse(worst, std::abs(found.z / hero.height_m - 1.0));
     }
     RecordProperty("seeds", seeds(12));

@@ -505,9 +505,9 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
 }
 
 double quick_deviate(double share) {
-    constexpr double kLogistic = 1.702, kLeast = -7.0;
-    if (!(share > 0.0)) return kLeast;
-    return std::clamp(std::log(share / (1.0 - std::min(share, 0.999999))) / kLogistic, kLeast, -kLeast);
+    if (!(share > 0.0)) return kLeastDeviate;
+    return std::clamp(std::log(share / (1.0 - std::min(share, 0.999999))) / kLogistic, kLeastDeviate,
+                      -kLeastDeviate);
 }
 
 template <class T>
@@ -525,11 +525,10 @@ double coast_foam(const CoastSurf<T>& coast, glm::dvec2 place_m, double height_m
         return glm::mix(glm::mix(value(low.x, low.y), value(high.x, low.y), t.x),
                         glm::mix(value(low.x, high.y), value(high.x, high.y), t.x), t.y);
     };
-    constexpr double kLeast = 1e-4, kSharpness = 4.0;
     const double share = left * kRoller * between(coast.broken), deviation_m = between(coast.deviation_m);
-    if (!(share > kLeast && deviation_m > 0.0)) return 0.0;
+    if (!(share > kLeastSurf && deviation_m > 0.0)) return 0.0;
     const double crest =
-        0.5 * std::erfc(-kSharpness * (height_m / deviation_m + quick_deviate(share)) / std::sqrt(2.0));
+        0.5 * std::erfc(-kSurfSharpness * (height_m / deviation_m + quick_deviate(share)) / std::sqrt(2.0));
     const double shown = filter.weight(coast.peak_per_m, cell_m);
     return shown * crest + (1.0 - shown) * share;
 }

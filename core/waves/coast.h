@@ -82,6 +82,8 @@ Coast<T> make_coast(const PreparedScene& prepared, const TrainsPlan& plan, const
 // How much of a place foams because waves break on the floor there: where the sea is `height_m` high, seen through cells so wide. It lies on the highest
 // crests, over kRoller of the share of waves that break; cells too wide for crests have that much throughout.
 inline constexpr double kRoller = 0.25;  // of a breaking wave's length: by eye
+// Of coast.glsl as well: the least share of a place that breaks, how sharp a crest's foam ends, in deviations, and quick_deviate()'s numbers.
+inline constexpr double kLeastSurf = 1e-4, kSurfSharpness = 4.0, kLogistic = 1.702, kLeastDeviate = -7.0;
 template <class T>
 double coast_foam(const CoastSurf<T>& coast, glm::dvec2 place_m, double height_m, double cell_m,
                   const FootprintFilter& filter);

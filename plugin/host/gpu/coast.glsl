@@ -203,10 +203,10 @@ float surf_foam(vec2 rest_m, float height_m, float footprint_m) {
     vec4 here = mix(mix(texelFetch(coast_cells, first, 0), texelFetch(coast_cells, ivec2(last.x, first.y), 0), t.x),
                     mix(texelFetch(coast_cells, ivec2(first.x, last.y), 0), texelFetch(coast_cells, last, 0), t.x), t.y);
     float share = left * kRoller * here.x;
-    if (!(share > 1e-4 && here.y > 0.0)) return 0.0;
+    if (!(share > kLeastSurf && here.y > 0.0)) return 0.0;
     // quick_deviate(); the share is no more than kRoller.
-    float deviate = max(log(share / (1.0 - share)) / 1.702, -7.0);
-    float crest = 0.5 * complementary_error(-4.0 * (height_m / here.y + deviate) * 0.70710678118654752440);
+    float deviate = max(log(share / (1.0 - share)) / kLogistic, kLeastDeviate);
+    float crest = 0.5 * complementary_error(-kSurfSharpness * (height_m / here.y + deviate) * 0.70710678118654752440);
     vec4 filter_by = gusts[kCoastRow + 2];
     float shown = footprint_weight(6.28318530717958647692 / (map.w * max(footprint_m, 1e-6)), filter_by.x, filter_by.y);
     return mix(share, crest, shown);

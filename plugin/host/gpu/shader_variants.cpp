@@ -21,6 +21,9 @@ std::string constant(const char* name, bool value) {
 std::string constant(const char* name, int value) {
     return std::string("const int ") + name + " = " + std::to_string(value) + ";\n";
 }
+std::string constant(const char* name, double value) {
+    return std::string("const float ") + name + " = " + std::to_string(value) + ";\n";
+}
 
 std::vector<std::string_view> joined(std::initializer_list<std::vector<std::string_view>> lists) {
     std::vector<std::string_view> all;
@@ -65,14 +68,14 @@ std::vector<std::string_view> sun_files(bool has_objects, bool for_host = false)
 // Of pictures with objects alone, so that others have the variants that they had.
 std::string object_constants(bool has_objects) {
     return has_objects ? constant("kObjects", true) + constant("kObjectBoxes", kObjectBoxes) +
-                             "const float kIsObject = " + std::to_string(kIsObject) + ";\n"
+                             constant("kIsObject", kIsObject)
                        : std::string();
 }
 std::string hull_constants(bool has_objects) {
     return has_objects
                ? constant("kHullColumns", kHullColumns) + constant("kHullPlaceColumns", kHullPlaceColumns) +
                      constant("kHullTexels", kHullTexels) + constant("kHullLevels", Hull::kLevels) +
-                     "const float kHullFull_mps = " + std::to_string(Hulls::kFull_mps) + ";\n"
+                     constant("kHullFull_mps", Hulls::kFull_mps)
                : std::string();
 }
 // What the sea's first or only pass leaves out, and the foam along it.
@@ -137,8 +140,7 @@ const std::vector<std::string_view>& query_files() {
 }
 
 std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shaped) {
-    return constant("kShaped", is_shaped) +
-           "const float kCrestFootprint_m = " + std::to_string(kCrestFootprint_m) + ";\n" +
+    return constant("kShaped", is_shaped) + constant("kCrestFootprint_m", kCrestFootprint_m) +
            constant("kCascades", layout.cascades()) + constant("kVessels", layout.vessels()) +
            constant("kTileCascades", std::max(layout.cascades(), 1)) +
            constant("kCellLevels", static_cast<int>(layout.cells().footprints_m.size())) +
@@ -151,22 +153,22 @@ std::string query_constants(const SeaLayout& layout, bool coverage, bool is_shap
            constant("kFronts", layout.fronts()) + constant("kFrontRows", layout.front_rows()) +
            constant("kCoast", layout.has_coast()) + constant("kSurf", layout.has_surf()) +
            constant("kCoastRows", layout.coast_rows()) + constant("kCoastRow", layout.coast_row()) +
-           "const float kRoller = " + std::to_string(kRoller) + ";\n" +
-           constant("kFrontBends", Gusts::kBends) + constant("kMasks", layout.masks()) +
-           constant("kMaskRows", layout.mask_rows()) + constant("kMaskPictures", layout.has_mask_pictures()) +
-           constant("kMasked", layout.is_masked()) + constant("kStrips", layout.has_strips()) +
-           constant("kVesselRows", SeaLayout::kVesselRows) +
+           constant("kRoller", kRoller) + constant("kLeastSurf", kLeastSurf) +
+           constant("kSurfSharpness", kSurfSharpness) + constant("kLogistic", kLogistic) +
+           constant("kLeastDeviate", kLeastDeviate) + constant("kFrontBends", Gusts::kBends) +
+           constant("kMasks", layout.masks()) + constant("kMaskRows", layout.mask_rows()) +
+           constant("kMaskPictures", layout.has_mask_pictures()) + constant("kMasked", layout.is_masked()) +
+           constant("kStrips", layout.has_strips()) + constant("kVesselRows", SeaLayout::kVesselRows) +
            constant("kWakeTableRows", SeaLayout::kWakeTableRows) +
            constant("kWakeBox", WakeStrip::kBoxSteps) + constant("kSlopeBlocks", Frame<float>::kSlopeBlocks) +
            constant("kCalmCell", layout.calm_cell()) + constant("kCalmPixel", layout.calm_pixel()) +
-           "const float kSlick_m = " + std::to_string(kSlick_m) + ";\n" +
-           constant("kGustRows", SeaLayout::kGustRows) + constant("kGustWaves", GustsPlan::kWaves) +
-           constant("kGustLevelTerms", Gusts::kLevelTerms) + constant("kGustKeptTerms", Gusts::kKeptTerms) +
+           constant("kSlick_m", kSlick_m) + constant("kGustRows", SeaLayout::kGustRows) +
+           constant("kGustWaves", GustsPlan::kWaves) + constant("kGustLevelTerms", Gusts::kLevelTerms) +
+           constant("kGustKeptTerms", Gusts::kKeptTerms) +
            constant("kNodesALevel", EllipseTable::kNodesALevel) +
            constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
            constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
-           "const float kLongestEllipse = " + std::to_string(layout.sea().plan().knobs.longest_ellipse) +
-           ";\n";
+           constant("kLongestEllipse", layout.sea().plan().knobs.longest_ellipse);
 }
 
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size, bool floor_maps) {

@@ -196,10 +196,17 @@ void judge_record(const std::string& bytes) {
     for (const auto& hero : record.at("settings").at("waves.heroes"))
         raised_m += 2.0 * std::abs(hero.at("height_m").get<double>());
     constexpr double kTimes = 6.0;  // exp(−36) for a single wave
-    for (const auto& [frame, what] : record.at("frames").items())
-        if (what.contains("hs_m") && what.at("hs_m").get<double>() > kTimes * expected_m + raised_m + 1e-9)
+    for (const auto& [frame, what] : record.at("frames").items()) {
+        if (!what.contains("hs_m")) continue;
+        const double hs_m = what.at("hs_m").get<double>();
+        if (hs_m > kTimes * expected_m + raised_m + 1e-9)
             throw Failed("higher than the spectrum",
                          what.at("hs_m").dump() + " m instead of " + std::to_string(expected_m) + " m");
+        // A patch may lie in the highest group of the tile.
+        if (what.contains("mesh_hs_m") && what.at("mesh_hs_m").get<double>() > 4.0 * hs_m + raised_m + 1e-6)
+            throw Failed("a mesh higher than its sea",
+                         what.at("mesh_hs_m").dump() + " m, the sea " + what.at("hs_m").dump() + " m");
+    }
 }
 
 using Files = std::map<std::string, std::string>;
@@ -212,6 +219,15 @@ Files read_all(const fs::path& folder) {
         files[fs::relative(entry.path(), folder).string()] = {std::istreambuf_iterator<char>(stream), {}};
     }
     return files;
+}
+
+using Times = std::map<std::string, fs::file_time_type>;
+
+Times times_of(const fs::path& folder) {
+    Times times;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) times[entry.path().string()] = entry.last_write_time();
+    return times;
 }
 
 void judge_files(const fs::path& folder, const Files& files) {
@@ -240,16 +256,25 @@ void judge_bake(const Scene& scene, const fs::path& folder) {
     for (const int threads : kThreads) {
         const Threads limit(threads);
         const fs::path out = folder / ("baked-" + std::to_string(threads));
-        const RunReport report = bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
-        if (report.done != report.total)
-            throw Failed("an unfinished bake",
-                         std::to_string(report.done) + " of " + std::to_string(report.total) + " frames");
-        Files files = read_all(out);
+        const auto run = [&](std::vector<int> frames) {
+            const RunReport report =
+                bake(scene, {.out = out, .frames = std::move(frames), .progress = {}, .cancel = nullptr});
+            if (report.done + report.kept != report.total)
+                throw Failed("an unfinished bake",
+                             std::to_string(report.done) + " of " + std::to_string(report.total) + " frames");
+            return report.done;
+        };
         if (!first) {
-            judge_files(out, files);
-            first = std::move(files);
+            run({});
+            first = read_all(out);
+            judge_files(out, *first);
             continue;
         }
+        // One by one; and a run over what is whole leaves it.
+        for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame) run({frame});
+        Files files = read_all(out);
+        const Times times = times_of(out);
+        if (run({}) != 0 || times_of(out) != times) throw Failed("made again what was whole", "");
         if (files.size() != first->size())
             throw Failed("other files on two threads",
                          std::to_string(files.size()) + " instead of " + std::to_string(first->size()));

@@ -13,6 +13,7 @@
 #include "core/base/precision.h"
 #include "core/plan/unresolved_slopes.h"
 #include "core/surface/footprint_levels.h"
+#include "core/surface/rest_surface.h"
 #include "plugin/bake/stage.h"
 
 namespace pelagic {
@@ -89,9 +90,16 @@ class SequenceOf final : public Sequence {
     }
 
     void describe(Record& record) const override {
-        const Shot& shot = sea_->plan().from->scene.shot;
-        const auto sea = sea_->at(shot.time_s(shot.first_frame));
-        record.describe(sea_->plan(), sea->total(), sea->whitecap_threshold(), sea->residual_coverage());
+        // The shot's plan, whichever frames are baked: what a camera sees from each of them decides how fine it is.
+        const Plan& plan = sea_->plan();
+        const Scene& scene = plan.from->scene;
+        constexpr int kFrames = 64;  // that are looked at
+        std::optional<Plan> of_shot;
+        if (!plan.surface->is_constant())
+            of_shot = plan_bake(plan.from, representative_frames(scene, kFrames));
+        const auto sea = sea_->at(scene.shot.time_s(scene.shot.first_frame));
+        record.describe(of_shot ? *of_shot : plan, sea->total(), sea->whitecap_threshold(),
+                        sea->residual_coverage());
     }
     long executed_transforms() const override { return state_.frame().executed_transforms(); }
 

@@ -94,6 +94,25 @@ TEST_F(BakeResume, PartsThatAreBakedOneAfterAnotherMakeTheWhole) {
     EXPECT_NE(all.out.find("0 frames baked, 8 kept as they were"), std::string::npos) << all.out;
 }
 
+// A camera that comes down sees finer water from frame to frame; what the record says of the plan is the shot's.
+TEST_F(BakeResume, PartsOfWhatACameraSeesMakeTheWhole) {
+    write_file(folder() / "shot.toml", R"(
+[shot]
+name = "small"
+frames = [1, 4]
+[surface]
+kind = "projected-grid"
+[camera]
+resolution = [32, 18]
+keys = [ { frame = 1, position_m = [0, -60, 200], look_at_m = [0, 0, 2] }, { frame = 4, position_m = [0, -60, 3], look_at_m = [0, 0, 2] } ]
+[effects]
+whitecaps = false
+)");
+    ASSERT_EQ(bake({}, "whole").status, 0);
+    for (const char* part : {"4", "1", "2-3"}) ASSERT_EQ(bake({"--frames", part}, "parts").status, 0);
+    EXPECT_EQ(differences(folder() / "whole", folder() / "parts"), "");
+}
+
 // `pelagic verify`: what it says and its exit status.
 TEST_F(BakeResume, VerifySaysWhatIsWrongAndItsStatus) {
     const auto verify = [&](std::vector<std::string> folders) {

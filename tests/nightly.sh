@@ -59,21 +59,21 @@ part() {
     names+=("$1") commands+=("$3")
     minutes[$1]=$2
 }
-part at-night 15 at_night
-part openusd 5 openusd
+part at-night 8 at_night
+part openusd 2 openusd
 part each-source 3 each_source
 part sanitize 28 sanitize
 part tsan 15 tsan
 part blender 15 blender
-part packages 25 "$here/package/debian.sh"
-part older-cpus 5 "$here/farm/older_cpus.sh"
-part rays 5 rays
-part random-scenes 5 random_scenes
+part packages 10 "$here/package/debian.sh"
+part older-cpus 2 "$here/farm/older_cpus.sh"
+part rays 1 rays
+part random-scenes 4 random_scenes
 part fuzz 9 "$here/fuzz/run.sh 60"
 # The campaigns: name, cases.
 campaigns="arguments 1500 arrays 150 damage 120 edits 120 limits 280 memory 12 mutations 800 poses 100 signals 80"
 read -ra cases <<<"$campaigns"
-for ((i = 0; i < ${#cases[@]}; i += 2)); do part "campaign-${cases[i]}" 2 "campaign ${cases[i]} ${cases[i + 1]}"; done
+for ((i = 0; i < ${#cases[@]}; i += 2)); do part "campaign-${cases[i]}" 3 "campaign ${cases[i]} ${cases[i + 1]}"; done
 
 seed="" results=$PELAGIC_ROOT/build/nightly chosen=()
 while [ $# -gt 0 ]; do

@@ -125,7 +125,7 @@ TEST_F(Endings, TasksWhoseLocksDontLockLoseNoFrame) {
 // it, nor written anew.
 TEST_F(Endings, AFrameOfALongRecordCostsAFrame) {
     constexpr int kFrames = 10000;
-    constexpr double kMost = 1.6;  // 1.02 alone on a machine, 8 where the record is read and written
+    constexpr double kMost = 1.6;  // of the processor's time; 1.05 alone on a machine, 2 and more where the record is read and written
     write_file(folder() / "long.toml", text_of({.name = "long", .frames = kFrames}));
     ASSERT_EQ(shell("$P bake long.toml --out out --frames 1-2").status, 0);
     const fs::path file = folder() / "out" / "long.json";
@@ -147,7 +147,7 @@ TEST_F(Endings, AFrameOfALongRecordCostsAFrame) {
             ASSERT_EQ(ended.status, 0) << ended.err;
             EXPECT_EQ(files_below(folder() / out).count("mesh/long.5000.usda"), 1u)
                 << files_below(folder() / out).rbegin()->first;
-            least_s[is_long] = std::min(least_s[is_long], ended.seconds);
+            least_s[is_long] = std::min(least_s[is_long], ended.cpu_s);
             fs::remove_all(folder() / out / "mesh");
             fs::remove_all(folder() / out / "record");
         }
@@ -183,7 +183,7 @@ TEST_F(Endings, AFrameOfAVeryLongShotCostsAFrame) {
                 ASSERT_EQ(baked.status, 0) << baked.err;
                 const Ended verified = shell("$P verify out");
                 EXPECT_TRUE(has(verified.out, "lacks frames that aren't baked: ")) << verified.out;
-                const double took = baked.seconds + verified.seconds;
+                const double took = baked.cpu_s + verified.cpu_s;
                 seconds[is_long] = times == 0 ? took : std::min(seconds[is_long], took);
             }
             for (const auto& [name, content] : files_below(folder() / "out"))

@@ -214,9 +214,12 @@ void Running::send(int signal) {
 void Running::reap(bool block) {
     if (ended_) return;
     pid_t got = 0;
-    do got = waitpid(process_, &wait_status_, block ? 0 : WNOHANG);
+    rusage usage{};
+    do got = wait4(process_, &wait_status_, block ? 0 : WNOHANG, &usage);
     while (got < 0 && errno == EINTR);
     ended_ = got == process_;
+    for (const timeval& used : {usage.ru_utime, usage.ru_stime})
+        cpu_s_ += static_cast<double>(used.tv_sec) + 1e-6 * static_cast<double>(used.tv_usec);
 }
 
 bool Running::has_ended() {
@@ -240,6 +243,7 @@ Ended Running::wait() {
     if (out_is_captured_) ended.out = read_all(out_);
     if (terminal_ < 0) ended.err = read_all(err_);
     ended.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    ended.cpu_s = cpu_s_;
     return ended;
 }
 

@@ -43,7 +43,7 @@ struct Ended {
     int status = -1;  // as in shells: the exit status, or 128 + the number of the signal that killed it
     bool killed = false;
     std::string out, err;
-    double seconds = 0.0;
+    double seconds = 0.0, cpu_s = 0.0;  // of the clock; of the processor, its waited-for children's counted
 };
 
 // The preview can be left out of a build; the verb then says so, whatever it is asked.
@@ -69,6 +69,7 @@ class Running {
     pid_t process_ = -1;
     bool ended_ = false;
     int wait_status_ = 0;
+    double cpu_s_ = 0.0;
     int out_ = -1, err_ = -1, terminal_ = -1;  // this process's ends
     std::chrono::steady_clock::time_point start_;
 };

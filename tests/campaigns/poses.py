@@ -38,6 +38,7 @@ FIELDS = [1.0, 20.0, 50.0, 50.0, 120.0, 179.0]
 CASES = list(itertools.product(LOOKS, PLACES, SEAS))
 WIDTH, HEIGHT = 64, 36
 AIR_M = 1e5  # above it there is none
+EARTH_M = 6.371e6
 
 
 def judge(draw, folder):
@@ -116,8 +117,9 @@ def judge_picture(words, scene, held, eye, corners):
     slopes = corners[..., 2]
     around = np.stack([slopes[:-1, :-1], slopes[1:, :-1], slopes[:-1, 1:], slopes[1:, 1:]])
     sky, sea = around.min(axis=0) > 1e-3, around.max(axis=0) < -1e-3
-    # From above the air there is light from below alone.
-    lit = sea | (eye[2] < AIR_M)
+    # From above the air there is light from below alone, and none from past the earth, which is round.
+    lowest = (EARTH_M + eye[2]) * np.sqrt(1.0 - np.minimum(around.max(axis=0), 0.0)**2) - EARTH_M
+    lit = (sea & (lowest < 0.9 * AIR_M)) | (eye[2] < AIR_M)
     campaign.expect((total[lit].max(axis=-1) > 0).all(), f"{words}: a black pixel in daylight")
     if lit.any():
         campaign.expect(np.ptp(total) > 0 and np.ptp(total) > 1e-4 * total.max(), f"{words}: all of one colour")

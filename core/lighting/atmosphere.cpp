@@ -46,7 +46,8 @@ double thickness_of(const Thickness& vertical, const Matter& column, std::size_t
 }
 BandValues transmittance_of(const Thickness& vertical, const Matter& column) {
     BandValues out;
-    for (std::size_t b = 0; b < kBandCount; ++b) out[b] = std::exp(-thickness_of(vertical, column, b));
+    for (std::size_t b = 0; b < kBandCount; ++b) out[b] = thickness_of(vertical, column, b);
+    exp_of_minus(out);
     return out;
 }
 
@@ -258,15 +259,19 @@ class Atmosphere::Tables {
             piece.radius =
                 std::clamp(std::hypot(middle * across, radius + middle * up), kEarth_km, kEarth_km + kTop_km);
             const Matter here = density(piece.radius - kEarth_km);
+            BandValues extinction, passed;
+            for (std::size_t b = 0; b < kBandCount; ++b) {
+                extinction[b] = thickness_of(vertical_, here, b);
+                passed[b] = extinction[b] * (to - from);
+            }
+            exp_of_minus(passed);
             for (std::size_t b = 0; b < kBandCount; ++b) {
                 // The integral over a segment of constant density, exact for thick segments as well.
-                const double extinction = thickness_of(vertical_, here, b);
-                const double passed = std::exp(-extinction * (to - from));
                 const double seen =
-                    ray.passed[b] * (extinction > 0.0 ? (1.0 - passed) / extinction : to - from);
+                    ray.passed[b] * (extinction[b] > 0.0 ? (1.0 - passed[b]) / extinction[b] : to - from);
                 piece.by_air[b] = seen * vertical_.air[b] * here.air;
                 piece.by_haze[b] = seen * kHazeAlbedo * vertical_.haze[b] * here.haze;
-                ray.passed[b] *= passed;
+                ray.passed[b] *= passed[b];
             }
         }
         return ray;

@@ -26,8 +26,12 @@ SunDisc sun_disc(const Sky& sky) {
     return disc;
 }
 
+glm::vec3 background_sky(const Sky& sky, glm::vec3 direction) {
+    return sky.map.open_radiance(behind::background_place(direction));
+}
+
 Background background(const Sky& sky, glm::vec3 direction, float pixel_angle) {
-    Background seen{.sky = sky.map.open_radiance(behind::background_place(direction))};
+    Background seen{.sky = background_sky(sky, direction)};
     if (sky.sun_radiance == glm::vec3(0.0f)) return seen;
     const SunDisc disc = sun_disc(sky);
     const float share = behind::sun_disc(direction, disc.centre, sky.sun_angular_radius, pixel_angle);

@@ -19,7 +19,9 @@ struct SunDisc {
 };
 SunDisc sun_disc(const Sky& sky);
 
-// Along a unit direction, for a pixel whose side subtends `pixel_angle` [rad].
+// Along a unit direction: without the sun.
+glm::vec3 background_sky(const Sky& sky, glm::vec3 direction);
+// With it, for a pixel whose side subtends `pixel_angle` [rad].
 Background background(const Sky& sky, glm::vec3 direction, float pixel_angle);
 
 // For a pixel with tangent `pixel_tangent` at the picture's centre, at this cosine from the axis.

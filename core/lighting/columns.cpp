@@ -1,5 +1,8 @@
 #include "core/lighting/columns.h"
 
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,10 +47,20 @@ Thickness vertical_thickness(double turbidity) {
     return thickness;
 }
 
+void exp_of_minus(std::span<double> values) {
+    namespace hn = hwy::HWY_NAMESPACE;  // of the instructions that all processors have
+    const hn::ScalableTag<double> d;
+    std::size_t i = 0;
+    for (; i + hn::Lanes(d) <= values.size(); i += hn::Lanes(d))
+        hn::StoreU(hn::Exp(d, hn::Neg(hn::LoadU(d, &values[i]))), d, &values[i]);
+    for (; i < values.size(); ++i) values[i] = hn::GetLane(hn::Exp(d, hn::Set(d, -values[i])));
+}
+
 Matter density(double height_km) {
+    std::array<double, 2> thinned{height_km / kAirScale_km, height_km / kHazeScale_km};
+    exp_of_minus(thinned);
     const double off = std::abs(height_km - kOzoneMiddle_km) / kOzoneHalfWidth_km;
-    return {std::exp(-height_km / kAirScale_km) / kAirScale_km,
-            std::exp(-height_km / kHazeScale_km) / kHazeScale_km,
+    return {thinned[0] / kAirScale_km, thinned[1] / kHazeScale_km,
             std::max(0.0, 1.0 - off) / kOzoneHalfWidth_km};
 }
 
@@ -115,6 +128,7 @@ Matter Columns::integrated(double radius, double d) {
     const double lowest = std::clamp(-radius * cosine, 0.0, d);
     Matter column;
     for (const double length : {-lowest, d - lowest}) {
+        if (length == 0.0) continue;
         for (int i = 0; i < kSteps; ++i) {
             const double a = static_cast<double>(i) / kSteps, b = (i + 1.0) / kSteps;
             const double t = lowest + length * 0.5 * (a * a + b * b);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/lighting/atmosphere.h"
@@ -15,6 +16,9 @@ inline constexpr double kEarth_km = kEarthRadius_km, kTop_km = kAirTop_km;
 struct Matter {
     double air = 0.0, haze = 0.0, ozone = 0.0;
 };
+
+// Changes each x to exp(−x). Half of a sky's time goes into these, twice as fast so as one by one.
+void exp_of_minus(std::span<double> values);
 
 // [1/km]
 Matter density(double height_km);

@@ -49,7 +49,7 @@ LatLong lat_long(const Sky& sky, int width) {
                     const glm::dvec2 heading = headings[static_cast<std::size_t>(column) * n + i];
                     const glm::vec3 direction(elevation.x * heading.x, elevation.x * heading.y, elevation.y);
                     sum += static_cast<float>(elevation.x) *
-                           (direction.z < 0.0f ? below : background(sky, direction, 1.0f).sky);
+                           (direction.z < 0.0f ? below : background_sky(sky, direction));
                     weights += elevation.x;  // of equal steps in angle
                 }
             picture.radiance[static_cast<std::size_t>(row) * width + column] =

@@ -53,14 +53,25 @@ glm::dvec2 heading_of(const Daylight& daylight) {
 class ScatteredTable {
   public:
     explicit ScatteredTable(const Atmosphere& air) : entries_((kElevations + 1) * (kAzimuths + 1)) {
-        std::vector<double> azimuths;
-        for (int j = 0; j <= kAzimuths; ++j) azimuths.push_back(kPi * j / kAzimuths);
+        // Light is even in the azimuth and smooth but for the earth's shadow: a sum of cosines, through the middles of equal parts.
+        std::array<double, kParts> azimuths{};
+        for (int k = 0; k < kParts; ++k) azimuths[k] = kPi * (k + 0.5) / kParts;
+        std::array<std::array<double, kParts>, kAzimuths + 1> shares{};
+        for (int j = 0; j <= kAzimuths; ++j)
+            for (int k = 0; k < kParts; ++k) {
+                shares[j][k] = 1.0 / kParts;
+                for (int m = 1; m < kParts; ++m)
+                    shares[j][k] +=
+                        2.0 / kParts * std::cos(m * kPi * j / kAzimuths) * std::cos(m * azimuths[k]);
+            }
         tbb::parallel_for(0, kElevations + 1, [&](int i) {
             const double x = static_cast<double>(i) / kElevations;
-            const auto row = air.scattered(0.5 * kPi * x * x, azimuths);
-            for (std::size_t j = 0; j < row.size(); ++j)
-                entries_[static_cast<std::size_t>(i) * row.size() + j] = {
-                    colour_of(row[j].by_air), colour_of(row[j].by_haze), colour_of(row[j].more)};
+            std::vector<Entry> row;
+            for (const Atmosphere::Scattered& light : air.scattered(0.5 * kPi * x * x, azimuths))
+                row.push_back({colour_of(light.by_air), colour_of(light.by_haze), colour_of(light.more)});
+            for (int j = 0; j <= kAzimuths; ++j)
+                for (int k = 0; k < kParts; ++k)
+                    entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)].add(shares[j][k], row[k]);
         });
     }
 
@@ -73,21 +84,22 @@ class ScatteredTable {
         const std::array<double, 4> up = cubic_weights(x - i), across = cubic_weights(y - j);
         Entry mixed;
         for (std::size_t b = 0; b < 4; ++b)
-            for (std::size_t a = 0; a < 4; ++a) {
-                const double weight = up[b] * across[a];
-                const Entry& entry = at(i + static_cast<int>(b) - 1, j + static_cast<int>(a) - 1);
-                mixed.by_air += weight * entry.by_air;
-                mixed.by_haze += weight * entry.by_haze;
-                mixed.more += weight * entry.more;
-            }
+            for (std::size_t a = 0; a < 4; ++a)
+                mixed.add(up[b] * across[a], at(i + static_cast<int>(b) - 1, j + static_cast<int>(a) - 1));
         return into_gamut(mixed.by_air * air_phase(cosine) + mixed.by_haze * haze_phase(cosine) + mixed.more);
     }
 
   private:
-    // Elevations grow with the square of the index: steps of 0.02° at the horizon and 3° at the zenith.
-    static constexpr int kElevations = 64, kAzimuths = 24;
+    // Elevations grow with the square of the index: steps of 0.04° at the horizon and 4° at the zenith. Light is asked for at
+    // kParts azimuths.
+    static constexpr int kElevations = 48, kAzimuths = 24, kParts = 12;
     struct Entry {
         glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
+        void add(double weight, const Entry& other) {
+            by_air += weight * other.by_air;
+            by_haze += weight * other.by_haze;
+            more += weight * other.more;
+        }
     };
 
     // Past an end the table is continued: mirrored at the sun's meridian, and at the horizon, where it is smooth in
@@ -138,20 +150,13 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
     const ScatteredTable table(*atmosphere);
     sky.air = daylight_air(atmosphere, azimuth_of(daylight));
     const glm::dvec3 sun(heading * std::cos(elevation), std::sin(elevation));
-    SkyDome dome;
-    dome.radiance = [&](glm::vec3 direction) {
+    const BakedSky baked = bake_smooth_sky_map(map_size, [&](glm::vec3 direction) {
         const glm::dvec3 to(direction);
         const double along = glm::dot(heading, glm::dvec2(to)), across = heading.x * to.y - heading.y * to.x;
         const double side = along == 0.0 && across == 0.0 ? 0.0 : std::atan2(across, along);
         return glm::vec3(table.radiance(std::asin(std::clamp(to.z, 0.0, 1.0)), side,
                                         std::clamp(glm::dot(to, sun), -1.0, 1.0)));
-    };
-    dome.samples = [&](glm::vec3 direction, float) {
-        const bool aureole = glm::dot(glm::dvec3(direction), sun) > 0.95;  // 18°
-        return aureole || direction.z < 0.1f ? 4 : 1;
-    };
-    dome.is_smooth = true;
-    const BakedSky baked = bake_sky_map(map_size, dome);
+    });
     sky.map = baked.map;
     sky.sky_irradiance = baked.irradiance;
     return sky;

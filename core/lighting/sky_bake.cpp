@@ -32,95 +32,158 @@ struct Fresnel {
 // Samples per side of a texel that the horizon crosses: the eye is sensitive to that line.
 constexpr int kHorizonSamples = 8;
 
-// The sums over a texel's samples.
 struct Texel {
-    glm::dvec3 radiance{0.0};    // sum over the samples above the horizon
-    glm::dvec3 irradiance{0.0};  // [radiance sr]
-    int above = 0, samples = 0;
-    glm::dvec3 open{0.0};    // sum over all samples, with the sky extended past the horizon
-    glm::dvec3 middle{0.0};  // that in the texel's middle, of a smooth dome
+    float above = 0.0f;          // its share above the horizon
+    glm::vec3 radiance{0.0f};    // mean of that, times the share
+    glm::vec3 irradiance{0.0f};  // of it [radiance sr]
+    glm::vec3 open{0.0f};        // of the sky as it is extended past the horizon, where the texel is_open
     bool is_open = false;
 };
+
+// Stereographic projection: dω = 4/(1 + u²)² d²u, and cosθ = (1 − u²)/(1 + u²).
+double irradiance_weight(double u2, double side) {
+    const double up = 1.0 + u2;
+    return 4.0 * (1.0 - u2) / (up * up * up) * side * side;
+}
 
 // Texels around the horizon to which the sky extends: a lookup reaches 1½ to each side.
 constexpr double kOpenTexels = 2.5;
 
 // The sky continued past the horizon, by ratios so that it isn't negative: from the place as far above the horizon to
 // the horizon it changes by a factor, and by the same factor again to here.
-glm::dvec3 beyond_horizon(const SkyDome& dome, glm::dvec2 u, double distance) {
+glm::dvec3 beyond_horizon(const SkyRadiance& radiance, glm::dvec2 u, double distance) {
     const auto at = [&](double place) {
-        return glm::dvec3(dome.radiance(sky_map_direction(glm::vec2(u * (place / distance)))));
+        return glm::dvec3(radiance(sky_map_direction(glm::vec2(u * (place / distance)))));
     };
     const glm::dvec3 horizon = at(1.0 - 1e-7);
     const glm::dvec3 above = glm::max(at(2.0 - distance), 0.5 * horizon + 1e-300);  // at most twice as bright
     return horizon * (horizon / above);
 }
 
-Texel sampled(const SkyDome& dome, glm::dvec2 corner, double side) {
-    const glm::dvec2 middle = corner + 0.5 * side;
-    const double distance = glm::length(middle), reach = side * std::sqrt(0.5);
-    Texel texel;
-    texel.is_open = distance - reach < 1.0 + kOpenTexels * side && distance + reach < 2.0;
-    if (distance - reach >= 1.0 && !texel.is_open) {
-        texel.samples = 1;
-        return texel;
+// A texel of the map: where it lies, and how the horizon, |u| = 1, passes it.
+struct Place {
+    Place(std::size_t texel, std::size_t size)
+        : side(2.0 * static_cast<double>(kSkyMapExtent) / static_cast<double>(size)),
+          corner(glm::dvec2(static_cast<double>(texel % size), static_cast<double>(texel / size)) * side -
+                 static_cast<double>(kSkyMapExtent)),
+          middle(corner + 0.5 * side),
+          distance(glm::length(middle)) {}
+    double reach() const { return side * std::sqrt(0.5); }
+    bool is_sky() const { return distance - reach() < 1.0; }  // some of it
+    bool is_horizon() const { return is_sky() && distance + reach() > 1.0; }
+    bool is_open() const { return distance - reach() < 1.0 + kOpenTexels * side && distance + reach() < 2.0; }
+
+    double side;
+    glm::dvec2 corner, middle;
+    double distance;
+};
+
+// Over a texel's samples.
+struct Sums {
+    glm::dvec3 radiance{0.0}, irradiance{0.0}, open{0.0};
+    int above = 0;
+
+    // One above the horizon, of a square of u.
+    void add(const glm::dvec3& sample, double u2, double side) {
+        radiance += sample;
+        irradiance += sample * irradiance_weight(u2, side);
+        ++above;
     }
-    const auto angle = static_cast<float>(2.0 * side / (1.0 + distance * distance));
+    void put(int samples, Texel& texel) const {
+        texel.above = static_cast<float>(above) / static_cast<float>(samples);
+        texel.radiance = radiance / static_cast<double>(samples);
+        texel.irradiance = irradiance;
+    }
+};
+
+Texel sampled(const SkyDome& dome, const Place& place) {
+    Texel texel;
+    texel.is_open = place.is_open();
+    if (!place.is_sky() && !texel.is_open) return texel;
+    const double distance = place.distance;
+    const auto angle = static_cast<float>(2.0 * place.side / (1.0 + distance * distance));
     const double nearest = std::min(distance, 1.0 - 1e-7);
     int n = dome.samples(
-        sky_map_direction(glm::vec2(distance > 0.0 ? middle * (nearest / distance) : middle)), angle);
-    if (distance - reach < 1.0 && distance + reach > 1.0) n = std::max(n, kHorizonSamples);
-    const double step = side / n;
+        sky_map_direction(glm::vec2(distance > 0.0 ? place.middle * (nearest / distance) : place.middle)),
+        angle);
+    if (place.is_horizon()) n = std::max(n, kHorizonSamples);
+    const double step = place.side / n;
+    Sums sums;
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-            const glm::dvec2 u = corner + step * glm::dvec2(i + 0.5, j + 0.5);
+            const glm::dvec2 u = place.corner + step * glm::dvec2(i + 0.5, j + 0.5);
             const double u2 = glm::dot(u, u);
             if (u2 >= 1.0) {
-                if (texel.is_open) texel.open += beyond_horizon(dome, u, std::sqrt(u2));
+                if (texel.is_open) sums.open += beyond_horizon(dome.radiance, u, std::sqrt(u2));
                 continue;
             }
             const glm::dvec3 radiance(dome.radiance(sky_map_direction(glm::vec2(u))));
-            texel.open += radiance;
-            // Stereographic projection: dω = 4/(1 + u²)² d²u, and cosθ = (1 − u²)/(1 + u²).
-            const double up = 1.0 + u2;
-            texel.radiance += radiance;
-            texel.irradiance += radiance * (4.0 * (1.0 - u2) / (up * up * up) * step * step);
-            ++texel.above;
+            sums.open += radiance;
+            sums.add(radiance, u2, step);
         }
-    texel.samples = n * n;
-    if (dome.is_smooth && texel.is_open)
-        texel.middle = distance < 1.0 ? glm::dvec3(dome.radiance(sky_map_direction(glm::vec2(middle))))
-                                      : beyond_horizon(dome, middle, distance);
+    sums.put(n * n, texel);
+    texel.open = sums.open / static_cast<double>(n * n);
     return texel;
 }
 
-// Changes the finest level so that its spline (sky_map.glsl) passes through what a smooth dome has in the texels'
-// middles, which means would flatten. Each pass takes a quarter of what is missing of a checkerboard, and of
-// smooth skies nearly all. The outermost texels stay as they are: no lookup is theirs alone.
-void make_spline(const std::vector<Texel>& texels, std::size_t size, std::vector<glm::vec3>& open) {
-    constexpr int kPasses = 8;
-    constexpr std::array kWeights{0.125f, 0.75f, 0.125f};
-    std::vector<glm::vec3> changed(open.size());
-    for (int pass = 0; pass < kPasses; ++pass) {
-        tbb::parallel_for(std::size_t{0}, size, [&](std::size_t row) {
-            for (std::size_t column = 0; column < size; ++column) {
-                const std::size_t i = row * size + column;
-                changed[i] = open[i];
-                if (row == 0 || column == 0 || row + 1 == size || column + 1 == size) continue;
-                glm::vec3 spline(0.0f);
-                bool inside = true;
-                for (std::size_t y = 0; y < 3; ++y)
-                    for (std::size_t x = 0; x < 3; ++x) {
-                        const std::size_t at = i + (y * size + x) - size - 1;
-                        inside = inside && texels[at].is_open;
-                        spline += kWeights[x] * kWeights[y] * open[at];
-                    }
-                if (inside) changed[i] = glm::max(open[i] + glm::vec3(texels[i].middle) - spline, 0.0f);
-            }
-        });
-        open.swap(changed);
+// A square of texels whose quadratic B-spline (sky_map.glsl) passes through given values in their middles.
+class Spline {
+  public:
+    // Past the texels that are `known` it doesn't pass through what the values say. Each pass takes a quarter of what is
+    // missing of a checkerboard, and of smooth skies nearly all.
+    Spline(std::size_t size, const std::vector<glm::vec3>& values, const std::vector<char>& known)
+        : size_(size), texels_(values) {
+        std::vector<std::size_t> inside;
+        for (std::size_t i = 0; i < known.size(); ++i) {
+            const std::size_t row = i / size, column = i % size;
+            if (row == 0 || column == 0 || row + 1 == size || column + 1 == size) continue;
+            bool all = true;
+            for (std::size_t y = 0; y < 3; ++y)
+                for (std::size_t x = 0; x < 3; ++x) all = all && known[i + (y * size + x) - size - 1];
+            if (all) inside.push_back(i);
+        }
+        constexpr int kPasses = 4;
+        std::vector<glm::vec3> changed(texels_);
+        for (int pass = 0; pass < kPasses; ++pass) {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, inside.size(), 4096),
+                              [&](const tbb::blocked_range<std::size_t>& range) {
+                                  for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                                      const std::size_t i = inside[k];
+                                      const glm::vec3 here = weighted(i, kMiddle, kMiddle);
+                                      changed[i] = glm::max(texels_[i] + values[i] - here, 0.0f);
+                                  }
+                              });
+            texels_.swap(changed);
+        }
     }
-}
+
+    const glm::vec3& texel(std::size_t i) const { return texels_[i]; }
+    // Over a texel.
+    glm::vec3 mean(std::size_t i) const { return weighted(i, kMean, kMean); }
+    // At a place in a texel, from its middle, −½ … ½ of its side.
+    glm::vec3 at(std::size_t i, glm::vec2 t) const { return weighted(i, weights(t.x), weights(t.y)); }
+
+  private:
+    using Weights = std::array<float, 3>;  // of the texel before, this one and the next
+    static constexpr Weights kMiddle{0.125f, 0.75f, 0.125f}, kMean{1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f};
+    static Weights weights(float t) {
+        return {0.5f * (0.5f - t) * (0.5f - t), 0.75f - t * t, 0.5f * (0.5f + t) * (0.5f + t)};
+    }
+    glm::vec3 weighted(std::size_t i, const Weights& x, const Weights& y) const {
+        const std::size_t row = i / size_, column = i % size_;
+        const std::array columns{column > 0 ? column - 1 : 0, column, std::min(column + 1, size_ - 1)};
+        const std::array rows{row > 0 ? row - 1 : 0, row, std::min(row + 1, size_ - 1)};
+        glm::vec3 sum(0.0f);
+        for (std::size_t b = 0; b < 3; ++b) {
+            const glm::vec3* from = &texels_[rows[b] * size_];
+            sum += y[b] * (x[0] * from[columns[0]] + x[1] * from[columns[1]] + x[2] * from[columns[2]]);
+        }
+        return sum;
+    }
+
+    std::size_t size_;
+    std::vector<glm::vec3> texels_;
+};
 
 // Texels whose middles lie in a ring round the zenith, and between which angles from it [rad] they reach.
 struct Ring {
@@ -128,11 +191,11 @@ struct Ring {
     double from_zenith = kPi, to_zenith = 0.0;
 };
 
-template <class Corner>
-std::vector<Ring> rings_of(std::size_t texels, double side, double height, const Corner& corner) {
+std::vector<Ring> rings_of(std::size_t size, double height) {
     std::vector<Ring> rings;
-    for (std::size_t i = 0; i < texels; ++i) {
-        const double distance = glm::length(corner(i) + 0.5 * side), reach = side * std::sqrt(0.5);
+    for (std::size_t i = 0; i < size * size; ++i) {
+        const Place place(i, size);
+        const double distance = place.distance, reach = place.reach();
         // A place u of the stereographic projection is 2 arctan |u| from the zenith.
         const auto number = static_cast<std::size_t>(2.0 * std::atan(distance) / height);
         if (rings.size() <= number) rings.resize(number + 1);
@@ -147,6 +210,19 @@ std::vector<Ring> rings_of(std::size_t texels, double side, double height, const
     return rings;
 }
 
+BakedSky baked_from(int size, const std::vector<Texel>& texels) {
+    glm::dvec3 irradiance(0.0);
+    for (const Texel& texel : texels) irradiance += texel.irradiance;
+    const glm::vec3 below(static_cast<double>(diffuse_fresnel()) / kPi * irradiance);
+    std::vector<glm::vec3> means(texels.size()), open(texels.size());
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        const Texel& texel = texels[i];
+        means[i] = texel.radiance + below * (1.0f - texel.above);
+        open[i] = texel.is_open ? texel.open : means[i];
+    }
+    return {SkyMap(size, std::move(means), std::move(open)), glm::vec3(irradiance)};
+}
+
 }  // namespace
 
 float diffuse_fresnel() {
@@ -155,38 +231,61 @@ float diffuse_fresnel() {
 
 BakedSky bake_sky_map(int size, const SkyDome& dome) {
     SkyMap::check_size(size);
-    BakedSky baked;
     const auto n = static_cast<std::size_t>(size);
-    const double side = 2.0 * kSkyMapExtent / size;
     std::vector<Texel> texels(n * n);
-    const auto corner = [&](std::size_t texel) {
-        return glm::dvec2(static_cast<double>(texel % n), static_cast<double>(texel / n)) * side -
-               static_cast<double>(kSkyMapExtent);
-    };
-    for (const Ring& ring : rings_of(n * n, side, dome.ring, corner)) {
+    for (const Ring& ring : rings_of(n, dome.ring)) {
         dome.prepare(ring.from_zenith, ring.to_zenith);
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ring.texels.size()),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  texels[ring.texels[i]] = sampled(dome, corner(ring.texels[i]), side);
+                                  texels[ring.texels[i]] = sampled(dome, Place(ring.texels[i], n));
                           });
     }
+    return baked_from(size, texels);
+}
 
-    glm::dvec3 irradiance(0.0);
-    for (const Texel& texel : texels) irradiance += texel.irradiance;
-    const glm::dvec3 below = static_cast<double>(diffuse_fresnel()) / kPi * irradiance;
-
-    std::vector<glm::vec3> means(n * n), open(n * n);
-    for (std::size_t i = 0; i < means.size(); ++i) {
-        const Texel& texel = texels[i];
-        means[i] = (texel.radiance + below * static_cast<double>(texel.samples - texel.above)) /
-                   static_cast<double>(texel.samples);
-        open[i] = texel.is_open ? glm::vec3(texel.open / static_cast<double>(texel.samples)) : means[i];
-    }
-    if (dome.is_smooth) make_spline(texels, n, open);
-    baked.irradiance = irradiance;
-    baked.map = SkyMap(size, std::move(means), std::move(open));
-    return baked;
+BakedSky bake_smooth_sky_map(int size, const SkyRadiance& radiance) {
+    SkyMap::check_size(size);
+    const auto n = static_cast<std::size_t>(size);
+    std::vector<glm::vec3> middles(n * n);
+    std::vector<char> known(n * n);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t row) {
+        for (std::size_t i = row * n; i < (row + 1) * n; ++i) {
+            const Place place(i, n);
+            if (!place.is_open()) continue;
+            known[i] = 1;
+            middles[i] = place.distance < 1.0
+                             ? radiance(sky_map_direction(glm::vec2(place.middle)))
+                             : glm::vec3(beyond_horizon(radiance, place.middle, place.distance));
+        }
+    });
+    const Spline spline(n, middles, known);
+    std::vector<Texel> texels(n * n);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t row) {
+        for (std::size_t i = row * n; i < (row + 1) * n; ++i) {
+            const Place place(i, n);
+            Texel& texel = texels[i];
+            texel.is_open = known[i] != 0;
+            texel.open = spline.texel(i);
+            if (!place.is_sky()) continue;
+            Sums sums;
+            if (!place.is_horizon()) {
+                sums.add(glm::dvec3(spline.mean(i)), glm::dot(place.middle, place.middle), place.side);
+                sums.put(1, texel);
+                continue;
+            }
+            for (int k = 0; k < kHorizonSamples * kHorizonSamples; ++k) {
+                const glm::dvec2 t = (glm::dvec2(k % kHorizonSamples, k / kHorizonSamples) + 0.5) /
+                                         static_cast<double>(kHorizonSamples) -
+                                     0.5;
+                const glm::dvec2 u = place.middle + t * place.side;
+                if (const double u2 = glm::dot(u, u); u2 < 1.0)
+                    sums.add(glm::dvec3(spline.at(i, glm::vec2(t))), u2, place.side / kHorizonSamples);
+            }
+            sums.put(kHorizonSamples * kHorizonSamples, texel);
+        }
+    });
+    return baked_from(size, texels);
 }
 
 }  // namespace pelagic

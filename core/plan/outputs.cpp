@@ -171,7 +171,7 @@ const std::array kOutputTable = std::to_array<OutputRow>({
      key_parts(KeyPart::Clock, KeyPart::Waves, KeyPart::Foam, KeyPart::Gusts, KeyPart::Quality,
                KeyPart::Volumes, KeyPart::Spray),
      2, add_drops},
-    {OutputKind::Sky, key_parts(KeyPart::Light), 1, add_sky},
+    {OutputKind::Sky, key_parts(KeyPart::Light), 2, add_sky},
 });
 
 }  // namespace

@@ -41,10 +41,12 @@ std::vector<DescribedKey> keys_of_sky(const Scene& scene) {
 
 }  // namespace
 
-std::string sky_text(const Scene& scene) {
+std::string sky_fingerprint(const Scene& scene, const std::string& picture) {
+    static const int revision =
+        std::ranges::find(output_table(), OutputKind::Sky, &OutputRow::kind)->revision;
     std::string text;
     for (const DescribedKey& key : keys_of_sky(scene)) text += key.path + " = " + key.text + '\n';
-    return text;
+    return Fingerprint().add("sky revision " + std::to_string(revision)).add(text).add(picture).text();
 }
 
 std::string dome_file(const Scene& scene, const Sky& sky, std::string_view fingerprint) {
@@ -70,7 +72,7 @@ std::string dome_file(const Scene& scene, const Sky& sky, std::string_view finge
         .compression = exr::Compression::Zip};
     for (exr::Attribute& attribute : radiance_attributes(scene))
         header.attributes.push_back(std::move(attribute));
-    if (!fingerprint.empty()) header.attributes.push_back({"fingerprint", std::string(fingerprint)});
+    header.attributes.push_back({"fingerprint", std::string(fingerprint)});
     describe(keys_of_sky(scene), header.attributes);
     return exr::encode_scanline(header, image);
 }
@@ -92,11 +94,7 @@ class SkyPart final : public OutputPart {
     FilePattern pattern() const override { return dome_pattern(scene().shot); }
     std::string fingerprint(int frame) const override {
         std::call_once(picture_read_, [&] { picture_ = sky_content(scene()); });
-        return Fingerprint()
-            .add("sky revision " + std::to_string(output_.row->revision))
-            .add(sky_text(scene_at(scene(), frame)))
-            .add(picture_)
-            .text();
+        return sky_fingerprint(scene_at(scene(), frame), picture_);
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<SkySlot>(); }
 

@@ -10,12 +10,12 @@
 
 namespace pelagic {
 
-// What a sky is made of, as text, but for the bytes of its picture (sky_content()). The scene without keys.
-std::string sky_text(const Scene& scene);
+// Of a sky's file. picture: sky_content() of its scene, which has no keys.
+std::string sky_fingerprint(const Scene& scene, const std::string& picture);
 
 // The file of a sky without the sun's disc, a lat-long picture: its bytes. The scene, without keys, is what the sky was made of.
-// fingerprint: in its header, where it has one.
-std::string dome_file(const Scene& scene, const Sky& sky, std::string_view fingerprint = {});
+// fingerprint: in its header.
+std::string dome_file(const Scene& scene, const Sky& sky, std::string_view fingerprint);
 
 // Its files where the light changes; where it stays the same there is one (usd::sky_file()).
 FilePattern dome_pattern(const Shot& shot);

@@ -92,30 +92,40 @@ usd::Sun sun_of(const Sky& sky) {
             .color = brightest > 0.0 ? glm::vec3(irradiance / brightest) : glm::vec3(1.0f)};
 }
 
-// What the light leaves in a bake.
+// What a light that rests leaves in a bake.
 struct StageLight {
+    std::string fingerprint;
     std::string dome;  // the file
     usd::Sun sun;
 };
 
-// It takes a few tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake
-// again and again under the same light, and a bake looks at it before it does anything else.
+// It takes some tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake again and
+// again under the same light, and a picture is looked at before anything else is done.
 std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
-    static std::string last_source;
     static std::shared_ptr<const StageLight> last;
-    const std::string source = sky_text(scene) + sky_content(scene);
+    std::string fingerprint = sky_fingerprint(scene, sky_content(scene));
     {
         const std::lock_guard lock(mutex);
-        if (last && last_source == source) return last;
+        if (last && last->fingerprint == fingerprint) return last;
     }
     // Without the lock: a thread that waits inside for the others may be given another bake's work.
     const Sky sky = make_sky(scene);
-    const auto light = std::make_shared<const StageLight>(StageLight{dome_file(scene, sky), sun_of(sky)});
+    std::string dome = dome_file(scene, sky, fingerprint);
+    const auto light =
+        std::make_shared<const StageLight>(StageLight{std::move(fingerprint), std::move(dome), sun_of(sky)});
     const std::lock_guard lock(mutex);
-    last_source = source;
     last = light;
     return light;
+}
+
+bool is_picture(const Scene& scene) {
+    return scene.light.sky != Light{}.sky;
+}
+
+// Without keys. Daylight's needs no sky.
+usd::Sun sun_over(const Scene& scene) {
+    return is_picture(scene) ? light_of(scene)->sun : sun_of(daylight_sun(daylight_of(scene.light)));
 }
 
 // A picture of a sky that turns, or changes its gain: as it lies, by the largest gain, which finds all that is wrong with it.
@@ -128,14 +138,13 @@ Scene with_picture_alone(const Scene& scene) {
 
 // Of these frames, under a light that changes. No sky is made for it: each is its frame's (sky_part.cpp).
 std::vector<usd::FrameLight> changing_light(const Scene& scene, std::span<const int> frames) {
-    std::optional<usd::Sun> of_picture;
     const Scene alone = with_picture_alone(scene);
-    if (scene.light.sky != Light{}.sky) of_picture = light_of(alone)->sun;
-    const auto sun_at = [&](const Light& light) {
-        if (!of_picture) return sun_of(daylight_sun(daylight_of(light)));
-        usd::Sun sun = *of_picture;
-        sun.azimuth_deg += light.sky_rotation_deg;
-        sun.intensity *= light.sky_gain / alone.light.sky_gain;
+    const usd::Sun of_picture = is_picture(scene) ? sun_over(alone) : usd::Sun{};
+    const auto sun_at = [&](const Scene& now) {
+        if (!is_picture(scene)) return sun_over(now);
+        usd::Sun sun = of_picture;
+        sun.azimuth_deg += now.light.sky_rotation_deg;
+        sun.intensity *= now.light.sky_gain / alone.light.sky_gain;
         return sun;
     };
     std::vector<usd::FrameLight> all;
@@ -145,7 +154,7 @@ std::vector<usd::FrameLight> changing_light(const Scene& scene, std::span<const 
         Scene now = scene_at(scene, frame);
         if (!lit || !same_sky(*lit, now)) {
             const double before_deg = sun.azimuth_deg;
-            sun = sun_at(now.light);
+            sun = sun_at(now);
             // Hosts go straight from one angle to the next.
             if (lit) sun.azimuth_deg = before_deg + std::remainder(sun.azimuth_deg - before_deg, 360.0);
             lit = std::move(now);
@@ -270,10 +279,8 @@ std::size_t camera_layer_bytes(const Scene& scene) {
 }
 
 void prepare_light(const Scene& scene) {
-    if (!changes(scene, "light"))
-        light_of(scene_at(scene, scene.shot.first_frame));
-    else if (scene.light.sky != Light{}.sky)
-        light_of(with_picture_alone(scene));
+    if (!is_picture(scene)) return;
+    light_of(changes(scene, "light") ? with_picture_alone(scene) : scene_at(scene, scene.shot.first_frame));
 }
 
 void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> frames,
@@ -284,10 +291,12 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
     if (changes(scene, "light")) {
         light = changing_light(scene, frames);
     } else {
-        const std::shared_ptr<const StageLight> made = light_of(scene_at(scene, scene.shot.first_frame));
+        const Scene lit = scene_at(scene, scene.shot.first_frame);
         const std::string file = usd::sky_file(name);
-        sink({.path = file, .content = [&](const usd::Sink& take) { take(made->dome); }});
-        light = {{scene.shot.first_frame, made->sun, {.lat_long_file = "./" + file}}};
+        sink({.path = file,
+              .content = [&](const usd::Sink& take) { take(light_of(lit)->dome); },
+              .fingerprint = sky_fingerprint(lit, sky_content(lit))});
+        light = {{scene.shot.first_frame, sun_over(lit), {.lat_long_file = "./" + file}}};
     }
     sink({.path = usd::camera_file(name),
           .content = [&](const usd::Sink& take) { usd::write_camera_crate(camera_of(scene), take); }});

@@ -343,48 +343,71 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     const std::uintmax_t size = files::file_size(file).value_or(0);
     if (!is_read_in_part(file, frames) || size > kLargest || !files::carries(file, "{\n  \"pelagic\": "))
         return whole();
-    // Where no frame is asked about, what stands before them, and the end.
-    const bool asks_for_frames = numbers || !frames.empty();
+    // Piece by piece: a task of one frame looks through the entries of ten thousand.
     files::FileReader reader(file);
-    const std::size_t step = asks_for_frames ? size : kSmallRecord;
-    std::string bytes;
+    std::string text;
+    bool is_at_end = false;
+    const auto read_on = [&] {
+        stop_if(cancel);
+        const std::size_t before = text.size();
+        text.resize(before + kSmallRecord);
+        const std::size_t got = reader.read(std::span(text).subspan(before));
+        text.resize(before + got);
+        is_at_end = got < kSmallRecord;
+    };
     std::size_t begin = std::string::npos;
-    for (std::size_t got = step; got == step && begin == std::string::npos;) {
-        stop_if(cancel);
-        const std::size_t before = bytes.size();
-        bytes.resize(before + step);
-        got = reader.read(std::span(bytes).subspan(before));
-        bytes.resize(before + got);
-        begin = bytes.find(kFrames, before - std::min(before, kFrames.size()));
+    while (begin == std::string::npos && !is_at_end) {
+        const std::size_t from = text.size() - std::min(text.size(), kFrames.size());
+        read_on();
+        begin = text.find(kFrames, from);
     }
-    std::string ending(kLast.size(), '\0');
-    reader.seek(size - ending.size());
-    ending.resize(reader.read(ending));
-    stop_if(cancel);
-    const std::string_view text = bytes;
-    if (!reader.problem().empty() || begin == std::string_view::npos || ending != kLast) return whole();
     RecordReading reading;
-    const auto parsed = [](std::string part) { return Json::parse(part, nullptr, false); };
-    take_shot(parsed(std::string(text.substr(0, begin)) + '}'), reading);
+    const auto parsed = [](const std::string& part) { return Json::parse(part, nullptr, false); };
+    if (begin != std::string::npos) take_shot(parsed(text.substr(0, begin) + '}'), reading);
     if (!reading.shot) return whole();
-    if (!asks_for_frames) return reading;
-    for (std::size_t at = text.find(kBegin, begin); at != std::string_view::npos;) {
-        stop_if(cancel);
-        const std::size_t key = at + kBegin.size(), next = text.find(kBegin, key);
+    // Where no frame is asked about, what stands before them, and the end.
+    if (!numbers && frames.empty()) {
+        std::string ending(kLast.size(), '\0');
+        reader.seek(size - ending.size());
+        ending.resize(reader.read(ending));
+        if (!reader.problem().empty() || ending != kLast) return whole();
+        return reading;
+    }
+    text.erase(0, begin);
+    for (std::size_t at = text.find(kBegin);;) {
+        while (at == std::string::npos && !is_at_end) {
+            text.erase(0, text.size() - std::min(text.size(), kBegin.size()));
+            read_on();
+            at = text.find(kBegin);
+        }
+        if (at == std::string::npos) break;
+        std::size_t next = text.find(kBegin, at + 1);
+        while (next == std::string::npos && !is_at_end) {
+            text.erase(0, at);
+            const std::size_t from = text.size() - std::min(text.size() - 1, kBegin.size());
+            at = 0;
+            read_on();
+            next = text.find(kBegin, from);
+        }
+        const std::string_view entry =
+            std::string_view(text).substr(at + kBegin.size(), next - at - kBegin.size());
         int number = 0;
-        const auto [end, error] = std::from_chars(text.data() + key, text.data() + text.size(), number);
-        const auto after = static_cast<std::size_t>(end - text.data());
-        if (error != std::errc() || !text.substr(after).starts_with("\": {")) return whole();
-        if (numbers && text.substr(after, next - after).find("\"stale\": true") == std::string_view::npos)
+        const auto [end, error] = std::from_chars(entry.data(), entry.data() + entry.size(), number);
+        const auto after = static_cast<std::size_t>(end - entry.data());
+        if (error != std::errc() || !entry.substr(after).starts_with("\": {")) return whole();
+        // std::string_view looks at each quotation mark.
+        constexpr std::string_view kStale = "\"stale\": true";
+        if (numbers && !memmem(entry.data(), entry.size(), kStale.data(), kStale.size()))
             numbers->insert(numbers->end(), number);
         if (std::binary_search(frames.begin(), frames.end(), number)) {
-            const std::size_t last = text.find(kEnd, after);
-            const Json entry = parsed(std::string(
-                text.substr(after + 3, last == std::string_view::npos ? 0 : last + kEnd.size() - after - 3)));
-            take_entry(std::to_string(number), entry, reading, take);
+            const std::size_t last = entry.find(kEnd, after);
+            const Json json = parsed(std::string(entry.substr(
+                after + 3, last == std::string_view::npos ? 0 : last + kEnd.size() - after - 3)));
+            take_entry(std::to_string(number), json, reading, take);
         }
         at = next;
     }
+    if (!reader.problem().empty() || !text.ends_with(kLast)) return whole();
     return reading;
 }
 
@@ -469,8 +492,8 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     }
 }
 
-void Record::set(const std::string& path, const files::FileState& file) {
-    shot_["files"][path] = to_json(FileRecord{.bytes = file.bytes, .checksum = file.checksum});
+void Record::set(const std::string& path, const FileRecord& file) {
+    shot_["files"][path] = to_json(file);
 }
 
 void Record::refuse_other_choice(const RecordReading& there, const std::filesystem::path& file) const {
@@ -484,7 +507,7 @@ void Record::refuse_other_choice(const RecordReading& there, const std::filesyst
 }
 
 void Record::begin(const std::filesystem::path& file, const files::LockWatch& waiting,
-                   const std::function<void()>& write_static, bool makes_frames) {
+                   const WriteStatic& write_static, bool makes_frames) {
     const files::FolderLock lock(file.parent_path(), waiting);
     unlocked_ = lock.problem();
     // With a lock that holds, once.
@@ -492,7 +515,7 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
         const RecordReading there = read_frames(
             file, {}, [](int, const FrameRecord&) {}, nullptr);
         refuse_other_choice(there, file);
-        if (write_static) write_static();
+        if (write_static) write_static(there.shot ? there.shot->files : std::map<std::string, FileRecord>());
         std::map<std::string, Json> files_there, files;
         if (there.shot)
             for (const auto& [path, listed] : there.shot->files) files_there[path] = to_json(listed);
@@ -530,14 +553,14 @@ void Record::save(const std::filesystem::path& file) {
 }
 
 void Record::finish(const std::filesystem::path& file, const files::LockWatch& waiting,
-                    const std::function<void()>& write_static) {
+                    const WriteStatic& write_static) {
     if (unsaved_.empty() && fragments_of(file).empty()) return;
     take_in(file, waiting, write_static);
     if (saved_ == 0) drop_fragment();
 }
 
 void Record::take_in(const std::filesystem::path& file, const files::LockWatch& waiting,
-                     const std::function<void()>& write_static) {
+                     const WriteStatic& write_static) {
     constexpr int kMostTimes = 10;
     for (int times = 0; times < kMostTimes; ++times) {
         // Else one run after the other would write a long record.
@@ -553,7 +576,11 @@ void Record::take_in(const std::filesystem::path& file, const files::LockWatch& 
             if (frames <= std::int64_t{last_frame_} - first_frame_) return;
         }
         const files::FolderLock lock(file.parent_path(), waiting);
-        if (!is_small && write_static) write_static();
+        if (!is_small && write_static) {
+            std::map<std::string, FileRecord> ours;
+            for (const auto& [path, listed] : shot_["files"].items()) ours[path] = file_from_json(listed);
+            write_static(ours);
+        }
         const Merged merged = merge(file, is_small ? Taken::Ours : Taken::All);
         if (merged == Merged::Yes) return drop_fragment();
         if (merged == Merged::NotWhole) return;

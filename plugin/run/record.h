@@ -131,7 +131,7 @@ class Record {
     }
 
     // A file that belongs to no frame.
-    void set(const std::string& path, const files::FileState& file);
+    void set(const std::string& path, const FileRecord& file);
     void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }
 
     // All of these take the record's file, DIR/NAME.json, and throw files::FileError.
@@ -139,9 +139,11 @@ class Record {
     // Makes sure that the record tells of this version of the shot. Where it is of another one, or missing, it is written anew with
     // the frames that it has, those of other versions as stale; fragments stay as they are. Throws ChosenMeanwhile where it says that another run
     // has chosen otherwise, and what `waiting` throws. `write_static`: what is written, and set, before the record and under its
-    // lock; not called where that throws. makes_frames: whether the run has a fragment from now on.
+    // lock; it hears of the files of no frame that are recorded. Not called where that throws. makes_frames: whether the run has a
+    // fragment from now on.
+    using WriteStatic = std::function<void(const std::map<std::string, FileRecord>& recorded)>;
     void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
-               const std::function<void()>& write_static = {}, bool makes_frames = false);
+               const WriteStatic& write_static = {}, bool makes_frames = false);
 
     // Writes what was set into the run's fragment. Holds one frame in memory of those that are there already.
     void save(const std::filesystem::path& file);
@@ -150,7 +152,7 @@ class Record {
     // would have written it; two that do so at once write the same, and a lock needn't hold. Where the record is small and no other
     // fragment is there, this run's does. `write_static`: as of begin(), before a record that is whole.
     void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {},
-                const std::function<void()>& write_static = {});
+                const WriteStatic& write_static = {});
 
     // Of a folder whose runs are over: where the fragments make the record whole they become a part of it, as by finish(), and the
     // record is the one that a single run leaves. False where nothing was done: there are none, or they don't. Throws
@@ -172,7 +174,7 @@ class Record {
     Merged merge(const std::filesystem::path& file, Taken taken);
     std::int64_t write(const files::ByteSink& sink, const std::function<void(const Take&)>& former) const;
     void take_in(const std::filesystem::path& file, const files::LockWatch& waiting,
-                 const std::function<void()>& write_static);
+                 const WriteStatic& write_static);
     bool is_alone(const std::filesystem::path& file) const;
     // Whether all that is in the fragment is there as well; and the numbers of the record's frames.
     bool is_in_record(const std::filesystem::path& file, std::set<int>& numbers_there) const;

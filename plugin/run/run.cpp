@@ -292,9 +292,9 @@ class Run {
             throw;
         }
         if (!work_.has_record) return;
-        record_.finish(report_.record, waiting_, [this] {
+        record_.finish(report_.record, waiting_, [this](const auto& recorded) {
             named_ = frames_of(work_.shot, {});
-            write_static();
+            write_static(recorded);
         });
         report_.unlocked = record_.unlocked();
     }
@@ -311,16 +311,33 @@ class Run {
             record_.set(job.frame, mended);
         }
         record_.begin(
-            report_.record, waiting_, [this] { write_static(); }, !jobs_.empty());
+            report_.record, waiting_, [this](const auto& recorded) { write_static(recorded); },
+            !jobs_.empty());
     }
 
-    void write_static() {
+    // recorded: the files of no frame that are there.
+    void write_static(const std::map<std::string, FileRecord>& recorded) {
         static_files_ = {report_.record.filename().string()};
-        sequence_->write_static(named_, [this](const FileJob& file) {
+        sequence_->write_static(named_, [&](const FileJob& file) {
             stop_if(options_.cancel);
             static_files_.push_back(file.path);
-            record_.set(file.path, files::write_if_different(options_.out / file.path, file.content));
+            record_.set(file.path, is_kept(file, recorded) ? recorded.at(file.path) : written(file));
         });
+    }
+    bool is_kept(const FileJob& file, const std::map<std::string, FileRecord>& recorded) const {
+        const auto there = recorded.find(file.path);
+        if (file.fingerprint.empty() || there == recorded.end() ||
+            there->second.fingerprint != file.fingerprint)
+            return false;
+        FileCheck check{.path = file.path, .recorded = there->second};
+        const BuildWatch watch{.cancel = options_.cancel};
+        CheckProgress progress(watch, check.recorded.bytes);
+        check_file(options_.out, check, progress);
+        return check.problem.empty();
+    }
+    FileRecord written(const FileJob& file) const {
+        const files::FileState state = files::write_if_different(options_.out / file.path, file.content);
+        return {.bytes = state.bytes, .checksum = state.checksum, .fingerprint = file.fingerprint};
     }
 
     void compute(const FrameJob& job, RunSlot& slot) {

@@ -16,6 +16,7 @@
 #include "plugin/files/files.h"
 #include "plugin/format/png/png.h"
 #include "plugin/host/cli/exit_status.h"
+#include "plugin/host/cli/guarded_run.h"
 #include "plugin/host/cli/help.h"
 #include "plugin/host/cli/progress.h"
 #include "plugin/host/cli/text.h"

@@ -24,7 +24,7 @@ FrameAccount bake_account(const Plan& plan, int frames, int threads, const Rates
     for (const PlannedOutput& output : plan.outputs) {
         if (output.row->kind == OutputKind::Sky) {
             // Its work is none of the sea's. By daylight, as measured (tests/bench/README.md); a picture's goes by its size.
-            constexpr double kProcessor_s = 0.1;
+            constexpr double kProcessor_s = 0.06;
             constexpr std::size_t kPacked_bytes = 300'000;
             account.seconds += kProcessor_s / threads;
             account.bytes += kPacked_bytes;

@@ -54,15 +54,18 @@ class ScatteredTable {
   public:
     explicit ScatteredTable(const Atmosphere& air) : entries_((kElevations + 1) * (kAzimuths + 1)) {
         // Light is even in the azimuth and smooth but for the earth's shadow: a sum of cosines, through the middles of equal parts.
-        std::array<double, kParts> azimuths{};
-        for (int k = 0; k < kParts; ++k) azimuths[k] = kPi * (k + 0.5) / kParts;
-        std::array<std::array<double, kParts>, kAzimuths + 1> shares{};
+        // In dusk the shadow lies across the sky.
+        constexpr double kDusk_rad = -4.0 * kDegree;
+        const int parts = air.sun_elevation_rad() < kDusk_rad ? 24 : 12;
+        std::vector<double> azimuths;
+        for (int k = 0; k < parts; ++k) azimuths.push_back(kPi * (k + 0.5) / parts);
+        std::vector<double> shares;  // of each part in each azimuth of the table
         for (int j = 0; j <= kAzimuths; ++j)
-            for (int k = 0; k < kParts; ++k) {
-                shares[j][k] = 1.0 / kParts;
-                for (int m = 1; m < kParts; ++m)
-                    shares[j][k] +=
-                        2.0 / kParts * std::cos(m * kPi * j / kAzimuths) * std::cos(m * azimuths[k]);
+            for (const double azimuth : azimuths) {
+                double sum = 1.0;
+                for (int m = 1; m < parts; ++m)
+                    sum += 2.0 * std::cos(m * kPi * j / kAzimuths) * std::cos(m * azimuth);
+                shares.push_back(sum / parts);
             }
         tbb::parallel_for(0, kElevations + 1, [&](int i) {
             const double x = static_cast<double>(i) / kElevations;
@@ -70,8 +73,9 @@ class ScatteredTable {
             for (const Atmosphere::Scattered& light : air.scattered(0.5 * kPi * x * x, azimuths))
                 row.push_back({colour_of(light.by_air), colour_of(light.by_haze), colour_of(light.more)});
             for (int j = 0; j <= kAzimuths; ++j)
-                for (int k = 0; k < kParts; ++k)
-                    entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)].add(shares[j][k], row[k]);
+                for (int k = 0; k < parts; ++k)
+                    entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)].add(shares[j * parts + k],
+                                                                                    row[k]);
         });
     }
 
@@ -90,9 +94,8 @@ class ScatteredTable {
     }
 
   private:
-    // Elevations grow with the square of the index: steps of 0.04° at the horizon and 4° at the zenith. Light is asked for at
-    // kParts azimuths.
-    static constexpr int kElevations = 48, kAzimuths = 24, kParts = 12;
+    // Elevations grow with the square of the index: steps of 0.04° at the horizon and 4° at the zenith.
+    static constexpr int kElevations = 48, kAzimuths = 24;
     struct Entry {
         glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
         void add(double weight, const Entry& other) {

@@ -45,7 +45,8 @@ struct Daylight {
 };
 
 // Clear daylight at sea level (model: atmosphere.h), without stars and moon: night is black. Finite and
-// smooth in its arguments, also for a sun below the horizon. map_size: as for SkyMap. Throws
+// smooth in its arguments, also for a sun below the horizon. map_size: as for SkyMap; below 64 texels are wider than sun's
+// aureole and horizon's haze are smooth, and the light is off by percents. Throws
 // std::invalid_argument for values out of range.
 Sky daylight_sky(const Daylight& daylight, int map_size = 256);
 // Its sun alone, a thousand times as fast: map, light of the sky and air are missing.

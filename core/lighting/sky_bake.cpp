@@ -61,8 +61,8 @@ glm::dvec3 beyond_horizon(const SkyRadiance& radiance, glm::dvec2 u, double dist
 }
 
 // A texel of the map: where it lies, and how the horizon, |u| = 1, passes it.
-struct Place {
-    Place(std::size_t texel, std::size_t size)
+struct TexelSquare {
+    TexelSquare(std::size_t texel, std::size_t size)
         : side(2.0 * static_cast<double>(kSkyMapExtent) / static_cast<double>(size)),
           corner(glm::dvec2(static_cast<double>(texel % size), static_cast<double>(texel / size)) * side -
                  static_cast<double>(kSkyMapExtent)),
@@ -96,22 +96,22 @@ struct Sums {
     }
 };
 
-Texel sampled(const SkyDome& dome, const Place& place) {
+Texel sampled(const SkyDome& dome, const TexelSquare& square) {
     Texel texel;
-    texel.is_open = place.is_open();
-    if (!place.is_sky() && !texel.is_open) return texel;
-    const double distance = place.distance;
-    const auto angle = static_cast<float>(2.0 * place.side / (1.0 + distance * distance));
+    texel.is_open = square.is_open();
+    if (!square.is_sky() && !texel.is_open) return texel;
+    const double distance = square.distance;
+    const auto angle = static_cast<float>(2.0 * square.side / (1.0 + distance * distance));
     const double nearest = std::min(distance, 1.0 - 1e-7);
     int n = dome.samples(
-        sky_map_direction(glm::vec2(distance > 0.0 ? place.middle * (nearest / distance) : place.middle)),
+        sky_map_direction(glm::vec2(distance > 0.0 ? square.middle * (nearest / distance) : square.middle)),
         angle);
-    if (place.is_horizon()) n = std::max(n, kHorizonSamples);
-    const double step = place.side / n;
+    if (square.is_horizon()) n = std::max(n, kHorizonSamples);
+    const double step = square.side / n;
     Sums sums;
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-            const glm::dvec2 u = place.corner + step * glm::dvec2(i + 0.5, j + 0.5);
+            const glm::dvec2 u = square.corner + step * glm::dvec2(i + 0.5, j + 0.5);
             const double u2 = glm::dot(u, u);
             if (u2 >= 1.0) {
                 if (texel.is_open) sums.open += beyond_horizon(dome.radiance, u, std::sqrt(u2));
@@ -149,7 +149,7 @@ class Spline {
                               [&](const tbb::blocked_range<std::size_t>& range) {
                                   for (std::size_t k = range.begin(); k < range.end(); ++k) {
                                       const std::size_t i = inside[k];
-                                      const glm::vec3 here = weighted(i, kMiddle, kMiddle);
+                                      const glm::vec3 here = at(i, glm::vec2(0.0f));
                                       changed[i] = glm::max(texels_[i] + values[i] - here, 0.0f);
                                   }
                               });
@@ -165,7 +165,7 @@ class Spline {
 
   private:
     using Weights = std::array<float, 3>;  // of the texel before, this one and the next
-    static constexpr Weights kMiddle{0.125f, 0.75f, 0.125f}, kMean{1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f};
+    static constexpr Weights kMean{1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f};
     static Weights weights(float t) {
         return {0.5f * (0.5f - t) * (0.5f - t), 0.75f - t * t, 0.5f * (0.5f + t) * (0.5f + t)};
     }
@@ -194,8 +194,8 @@ struct Ring {
 std::vector<Ring> rings_of(std::size_t size, double height) {
     std::vector<Ring> rings;
     for (std::size_t i = 0; i < size * size; ++i) {
-        const Place place(i, size);
-        const double distance = place.distance, reach = place.reach();
+        const TexelSquare square(i, size);
+        const double distance = square.distance, reach = square.reach();
         // A place u of the stereographic projection is 2 arctan |u| from the zenith.
         const auto number = static_cast<std::size_t>(2.0 * std::atan(distance) / height);
         if (rings.size() <= number) rings.resize(number + 1);
@@ -238,7 +238,7 @@ BakedSky bake_sky_map(int size, const SkyDome& dome) {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ring.texels.size()),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  texels[ring.texels[i]] = sampled(dome, Place(ring.texels[i], n));
+                                  texels[ring.texels[i]] = sampled(dome, TexelSquare(ring.texels[i], n));
                           });
     }
     return baked_from(size, texels);
@@ -251,26 +251,26 @@ BakedSky bake_smooth_sky_map(int size, const SkyRadiance& radiance) {
     std::vector<char> known(n * n);
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t row) {
         for (std::size_t i = row * n; i < (row + 1) * n; ++i) {
-            const Place place(i, n);
-            if (!place.is_open()) continue;
+            const TexelSquare square(i, n);
+            if (!square.is_open()) continue;
             known[i] = 1;
-            middles[i] = place.distance < 1.0
-                             ? radiance(sky_map_direction(glm::vec2(place.middle)))
-                             : glm::vec3(beyond_horizon(radiance, place.middle, place.distance));
+            middles[i] = square.distance < 1.0
+                             ? radiance(sky_map_direction(glm::vec2(square.middle)))
+                             : glm::vec3(beyond_horizon(radiance, square.middle, square.distance));
         }
     });
     const Spline spline(n, middles, known);
     std::vector<Texel> texels(n * n);
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t row) {
         for (std::size_t i = row * n; i < (row + 1) * n; ++i) {
-            const Place place(i, n);
+            const TexelSquare square(i, n);
             Texel& texel = texels[i];
             texel.is_open = known[i] != 0;
             texel.open = spline.texel(i);
-            if (!place.is_sky()) continue;
+            if (!square.is_sky()) continue;
             Sums sums;
-            if (!place.is_horizon()) {
-                sums.add(glm::dvec3(spline.mean(i)), glm::dot(place.middle, place.middle), place.side);
+            if (!square.is_horizon()) {
+                sums.add(glm::dvec3(spline.mean(i)), glm::dot(square.middle, square.middle), square.side);
                 sums.put(1, texel);
                 continue;
             }
@@ -278,9 +278,9 @@ BakedSky bake_smooth_sky_map(int size, const SkyRadiance& radiance) {
                 const glm::dvec2 t = (glm::dvec2(k % kHorizonSamples, k / kHorizonSamples) + 0.5) /
                                          static_cast<double>(kHorizonSamples) -
                                      0.5;
-                const glm::dvec2 u = place.middle + t * place.side;
+                const glm::dvec2 u = square.middle + t * square.side;
                 if (const double u2 = glm::dot(u, u); u2 < 1.0)
-                    sums.add(glm::dvec3(spline.at(i, glm::vec2(t))), u2, place.side / kHorizonSamples);
+                    sums.add(glm::dvec3(spline.at(i, glm::vec2(t))), u2, square.side / kHorizonSamples);
             }
             sums.put(kHorizonSamples * kHorizonSamples, texel);
         }

@@ -35,7 +35,7 @@ struct BakedSky {
 // irradiance/π: rays that go down meet more sea, which reflects the sky (Bruneton et al. 2010, §6). Texels on
 // the horizon mix both by area. size: as for SkyMap.
 BakedSky bake_sky_map(int size, const SkyDome& dome);
-// The same of a sky that varies little over two texels but for the horizon: radiance() is asked once a texel. The map's finest
+// The same of a sky that varies little over two texels but for the horizon: radiance() is asked once a texel of the sky, and past the horizon. The map's finest
 // level passes through it there, and means are of that spline.
 BakedSky bake_smooth_sky_map(int size, const SkyRadiance& radiance);
 

@@ -35,7 +35,7 @@ void refuse_invalid(const Scene& scene) {
 
 // The stage's sky must not replace the picture that it is made of.
 void refuse_own_sky(const Scene& scene, const std::filesystem::path& out) {
-    if (scene.output.mesh == MeshFormat::None || scene.light.sky == Light{}.sky) return;
+    if (scene.output.mesh == MeshFormat::None || !has_sky_picture(scene)) return;
     const std::filesystem::path ours = out / usd::sky_file(scene.shot.name);
     std::error_code error;
     const std::filesystem::path picture = scene.light.sky;
@@ -50,7 +50,7 @@ void refuse_own_sky(const Scene& scene, const std::filesystem::path& out) {
             "another name, or bake into another folder");
 }
 
-Plan planned(const Scene& scene, std::span<const int> frames, std::size_t max_memory_bytes) {
+Plan planned(const Scene& scene, std::span<const int> frames, const RunOptions& options) {
     Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument(
@@ -58,8 +58,8 @@ Plan planned(const Scene& scene, std::span<const int> frames, std::size_t max_me
     if (!scene.output.volumes.empty())
         vdb::load();  // before anything is known to be enough, since it takes its part
     require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
-                   machine::memory_limit_or(max_memory_bytes), "this bake");
-    if (scene.output.mesh != MeshFormat::None) prepare_light(scene);
+                   machine::memory_limit_or(options.max_memory_bytes), "this bake");
+    if (scene.output.mesh != MeshFormat::None) prepare_light(scene, options.out);
     return plan;
 }
 
@@ -100,7 +100,7 @@ RunReport bake(const Scene& scene, const RunOptions& options) {
              .in_flight = kFramesInFlight,
              .plan =
                  [&](std::span<const int> frames) {
-                     plan = planned(scene, frames, options.max_memory_bytes);
+                     plan = planned(scene, frames, options);
                      outputs = make_parts(*plan);
                      std::vector<RunPart> parts;
                      for (const auto& output : outputs)

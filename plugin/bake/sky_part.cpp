@@ -41,12 +41,12 @@ std::vector<DescribedKey> keys_of_sky(const Scene& scene) {
 
 }  // namespace
 
-std::string sky_fingerprint(const Scene& scene, const std::string& picture) {
+std::string sky_fingerprint(const Scene& scene, const std::string& content) {
     static const int revision =
         std::ranges::find(output_table(), OutputKind::Sky, &OutputRow::kind)->revision;
     std::string text;
     for (const DescribedKey& key : keys_of_sky(scene)) text += key.path + " = " + key.text + '\n';
-    return Fingerprint().add("sky revision " + std::to_string(revision)).add(text).add(picture).text();
+    return Fingerprint().add("sky revision " + std::to_string(revision)).add(text).add(content).text();
 }
 
 std::string dome_file(const Scene& scene, const Sky& sky, std::string_view fingerprint) {
@@ -107,7 +107,7 @@ class SkyPart final : public OutputPart {
         // The map while it is made, of a picture the largest, with the rows that are held (core/lighting/picture_sky.cpp); of daylight
         // what the air's suns scatter, which is kept.
         constexpr std::size_t kTexel = 160, kMiB = 1 << 20;  // [bytes]
-        const bool is_picture = scene().light.sky != Light{}.sky;
+        const bool is_picture = has_sky_picture(scene());
         const std::size_t texels = is_picture ? 1024 * 1024 : 256 * 256, rows = is_picture ? 48 * kMiB : 0;
         return {.once = is_picture ? 0 : 12 * kMiB,
                 .slot = kFile,

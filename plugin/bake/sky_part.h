@@ -10,8 +10,8 @@
 
 namespace pelagic {
 
-// Of a sky's file. picture: sky_content() of its scene, which has no keys.
-std::string sky_fingerprint(const Scene& scene, const std::string& picture);
+// Of a sky's file. content: sky_content() of its scene, which has no keys.
+std::string sky_fingerprint(const Scene& scene, const std::string& content);
 
 // The file of a sky without the sun's disc, a lat-long picture: its bytes. The scene, without keys, is what the sky was made of.
 // fingerprint: in its header.

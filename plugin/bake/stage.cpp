@@ -25,6 +25,7 @@
 #include "pelagic/version.h"
 #include "plugin/bake/sky_part.h"
 #include "plugin/bake/volumes.h"
+#include "plugin/files/files.h"
 #include "plugin/format/usd/camera.h"
 #include "plugin/format/usd/text.h"
 #include "plugin/format/usd/volumes.h"
@@ -99,8 +100,8 @@ struct StageLight {
     usd::Sun sun;
 };
 
-// It takes some tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake again and
-// again under the same light, and a picture is looked at before anything else is done.
+// It takes a tenth of a second and more, longer than the start of a small bake. The last one is kept: hosts bake again and again
+// under the same light, and it is made before anything else is done.
 std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::shared_ptr<const StageLight> last;
@@ -119,13 +120,9 @@ std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     return light;
 }
 
-bool is_picture(const Scene& scene) {
-    return scene.light.sky != Light{}.sky;
-}
-
-// Without keys. Daylight's needs no sky.
-usd::Sun sun_over(const Scene& scene) {
-    return is_picture(scene) ? light_of(scene)->sun : sun_of(daylight_sun(daylight_of(scene.light)));
+// Without keys. It needs no sky.
+usd::Sun sun_by_day(const Scene& scene) {
+    return sun_of(daylight_sun(daylight_of(scene.light)));
 }
 
 // A picture of a sky that turns, or changes its gain: as it lies, by the largest gain, which finds all that is wrong with it.
@@ -139,9 +136,9 @@ Scene with_picture_alone(const Scene& scene) {
 // Of these frames, under a light that changes. No sky is made for it: each is its frame's (sky_part.cpp).
 std::vector<usd::FrameLight> changing_light(const Scene& scene, std::span<const int> frames) {
     const Scene alone = with_picture_alone(scene);
-    const usd::Sun of_picture = is_picture(scene) ? sun_over(alone) : usd::Sun{};
+    const usd::Sun of_picture = has_sky_picture(scene) ? light_of(alone)->sun : usd::Sun{};
     const auto sun_at = [&](const Scene& now) {
-        if (!is_picture(scene)) return sun_over(now);
+        if (!has_sky_picture(scene)) return sun_by_day(now);
         usd::Sun sun = of_picture;
         sun.azimuth_deg += now.light.sky_rotation_deg;
         sun.intensity *= now.light.sky_gain / alone.light.sky_gain;
@@ -278,9 +275,13 @@ std::size_t camera_layer_bytes(const Scene& scene) {
     return bytes;
 }
 
-void prepare_light(const Scene& scene) {
-    if (!is_picture(scene)) return;
-    light_of(changes(scene, "light") ? with_picture_alone(scene) : scene_at(scene, scene.shot.first_frame));
+void prepare_light(const Scene& scene, const std::filesystem::path& folder) {
+    const Scene first = scene_at(scene, scene.shot.first_frame);
+    if (has_sky_picture(scene))
+        light_of(changes(scene, "light") ? with_picture_alone(scene) : first);
+    else if (!changes(scene, "light") &&
+             !files::carries(folder / usd::sky_file(scene.shot.name), sky_fingerprint(first, {})))
+        light_of(first);
 }
 
 void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> frames,
@@ -293,10 +294,17 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
     } else {
         const Scene lit = scene_at(scene, scene.shot.first_frame);
         const std::string file = usd::sky_file(name);
+        std::shared_ptr<const StageLight> made;
+        if (has_sky_picture(scene)) made = light_of(lit);
         sink({.path = file,
-              .content = [&](const usd::Sink& take) { take(light_of(lit)->dome); },
-              .fingerprint = sky_fingerprint(lit, sky_content(lit))});
-        light = {{scene.shot.first_frame, sun_over(lit), {.lat_long_file = "./" + file}}};
+              .content =
+                  [&](const usd::Sink& take) {
+                      if (!made) made = light_of(lit);
+                      take(made->dome);
+                  },
+              .fingerprint = made ? made->fingerprint : sky_fingerprint(lit, {})});
+        light = {
+            {scene.shot.first_frame, made ? made->sun : sun_by_day(lit), {.lat_long_file = "./" + file}}};
     }
     sink({.path = usd::camera_file(name),
           .content = [&](const usd::Sink& take) { usd::write_camera_crate(camera_of(scene), take); }});

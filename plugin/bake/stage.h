@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 
 #include "core/plan/plan.h"
@@ -12,9 +13,10 @@
 
 namespace pelagic {
 
-// Finds the light that the stage will have, before anything else is done: a picture of a sky may be no such thing.
-// Throws as make_sky() does. write_stage() takes it from here.
-void prepare_light(const Scene& scene);
+// Makes the light that the stage will have, before the sea takes its memory and the folder is locked: a picture of a sky may be no
+// such thing, and has the sun; a daylight's that the folder seems to have already isn't made. Throws as make_sky() does.
+// write_stage() takes it from here.
+void prepare_light(const Scene& scene, const std::filesystem::path& folder);
 
 // How large the camera's layer becomes [bytes].
 std::size_t camera_layer_bytes(const Scene& scene);

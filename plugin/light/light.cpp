@@ -82,7 +82,7 @@ exr::Chromaticities chromaticities(const Primaries& of) {
 }
 
 bool is_in_kcd_m2(const Scene& scene) {
-    return scene.light.sky == Light{}.sky;
+    return !has_sky_picture(scene);
 }
 
 // `problem` may have names from the file in it.
@@ -166,6 +166,10 @@ std::string content_of(const std::string& path, const Problem& unreadable) {
 
 }  // namespace
 
+bool has_sky_picture(const Scene& scene) {
+    return scene.light.sky != Light{}.sky;
+}
+
 Daylight daylight_of(const Light& light) {
     return {.sun_elevation_deg = light.sun_elevation_deg,
             .sun_azimuth_deg = light.sun_azimuth_deg,
@@ -175,7 +179,7 @@ Daylight daylight_of(const Light& light) {
 Sky make_sky(const Scene& scene) {
     refuse_keys(scene, "light");
     const Light& light = scene.light;
-    if (light.sky == Light{}.sky) return daylight_sky(daylight_of(light));
+    if (!has_sky_picture(scene)) return daylight_sky(daylight_of(light));
     try {
         const exr::RgbFile file(light.sky);
         LatLongRows rows{.width = file.width(),
@@ -197,7 +201,7 @@ Sky make_sky(const Scene& scene) {
 }
 
 std::vector<Problem> check_sky(const Scene& scene) {
-    if (scene.light.sky == Light{}.sky) return {};
+    if (!has_sky_picture(scene)) return {};
     try {
         const exr::RgbFile looked_at(scene.light.sky);
         return {};
@@ -218,7 +222,7 @@ std::vector<Problem> check_scene(const Scene& scene) {
 
 std::string sky_content(const Scene& scene) {
     for (const Problem& problem : check_sky(scene)) throw std::invalid_argument(text_of(problem));
-    if (scene.light.sky == Light{}.sky) return {};
+    if (!has_sky_picture(scene)) return {};
     return content_of(scene.light.sky, sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR"));
 }
 

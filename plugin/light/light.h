@@ -23,7 +23,9 @@ std::vector<Problem> check_sky(const Scene& scene);
 // The same, and impossible waves (core/spectrum/possible.h) where the scene is valid otherwise: all that hosts check
 // of a shot.
 std::vector<Problem> check_scene(const Scene& scene);
-// Where light.sky names no picture.
+// Whether light.sky is the path of a picture.
+bool has_sky_picture(const Scene& scene);
+// Where it is none.
 Daylight daylight_of(const Light& light);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
 // Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky. As what else here

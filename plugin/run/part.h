@@ -14,7 +14,8 @@ using FileContent = std::function<void(const std::function<void(std::string_view
 struct FileJob {
     std::string path;
     FileContent content;
-    // Of what it is made of, where it carries that and takes long to make: one of no frame that is there stays then.
+    // Of what it is made of, where it carries that and its content takes long to make: one of no frame that is there stays then,
+    // without being asked for.
     std::string fingerprint{};
 };
 // Takes a finished file. Files come in the order in which they are to be written.

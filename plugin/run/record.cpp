@@ -343,17 +343,23 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     const std::uintmax_t size = files::file_size(file).value_or(0);
     if (!is_read_in_part(file, frames) || size > kLargest || !files::carries(file, "{\n  \"pelagic\": "))
         return whole();
-    // Piece by piece: a task of one frame looks through the entries of ten thousand.
     files::FileReader reader(file);
-    std::string text;
+    std::string text(kLast.size(), '\0');
+    reader.seek(size - text.size());
+    text.resize(reader.read(text));
+    if (text != kLast) return whole();
+    // Piece by piece: a task of one frame looks through the entries of ten thousand.
+    constexpr std::size_t kPiece = std::size_t{1} << 18;
+    reader.seek(0);
+    text.clear();
     bool is_at_end = false;
     const auto read_on = [&] {
         stop_if(cancel);
         const std::size_t before = text.size();
-        text.resize(before + kSmallRecord);
+        text.resize(before + kPiece);
         const std::size_t got = reader.read(std::span(text).subspan(before));
         text.resize(before + got);
-        is_at_end = got < kSmallRecord;
+        is_at_end = got < kPiece;
     };
     std::size_t begin = std::string::npos;
     while (begin == std::string::npos && !is_at_end) {
@@ -365,14 +371,7 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     const auto parsed = [](const std::string& part) { return Json::parse(part, nullptr, false); };
     if (begin != std::string::npos) take_shot(parsed(text.substr(0, begin) + '}'), reading);
     if (!reading.shot) return whole();
-    // Where no frame is asked about, what stands before them, and the end.
-    if (!numbers && frames.empty()) {
-        std::string ending(kLast.size(), '\0');
-        reader.seek(size - ending.size());
-        ending.resize(reader.read(ending));
-        if (!reader.problem().empty() || ending != kLast) return whole();
-        return reading;
-    }
+    if (!numbers && frames.empty()) return reading;
     text.erase(0, begin);
     for (std::size_t at = text.find(kBegin);;) {
         while (at == std::string::npos && !is_at_end) {
@@ -407,8 +406,7 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
         }
         at = next;
     }
-    if (!reader.problem().empty() || !text.ends_with(kLast)) return whole();
-    return reading;
+    return reader.problem().empty() ? reading : whole();
 }
 
 void Record::describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold,

@@ -351,12 +351,13 @@ TEST(Daylight, TheMapIsTheModel) {
         double elevation, turbidity, least;
     };
     for (const auto& [elevation, turbidity, least] :
-         {Case{0.0, 2.0, 0.6}, Case{0.0, 3.0, 0.0}, Case{5.0, 8.0, 0.0}, Case{60.0, 2.0, 0.0}}) {
+         {Case{0.0, 2.0, 0.6}, Case{0.0, 3.0, 0.0}, Case{5.0, 8.0, 0.0}, Case{60.0, 2.0, 0.0},
+          Case{-3.9, 3.0, 0.0}, Case{-6.0, 3.0, 0.0}, Case{-9.0, 3.0, 0.0}}) {
         const double sun = elevation * kPi / 180.0;
         const Atmosphere air(turbidity, sun);
         const Sky sky =
             daylight_sky({.sun_elevation_deg = elevation, .sun_azimuth_deg = 0.0, .turbidity = turbidity});
-        const std::vector<double> azimuths{0.1, 1.6, 3.0};
+        const std::vector<double> azimuths{0.1, 0.7, 1.6, 2.5, 3.0};
         for (int row = 0; row < 200; ++row) {
             const double e = least * kPi / 180.0 + 5.7e-4 * (row + 0.5);
             const auto light = air.scattered(e, azimuths);
@@ -396,7 +397,7 @@ TEST(Daylight, IsTheSameAfterOthersAndBesideThem) {
         return all;
     };
     constexpr std::array kElevations{-10.0, -3.0, 1.0, 8.0, 25.0, 70.0};
-    // [klx], as it was when each sky had tables of its own, twice as fine, and sixteen samples in texels near sun and horizon.
+    // [klx], as it was when each sky had tables of its own, finer, and sixteen samples in texels near sun and horizon.
     constexpr std::array kLight{8.55236e-05, 0.125895, 1.43258, 7.37665, 17.2207, 23.8883};
     std::vector<std::vector<glm::vec3>> alone;
     for (std::size_t i = 0; i < kElevations.size(); ++i) {

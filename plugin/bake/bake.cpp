@@ -19,6 +19,7 @@
 #include "plugin/bake/stage.h"
 #include "plugin/format/usd/layers.h"
 #include "plugin/format/vdb/vdb.h"
+#include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/run/work.h"
 

@@ -53,19 +53,18 @@ glm::dvec2 heading_of(const Daylight& daylight) {
 class ScatteredTable {
   public:
     explicit ScatteredTable(const Atmosphere& air) : entries_((kElevations + 1) * (kAzimuths + 1)) {
-        // Light is even in the azimuth and smooth but for the earth's shadow: a sum of cosines, through the middles of equal parts.
-        // In dusk the shadow lies across the sky.
-        constexpr double kDusk_rad = -4.0 * kDegree;
-        const int parts = air.sun_elevation_rad() < kDusk_rad ? 24 : 12;
-        std::vector<double> azimuths;
-        for (int k = 0; k < parts; ++k) azimuths.push_back(kPi * (k + 0.5) / parts);
-        std::vector<double> shares;  // of each part in each azimuth of the table
+        // Light is even in the azimuth and smooth but for the earth's shadow, in which what was scattered before hides single
+        // scattering: a sum of cosines, through the middles of equal parts.
+        constexpr int kParts = 12;
+        std::array<double, kParts> azimuths{};
+        for (int k = 0; k < kParts; ++k) azimuths[k] = kPi * (k + 0.5) / kParts;
+        std::array<std::array<double, kParts>, kAzimuths + 1> shares{};
         for (int j = 0; j <= kAzimuths; ++j)
-            for (const double azimuth : azimuths) {
+            for (int k = 0; k < kParts; ++k) {
                 double sum = 1.0;
-                for (int m = 1; m < parts; ++m)
-                    sum += 2.0 * std::cos(m * kPi * j / kAzimuths) * std::cos(m * azimuth);
-                shares.push_back(sum / parts);
+                for (int m = 1; m < kParts; ++m)
+                    sum += 2.0 * std::cos(m * kPi * j / kAzimuths) * std::cos(m * azimuths[k]);
+                shares[j][k] = sum / kParts;
             }
         tbb::parallel_for(0, kElevations + 1, [&](int i) {
             const double x = static_cast<double>(i) / kElevations;
@@ -73,7 +72,7 @@ class ScatteredTable {
             for (const Atmosphere::Scattered& light : air.scattered(0.5 * kPi * x * x, azimuths))
                 row.push_back({colour_of(light.by_air), colour_of(light.by_haze), colour_of(light.more)});
             for (int j = 0; j <= kAzimuths; ++j)
-                for (int k = 0; k < parts; ++k)
+                for (int k = 0; k < kParts; ++k)
                     entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)].add(shares[j * parts + k],
                                                                                     row[k]);
         });

@@ -349,17 +349,18 @@ TEST(Daylight, SmoothInTheTable) {
 TEST(Daylight, TheMapIsTheModel) {
     struct Case {
         double elevation, turbidity, least;
+        double highest = 6.5;  // in dusk the earth's shadow lies higher
     };
-    for (const auto& [elevation, turbidity, least] :
+    for (const auto& [elevation, turbidity, least, highest] :
          {Case{0.0, 2.0, 0.6}, Case{0.0, 3.0, 0.0}, Case{5.0, 8.0, 0.0}, Case{60.0, 2.0, 0.0},
-          Case{-3.9, 3.0, 0.0}, Case{-6.0, 3.0, 0.0}, Case{-9.0, 3.0, 0.0}}) {
+          Case{-3.9, 3.0, 0.0, 40.0}, Case{-6.0, 3.0, 0.0, 40.0}, Case{-10.0, 3.0, 0.6, 60.0}}) {
         const double sun = elevation * kPi / 180.0;
         const Atmosphere air(turbidity, sun);
         const Sky sky =
             daylight_sky({.sun_elevation_deg = elevation, .sun_azimuth_deg = 0.0, .turbidity = turbidity});
         const std::vector<double> azimuths{0.1, 0.7, 1.6, 2.5, 3.0};
         for (int row = 0; row < 200; ++row) {
-            const double e = least * kPi / 180.0 + 5.7e-4 * (row + 0.5);
+            const double e = (least + (highest - least) / 200.0 * (row + 0.5)) * kPi / 180.0;
             const auto light = air.scattered(e, azimuths);
             for (std::size_t k = 0; k < azimuths.size(); ++k) {
                 const glm::dvec3 to(std::cos(e) * std::cos(azimuths[k]), std::cos(e) * std::sin(azimuths[k]),

@@ -73,8 +73,7 @@ class ScatteredTable {
                 row.push_back({colour_of(light.by_air), colour_of(light.by_haze), colour_of(light.more)});
             for (int j = 0; j <= kAzimuths; ++j)
                 for (int k = 0; k < kParts; ++k)
-                    entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)].add(shares[j * parts + k],
-                                                                                    row[k]);
+                    entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)].add(shares[j][k], row[k]);
         });
     }
 

@@ -128,7 +128,7 @@ Matter Columns::integrated(double radius, double d) {
     const double lowest = std::clamp(-radius * cosine, 0.0, d);
     Matter column;
     for (const double length : {-lowest, d - lowest}) {
-        if (length == 0.0) continue;
+        if (length == 0.0) continue;  // a ray that rises has one side of its lowest point
         for (int i = 0; i < kSteps; ++i) {
             const double a = static_cast<double>(i) / kSteps, b = (i + 1.0) / kSteps;
             const double t = lowest + length * 0.5 * (a * a + b * b);

@@ -32,6 +32,7 @@ struct Fresnel {
 // Samples per side of a texel that the horizon crosses: the eye is sensitive to that line.
 constexpr int kHorizonSamples = 8;
 
+// What a texel's samples, or its spline, add up to.
 struct Texel {
     float above = 0.0f;          // its share above the horizon
     glm::vec3 radiance{0.0f};    // mean of that, times the share

@@ -106,7 +106,7 @@ class SkyPart final : public OutputPart {
                               kFile = kPixels * 3 * sizeof(float);
         // The map while it is made, of a picture the largest, with the rows that are held (core/lighting/picture_sky.cpp); of daylight
         // what the air's suns scatter, which is kept.
-        constexpr std::size_t kTexel = 160, kMiB = 1 << 20;  // [bytes]
+        constexpr std::size_t kTexel = 100, kMiB = 1 << 20;  // [bytes]
         const bool is_picture = has_sky_picture(scene());
         const std::size_t texels = is_picture ? 1024 * 1024 : 256 * 256, rows = is_picture ? 48 * kMiB : 0;
         return {.once = is_picture ? 0 : 12 * kMiB,

@@ -10,6 +10,7 @@
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -26,6 +27,11 @@ constexpr int kCells = 32;
 // these lie apart, don't surround the point have no sheet over it.
 constexpr int kBlock = 4;
 constexpr double kFinestSpacing_m = 0.02, kSpacingOfCell = 0.05, kCoarser = 5.0;
+// A search may look at so many squares and points; for one of many places, at a quarter. Storms with folds take a fifth of
+// that. A sea that goes aside by thousands of its wavelengths, as no water does, takes more: it is searched again with cells
+// of four times the length, until that is enough.
+constexpr long kMostSquares = 16'384, kMostPoints = 1'048'576;
+constexpr double kCoarserAgain = 4.0;
 
 // A place at rest, and where it is displaced to, both relative to the point's place.
 struct Node {
@@ -70,13 +76,24 @@ class Surroundings {
         const DisplacementBounds all = bounds_.everywhere();
         if (!(all.z.hi > z_m)) return std::nullopt;
         const double half_m = std::max({all.reach_m().x, all.reach_m().y, spacing_m_});
-        search({glm::dvec2(-half_m), glm::dvec2(half_m)});
+        const long share = alone_ ? 4 : 1;
+        do {
+            squares_left_ = kMostSquares / share;
+            points_left_ = kMostPoints / share;
+            search({glm::dvec2(-half_m), glm::dvec2(half_m)});
+            spacing_m_ *= kCoarserAgain;
+        } while (is_over_the_most());
         return highest_;
     }
 
   private:
-    // Searches a square, unless its bounds exclude a sheet over the place that is higher than those found.
+    bool is_over_the_most() const { return squares_left_ < 0 || points_left_ < 0; }
+
+    // Searches a square, unless its bounds exclude a sheet over the place that is higher than those found, or the search
+    // has become too long.
     void search(const RestRegion& square) {
+        --squares_left_;
+        if (is_over_the_most()) return;
         const DisplacementBounds bounds =
             bounds_.region({place_m_ + square.min_m, place_m_ + square.max_m}, 1);
         const std::array reach{bounds.dx, bounds.dy};
@@ -174,6 +191,7 @@ class Surroundings {
     }
 
     void evaluate() {
+        points_left_ -= std::ssize(rest_m_);
         position_m_.resize(rest_m_.size());
         Results<T> results;
         results.set(by_, {position_m_.data()});
@@ -195,6 +213,7 @@ class Surroundings {
     double spacing_m_;
     bool alone_;
     Steps steps_;
+    long squares_left_ = 0, points_left_ = 0;
     std::vector<glm::vec<2, T>> rest_m_;
     std::vector<T> cells_m_;
     std::vector<glm::vec<3, T>> position_m_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "tests/core/waves/samples.h"
@@ -204,6 +205,22 @@ TEST(SurfaceAbove, ACalmSeaLiesAtZero) {
     EXPECT_EQ(surface_above(frame, 0, {5.0, 7.0, -0.01}, kCell_m), 0.0);
     EXPECT_FALSE(surface_above(frame, 0, {5.0, 7.0, 0.0}, kCell_m));
     EXPECT_FALSE(surface_above(frame, 0, {5.0, 7.0, 0.01}, kCell_m));
+}
+
+// Long waves of a finger's depth of water go aside by a hundred times their height, and nobody's hero is 100 m high there:
+// its trains go aside by kilometres within a metre. The bounds exclude nothing, and the search ends all the same.
+TEST(SurfaceAbove, ASeaThatGoesAsideByThousandsOfItsWavelengthsIsSearchedToAnEnd) {
+    Scene scene;
+    scene.sea.depth_m = 0.01;
+    scene.waves.cascades = {{.size_m = 3.0, .resolution = 36}};
+    scene.waves.heroes = {{.height_m = -100.0}};
+    const auto frame = frame_of<float>(scene, {filtered(products(Position, Displacement), kCell_m)}, 0.0);
+    EXPECT_GT(glm::length(FrameBounds<float>(frame, 0).everywhere().reach_m()), 1000.0);
+    const auto above = surface_above(frame, 0, {5.0, 7.0, -1e9}, kCell_m);
+    ASSERT_TRUE(above);
+    EXPECT_FALSE(surface_above(frame, 0, {5.0, 7.0, 1e9}, kCell_m));
+    const Highest found = highest(frame, {{5.0f, 7.0f}, {-30.0f, 2.0f}});
+    for (const float height_m : found.height_m) EXPECT_TRUE(std::isfinite(height_m));
 }
 
 TEST(SurfaceAbove, AQueryWithoutPositionsIsRefused) {

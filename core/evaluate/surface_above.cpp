@@ -28,7 +28,7 @@ constexpr int kCells = 32;
 constexpr int kBlock = 4;
 constexpr double kFinestSpacing_m = 0.02, kSpacingOfCell = 0.05, kCoarser = 5.0;
 // A search may look at so many squares and points; for one of many places, at a quarter. Storms with folds take a fifth of
-// that. A sea that goes aside by thousands of its wavelengths, as no water does, takes more: it is searched again with cells
+// that. A sea that goes aside by hundreds of its wavelengths, as no water does, takes more: it is searched again with cells
 // of four times the length, until that is enough.
 constexpr long kMostSquares = 16'384, kMostPoints = 1'048'576;
 constexpr double kCoarserAgain = 4.0;

@@ -207,15 +207,15 @@ TEST(SurfaceAbove, ACalmSeaLiesAtZero) {
     EXPECT_FALSE(surface_above(frame, 0, {5.0, 7.0, 0.01}, kCell_m));
 }
 
-// Long waves of a finger's depth of water go aside by a hundred times their height, and nobody's hero is 100 m high there:
-// its trains go aside by kilometres within a metre. The bounds exclude nothing, and the search ends all the same.
-TEST(SurfaceAbove, ASeaThatGoesAsideByThousandsOfItsWavelengthsIsSearchedToAnEnd) {
+// Long waves of a finger's depth of water go aside by a hundred times their height, and nobody's hero is 50 m high there:
+// its trains go aside by half a kilometre within a metre. The bounds exclude nothing, and the search ends all the same.
+TEST(SurfaceAbove, ASeaThatGoesAsideByHundredsOfItsWavelengthsIsSearchedToAnEnd) {
     Scene scene;
     scene.sea.depth_m = 0.01;
     scene.waves.cascades = {{.size_m = 3.0, .resolution = 36}};
-    scene.waves.heroes = {{.height_m = -100.0}};
+    scene.waves.heroes = {{.height_m = -50.0}};
     const auto frame = frame_of<float>(scene, {filtered(products(Position, Displacement), kCell_m)}, 0.0);
-    EXPECT_GT(glm::length(FrameBounds<float>(frame, 0).everywhere().reach_m()), 1000.0);
+    EXPECT_GT(glm::length(FrameBounds<float>(frame, 0).everywhere().reach_m()), 500.0);
     const auto above = surface_above(frame, 0, {5.0, 7.0, -1e9}, kCell_m);
     ASSERT_TRUE(above);
     EXPECT_FALSE(surface_above(frame, 0, {5.0, 7.0, 1e9}, kCell_m));

@@ -72,7 +72,8 @@ struct Asked {
 template <class T>
 bool same_bits(const ProductArrays<T>& a, const ProductArrays<T>& b) {
     const auto same = [](const auto& x, const auto& y) {
-        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+        return x.size() == y.size() &&
+               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
     };
     return std::all_of(kProductTable.begin(), kProductTable.end(), [&](const ProductRow& row) {
         if (row.components == 1) {

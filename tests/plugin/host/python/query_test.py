@@ -103,14 +103,18 @@ class Heights(unittest.TestCase):
         for answer in answers:
             np.testing.assert_array_equal(answer, expected)
 
-    def test_a_frame_of_floats_is_cheap(self):
-        best_s = math.inf
-        for _ in range(20):
-            begin = time.perf_counter()
-            self.frame.heights(self.xy)
-            best_s = min(best_s, time.perf_counter() - begin)
-        print(f"400 places: {1e3 * best_s:.2f} ms")
-        self.assertLess(best_s, 0.02)
+    def test_a_place_costs_no_more_than_ninety_points(self):
+        points = np.float32(np.random.default_rng(2).uniform(-200.0, 200.0, (4000, 2)))
+        asked = (lambda: self.frame.heights(self.xy), lambda: self.frame.evaluate(points, outputs=("position", "normal")))
+        best_s = [math.inf, math.inf]
+        for _ in range(20):  # in turns: others use the machine as well
+            for i, ask in enumerate(asked):
+                begin = time.perf_counter()
+                ask()
+                best_s[i] = min(best_s[i], time.perf_counter() - begin)
+        points_a_place = best_s[0] / len(self.xy) / (best_s[1] / len(points))
+        print(f"a place costs what {points_a_place:.0f} points cost")  # 30
+        self.assertLess(points_a_place, 90.0)
 
 
 class Drops(unittest.TestCase):

@@ -118,8 +118,11 @@ class PELAGIC_OT_export_shot(NeedsModule, ExportHelper, bpy.types.Operator):
         try:
             scene, remarks = shot_of(context, obj, path.with_name(f"{path.stem}_objects"))
             save(scene, path)
-        except (ValueError, OSError) as error:
+        except ValueError as error:
             self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except OSError as error:
+            self.report({"ERROR"}, f"{path}: can't be written ({error.strerror})")
             return {"CANCELLED"}
         for remark in remarks:
             self.report({"WARNING"}, remark)

@@ -149,6 +149,7 @@ def scene_of(obj, bpy_scene, depsgraph=None, settings=None):
 
 
 LOOK_AHEAD_M = 100.0  # where along its axis a camera's look_at_m is
+FARTHEST_M = 1e8  # a camera from an ocean: points of the sea go to 1e9 m. Who scales an ocean to nothing is as far
 FOV_DEG = (1.0, 179.0)
 NARROWEST_TAN, WIDEST_TAN = (math.tan(math.radians(angle / 2)) for angle in FOV_DEG)
 
@@ -215,13 +216,15 @@ class Pinhole:
 
 
 def pinhole_of(obj, bpy_scene, depsgraph=None):
-    """The scene's camera as an ocean sees it, or None. With a depsgraph as evaluated there."""
+    """The scene's camera as an ocean sees it, or None, as where the ocean is scaled to nothing. With a depsgraph as evaluated there."""
     camera = bpy_scene.camera
     if camera is None or camera.type != "CAMERA" or camera.data.type != "PERSP":
         return None
     if depsgraph is not None:
         camera, obj = camera.evaluated_get(depsgraph), obj.evaluated_get(depsgraph)
     pose = obj.matrix_world.inverted_safe() @ camera.matrix_world
+    if not pose.translation.length < FARTHEST_M:
+        return None
     forward = -pose.col[2].xyz.normalized()
     right = (pose.col[0].xyz - pose.col[0].xyz.dot(forward) * forward).normalized()
     corners = camera.data.view_frame(scene=bpy_scene)

@@ -128,6 +128,22 @@ with checking("a sea that is being built for another view isn't taken for this o
     view = simulation.follow(sea, scene, depsgraph, wait=True)
     assert view != far and simulation._built.serves(view)
 
+with checking("an ocean that is scaled to nothing has no camera, and is what it was when it comes back"):
+    fresh_file()
+    scene = bpy.context.scene
+    sea = add_ocean(surface__kind="projected-grid", effects__foam_decay_s=0.0)
+    play.show(sea, scene, bpy.context.evaluated_depsgraph_get())
+    before = numbers(sea.data)
+    for scale in (0.0, 1.0):
+        sea.scale = (scale,) * 3
+        bpy.context.view_layer.update()
+        play.show(sea, scene, bpy.context.evaluated_depsgraph_get())
+        assert (ocean.pinhole_of(sea, scene) is None) == (scale == 0.0)
+        assert np.array_equal(numbers(sea.data), before), scale
+
+with checking("a shot that can't be written is said in words"):
+    assert refused(lambda: bpy.ops.pelagic.export_shot(filepath="/nowhere/at/all/sea.toml"), "can't be written")
+
 with checking("what an artist took out of the sky stays out, and the rest follows; Sun and Sky brings it back"):
     fresh_file()
     scene = bpy.context.scene

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -199,6 +200,8 @@ void write_expected(const std::string& shot_file, const std::string& file, std::
                   "/Sea\": " + mesh.at(f) + "}";
     std::string flattened;
     for (const std::string& line : lines) flattened += (flattened.empty() ? "" : ",\n  ") + quoted(line);
+    // Of a share of the tests the bake before it may be another share's.
+    std::filesystem::create_directories(std::filesystem::path(file).parent_path());
     std::ofstream out(file);
     out << "{\"stage\": {\"startTimeCode\": " << scene.shot.first_frame
         << ", \"endTimeCode\": " << scene.shot.last_frame

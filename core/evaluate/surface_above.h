@@ -15,7 +15,8 @@ namespace pelagic {
 // shorter move it by less than they are high.
 //
 // Squares at rest that may be displaced there are found by the frame's bounds, so that no sheet is missed and
-// nothing is evaluated where the surface can't reach the point. On all threads of the calling arena. Throws
+// nothing is evaluated where the surface can't reach the point; a sea that goes aside by hundreds of its wavelengths is
+// sampled more coarsely, so that the search ends. On all threads of the calling arena. Throws
 // std::invalid_argument for a query without Product::Position, or a frame without a time.
 template <class T>
 std::optional<double> surface_above(const Frame<T>& frame, int query, glm::dvec3 point_m, double cell_m);

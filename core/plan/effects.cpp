@@ -22,16 +22,13 @@ bool asks_for(const Plan& plan, const ProductSet& any) {
 }
 
 std::string about_second_order(const Plan& plan) {
-    const SecondOrder& pairs = plan.from->second_order;
-    const std::string skewness =
-        "skewness of heights " +
-        rough_text(pairs.skewness() * pairs.limit() * plan.second_order_gain * plan.choppiness.largest());
     for (const CascadePlan& cascade : plan.cascades)
         if (const std::optional<SecondOrderPlan>& own = cascade.second_order)
-            return skewness + "; " + std::to_string(own->transforms()) + " complex transforms of " +
+            return "skewness of heights " + rough_text(own->skewness) + "; " +
+                   std::to_string(own->transforms()) + " complex transforms of " +
                    std::to_string(own->resolution) + " × " + std::to_string(own->resolution) +
                    ", from waves above " + rough_text(cascade.size_m / own->radius) + " m";
-    return skewness + ", but no output shows heights, or no cascade holds enough of the waves";
+    return "no output shows heights, or no cascade holds enough of the waves";
 }
 
 std::string about_whitecaps(const Plan& plan) {

@@ -76,6 +76,8 @@ std::string plan_text(const Plan& plan, int query_index) {
         // A finer last cascade has more modes, of which no level of this query resolves any.
         text += "tile " + number_text(cascade.size_m) + " from " + number_text(cascade.k_lower) + '\n';
         if (cascade.vessel) text += "wake 6\n";  // to be raised where the same path gives other bits
+        if (const auto& second = cascade.second_order; second && second->reach > second->radius)
+            text += "pairs to " + std::to_string(second->reach) + '\n';
         if (query.is_view) continue;
         for (const int level : levels) {
             const int g = cascade.grid_of_level[level];

@@ -262,8 +262,9 @@ void add_second_order(Plan& plan) {
     std::optional<SecondOrderBand> band;
     CascadePlan* holder = nullptr;
     for (CascadePlan& cascade : plan.cascades) {
-        const SecondOrderBand own(pairs, cascade.k_lower, cascade.k_upper, cascade.size_m,
-                                  cascade.resolution / 2);
+        const int largest_radius =
+            std::min(cascade.resolution / 2, modes_within(cascade.size_m, cascade.k_upper) + 1);
+        const SecondOrderBand own(pairs, cascade.k_lower, cascade.k_upper, cascade.size_m, largest_radius);
         if (own.bins() <= most) continue;
         most = own.bins();
         band = own;
@@ -273,10 +274,12 @@ void add_second_order(Plan& plan) {
     FieldSet shown;
     for (const Grid& grid : holder->grids) shown |= grid.fields;
     if ((shown & vertical_fields()).none()) return;
-    holder->second_order =
-        band->plan(pairs, plan.second_order_gain * holder->choppiness, transform_size(3 * band->radius()),
-                   shown[index(Field::VelocityZ)], plan.from->spectrum.dispersion().depth_m);
-    holder->mode_radius = std::max(holder->mode_radius, band->radius());
+    SecondOrderPlan own =
+        band->plan(pairs, plan.second_order_gain * holder->choppiness, shown[index(Field::VelocityZ)],
+                   plan.from->spectrum.dispersion().depth_m);
+    own.resolution = transform_size(2 * own.radius + own.reach);
+    holder->second_order = own;
+    holder->mode_radius = std::max(holder->mode_radius, own.reach);
 }
 
 }  // namespace
@@ -609,7 +612,7 @@ std::size_t Plan::vessel_bytes() const {
 }
 
 int CascadePlan::amplitude_radius() const {
-    int radius = std::max(known_radius, second_order ? second_order->radius : 0);
+    int radius = std::max(known_radius, second_order ? second_order->reach : 0);
     for (const Grid& grid : grids) radius = std::max(radius, grid.radius);
     return radius;
 }

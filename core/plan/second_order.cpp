@@ -24,11 +24,13 @@ std::size_t SecondOrderPlan::bytes(bool double_precision) const {
     const std::size_t scalar = double_precision ? sizeof(double) : sizeof(float);
     const std::size_t rows = static_cast<std::size_t>(resolution), half = static_cast<std::size_t>(radius);
     return 2 * scalar *
-           (rows * ((2 * half - 1) * sums() + half * results()) + results() * lattice_modes(radius));
+           (rows * ((2 * half - 1) * sums() + static_cast<std::size_t>(reach) * results()) +
+            results() * lattice_modes(reach));
 }
 
 SecondOrderBand::SecondOrderBand(const SecondOrder& pairs, double k_lower, double k_upper, double size_m,
-                                 int largest_radius) {
+                                 int largest_radius)
+    : largest_radius_(largest_radius) {
     if (!(pairs.deviation_m > 0.0)) return;
     int first = 0, last = kLastBin;
     while (first < last && pairs.edges[first] < k_lower) ++first;
@@ -43,14 +45,14 @@ SecondOrderBand::SecondOrderBand(const SecondOrder& pairs, double k_lower, doubl
     radius_ = modes_within(size_m, pairs.edges[last]);
 }
 
-SecondOrderPlan SecondOrderBand::plan(const SecondOrder& pairs, double gain, int resolution, bool moves,
+SecondOrderPlan SecondOrderBand::plan(const SecondOrder& pairs, double gain, bool moves,
                                       double depth_m) const {
     const SecondOrder::Sums own = pairs.sums(first_, last_), all = pairs.sums(0, SecondOrder::kBins);
     const auto limited = [](double value, double reference) {
         const double most = kMostAdded * reference;
         return std::clamp(value, std::min(-most, most), std::max(-most, most));
     };
-    SecondOrderPlan plan{.radius = radius_, .resolution = resolution, .depth_m = depth_m, .moves = moves};
+    SecondOrderPlan plan{.radius = radius_, .reach = radius_, .depth_m = depth_m, .moves = moves};
     const double each = 0.25 * gain * pairs.limit();
     plan.difference = each * limited(all.difference, own.difference) / own.together;
     // Where depth makes pairs of the same direction add, that alone does.
@@ -59,6 +61,10 @@ SecondOrderPlan SecondOrderBand::plan(const SecondOrder& pairs, double gain, int
         plan.shallow = each * std::min(sum / own.shallow, kMostAdded);
     else if (constexpr double kNeedle = 1e-3; own.against > kNeedle * own.together)
         plan.sum = each * sum / own.against;
+    plan.skewness = 6.0 * pairs.deviation_m *
+                    (plan.difference * own.together + plan.sum * own.against + plan.shallow * own.shallow);
+    // There most of what pairs add has twice their wavenumber.
+    if (plan.shallow > 0.0) plan.reach = std::min(2 * radius_, largest_radius_);
     return plan;
 }
 

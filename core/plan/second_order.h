@@ -16,11 +16,14 @@ namespace pelagic {
 
 // As it is computed: by complex transforms of a cascade's longest waves.
 struct SecondOrderPlan {
-    int radius = 0;      // modes with mx² + my² < radius² are paired, and take what pairs add
-    int resolution = 0;  // N of the transforms: 3 radius at least, so that no product is mistaken for another
+    int radius = 0;  // modes with mx² + my² < radius² are paired
+    int reach = 0;   // those with mx² + my² < reach² take what pairs add; radius or more
+    int resolution =
+        0;  // N of the transforms: 2 radius + reach at least, so that no product is mistaken for another
     double depth_m = 0.0;
     double difference = 0.0, sum = 0.0, shallow = 0.0;  // d/4, s/4, w/4, choppiness and gain included
     bool moves = false;                                 // whether somebody asks for vertical velocities
+    double skewness = 0.0;                              // that these make, E[η³]/m0^{3/2}
 
     int sums() const { return (shallow > 0.0 ? 4 : 3) * (moves ? 2 : 1); }
     // What comes of them, and its rate: one by itself, so that nobody's heights depend on who asks for velocities.
@@ -29,12 +32,12 @@ struct SecondOrderPlan {
     // One-dimensional transforms: along y of the columns that hold modes, along x of all rows, and for real results back.
     long lines() const {
         return static_cast<long>(sums()) * (2L * radius - 1 + resolution) +
-               static_cast<long>(results()) * (radius + resolution);
+               static_cast<long>(results()) * (reach + resolution);
     }
     std::size_t bytes(bool double_precision) const;  // of a frame, beside what a thread works on
 };
 
-// The bins that a cascade holds, and the radius within which its modes hold them; none: 0 bins.
+// The bins that a cascade holds whose modes lie within the largest radius, and the radius within which they do; none: 0 bins.
 class SecondOrderBand {
   public:
     SecondOrderBand(const SecondOrder& pairs, double k_lower, double k_upper, double size_m,
@@ -42,11 +45,11 @@ class SecondOrderBand {
 
     int bins() const { return last_ - first_; }
     int radius() const { return radius_; }
-    SecondOrderPlan plan(const SecondOrder& pairs, double gain, int resolution, bool moves,
-                         double depth_m) const;
+    // Without its resolution.
+    SecondOrderPlan plan(const SecondOrder& pairs, double gain, bool moves, double depth_m) const;
 
   private:
-    int first_ = 0, last_ = 0, radius_ = 0;
+    int first_ = 0, last_ = 0, radius_ = 0, largest_radius_ = 0;
 };
 
 }  // namespace pelagic

@@ -394,7 +394,7 @@ void Frame<T>::add_second_order(const Block& block, Scratch& at) const {
     const std::optional<DisplacementAt>& displacement = sea_->displacement();
     const T share = displacement ? static_cast<T>(displacement->pairs) : T(1),
             share_per_s = displacement ? static_cast<T>(displacement->pairs_per_s) : T(0);
-    const int end = std::min(block.first_mx + block.columns, second_order_->radius());
+    const int end = std::min(block.first_mx + block.columns, second_order_->reach());
     for (int mx = block.first_mx; mx < end; ++mx) {
         const PairModes<T> pairs = second_order_->column(mx);
         const std::size_t to = cascade.middle(mx) - first - static_cast<std::size_t>(pairs.half_height);

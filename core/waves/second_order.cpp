@@ -52,12 +52,12 @@ SecondOrderWaves<T>::SecondOrderWaves(std::shared_ptr<const Sea<T>> sea, int cas
     };
     for (int sum = 0; sum < plan().sums(); ++sum) sums_.push_back(plane(columns()));
     std::size_t modes = 0;
-    for (int mx = 0; mx < radius(); ++mx) {
+    for (int mx = 0; mx < reach(); ++mx) {
         first_.push_back(modes);
-        modes += column_length(radius(), mx);
+        modes += column_length(reach(), mx);
     }
     for (int result = 0; result < plan().results(); ++result) {
-        results_.push_back(plane(static_cast<std::size_t>(radius())));
+        results_.push_back(plane(static_cast<std::size_t>(reach())));
         modes_.push_back({std::vector<T>(modes), std::vector<T>(modes)});
     }
 }
@@ -65,7 +65,7 @@ SecondOrderWaves<T>::SecondOrderWaves(std::shared_ptr<const Sea<T>> sea, int cas
 template <class T>
 PairModes<T> SecondOrderWaves<T>::column(int mx) const {
     const std::size_t at = first_[static_cast<std::size_t>(mx)];
-    PairModes<T> modes{half_height(radius(), mx), modes_[0].re.data() + at, modes_[0].im.data() + at};
+    PairModes<T> modes{half_height(reach(), mx), modes_[0].re.data() + at, modes_[0].im.data() + at};
     if (plan().moves) {
         modes.rate_re = modes_[1].re.data() + at;
         modes.rate_im = modes_[1].im.data() + at;
@@ -77,7 +77,7 @@ template <class T>
 long SecondOrderWaves<T>::set(double time_s) {
     for_each_index(0, radius(), [&](int from, int to) { sum_columns(from, to, time_s); });
     for_each_index(0, plan().resolution, [&](int from, int to) { pair_rows(from, to); });
-    for_each_index(0, radius(), [&](int from, int to) { take_columns(from, to); });
+    for_each_index(0, reach(), [&](int from, int to) { take_columns(from, to); });
     return plan().lines();
 }
 
@@ -214,8 +214,9 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
         // The transform back has the other sign: of what is real, the conjugate.
         const auto take = [&](Line<T>& result, Plane& plane) {
             transform_.execute(result.from.data(), result.to.data());
-            std::copy_n(result.to_re(), r, &plane.re[static_cast<std::size_t>(y) * r]);
-            for (int m = 0; m < r; ++m) plane.im[static_cast<std::size_t>(y) * r + m] = -result.to_im()[m];
+            const std::size_t to = static_cast<std::size_t>(y) * reach();
+            std::copy_n(result.to_re(), reach(), &plane.re[to]);
+            for (int m = 0; m < reach(); ++m) plane.im[to + m] = -result.to_im()[m];
             result.clear();
         };
         for (int sum = 0; sum < of_heights; ++sum) {
@@ -240,7 +241,7 @@ void SecondOrderWaves<T>::pair_rows(int first_y, int end_y) {
 template <class T>
 void SecondOrderWaves<T>::take_columns(int first_mx, int end_mx) {
     const int n = plan().resolution;
-    const std::size_t r = static_cast<std::size_t>(radius());
+    const std::size_t r = static_cast<std::size_t>(reach());
     const T scale = T(1) / (static_cast<T>(n) * static_cast<T>(n));
     Line<T> line(n);
     for (int mx = first_mx; mx < end_mx; ++mx)
@@ -251,7 +252,7 @@ void SecondOrderWaves<T>::take_columns(int first_mx, int end_mx) {
                 line.im()[y] = -results_[result].im[at];
             }
             transform_.execute(line.from.data(), line.to.data());
-            const int height = half_height(radius(), mx);
+            const int height = half_height(reach(), mx);
             for (int my = -height; my <= height; ++my) {
                 if (mx == 0 && my == 0) continue;  // the mean stays that of the waves themselves
                 const std::size_t to =

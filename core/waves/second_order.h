@@ -34,7 +34,8 @@ class SecondOrderWaves {
 
     int cascade() const { return cascade_; }
     int radius() const { return plan().radius; }
-    PairModes<T> column(int mx) const;  // 0 ≤ mx < radius()
+    int reach() const { return plan().reach; }
+    PairModes<T> column(int mx) const;  // 0 ≤ mx < reach()
 
   private:
     struct Plane {
@@ -55,7 +56,7 @@ class SecondOrderWaves {
     LineTransform<T> transform_;
     // F, F_x, F_y and G, and their rates behind them: N rows of columns −R < mx < R.
     std::vector<Plane> sums_;
-    // z₂ and ∂z₂/∂t: N rows of columns 0 ≤ mx < R, and what comes of them.
+    // z₂ and ∂z₂/∂t: N rows of columns 0 ≤ mx < reach, and what comes of them.
     std::vector<Plane> results_;
     std::vector<Modes> modes_;
     std::vector<std::size_t> first_;  // of each column's modes

@@ -82,13 +82,13 @@ Compared compare(double depth_m) {
     const SecondOrderPlan& plan = *sea->plan().cascades.front().second_order;
     const auto pairs = pairs_at(sea, 0.0);
     const std::vector<Travelling> waves = travelling(*sea, plan.radius);
-    const int n = 2 * plan.radius - 1;
+    const int reach = plan.reach, n = 2 * reach - 1;
     // h(k) of ½ [A e^{ikx} + conj]: sums over pairs by k, of our kernels and of the exact ones.
     std::vector<Complex> product(n * n), exact(n * n);
     const auto add = [&](std::vector<Complex>& to, int mx, int my, Complex value) {
-        if (std::abs(mx) >= plan.radius || std::abs(my) >= plan.radius) return;
-        to[(my + plan.radius - 1) * n + mx + plan.radius - 1] += value;
-        to[(plan.radius - 1 - my) * n + plan.radius - 1 - mx] += std::conj(value);
+        if (std::abs(mx) >= reach || std::abs(my) >= reach) return;
+        to[(my + reach - 1) * n + mx + reach - 1] += value;
+        to[(reach - 1 - my) * n + reach - 1 - mx] += std::conj(value);
     };
     for (const Travelling& i : waves)
         for (const Travelling& j : waves) {
@@ -106,10 +106,10 @@ Compared compare(double depth_m) {
             add(exact, i.mx + j.mx, i.my + j.my, 0.25 * kernels.sum * plus);
         }
     Compared compared;
-    for (int mx = 0; mx < plan.radius; ++mx)
-        for (int my = -half_height(plan.radius, mx); my <= half_height(plan.radius, mx); ++my) {
+    for (int mx = 0; mx < reach; ++mx)
+        for (int my = -half_height(reach, mx); my <= half_height(reach, mx); ++my) {
             if (mx == 0 && my == 0) continue;
-            const int at = (my + plan.radius - 1) * n + mx + plan.radius - 1;
+            const int at = (my + reach - 1) * n + mx + reach - 1;
             const Complex ours = height(pairs, mx, my);
             compared.error = std::max(compared.error, std::abs(ours - product[at]));
             compared.largest = std::max(compared.largest, std::abs(ours));
@@ -142,8 +142,9 @@ TEST(Pairs, HaveTheirHeightsRate) {
     const auto before = pairs_at(sea, 7.0 - step_s), at = pairs_at(sea, 7.0),
                after = pairs_at(sea, 7.0 + step_s);
     double largest = 0.0, error = 0.0;
-    for (int mx = 0; mx < at.radius(); ++mx)
-        for (int my = -half_height(at.radius(), mx); my <= half_height(at.radius(), mx); ++my) {
+    ASSERT_GT(at.reach(), at.radius());
+    for (int mx = 0; mx < at.reach(); ++mx)
+        for (int my = -half_height(at.reach(), mx); my <= half_height(at.reach(), mx); ++my) {
             const Complex difference = (height(after, mx, my) - height(before, mx, my)) / (2.0 * step_s);
             error = std::max(error, std::abs(difference - rate(at, mx, my)));
             largest = std::max(largest, std::abs(difference));
@@ -162,9 +163,9 @@ TEST(Pairs, AreTheSameAtEveryResolution) {
     };
     const auto fine = of(0.5), coarse = of(20.0);
     const auto a = pairs_at(fine, 3.0), b = pairs_at(coarse, 3.0);
-    ASSERT_EQ(a.radius(), b.radius());
-    for (int mx = 0; mx < a.radius(); ++mx)
-        for (int my = -half_height(a.radius(), mx); my <= half_height(a.radius(), mx); ++my)
+    ASSERT_EQ(a.reach(), b.reach());
+    for (int mx = 0; mx < a.reach(); ++mx)
+        for (int my = -half_height(a.reach(), mx); my <= half_height(a.reach(), mx); ++my)
             ASSERT_EQ(height(a, mx, my), height(b, mx, my));
 }
 
@@ -176,11 +177,11 @@ TEST(Pairs, CostWhatThePlanSays) {
     const SecondOrderPlan& pairs = *plan.cascades.front().second_order;
     EXPECT_EQ(pairs.transforms(), 8);  // three sums, what comes of them, and all their rates
     EXPECT_EQ(plan.lines_per_frame() - alone.lines_per_frame(),
-              6 * (2 * pairs.radius - 1 + pairs.resolution) + 2 * (pairs.radius + pairs.resolution));
+              6 * (2 * pairs.radius - 1 + pairs.resolution) + 2 * (pairs.reach + pairs.resolution));
     auto frame = frame_of<float>(scene, plan);
     frame.set(1.0);
     EXPECT_EQ(frame.executed_lines(), 2 * plan.lines_per_frame());
-    EXPECT_GE(pairs.resolution, 3 * pairs.radius - 2);
+    EXPECT_GE(pairs.resolution, 2 * pairs.radius + pairs.reach - 2);
 }
 
 TEST(Pairs, AreAskedForByHeightsAlone) {
@@ -231,9 +232,12 @@ struct Skewness {
     Estimate found;
     double law, first_order;
 };
-Skewness skewness_over_places(double wind_mps, Tiling tiling) {
+Skewness skewness_over_places(double wind_mps, Tiling tiling,
+                              double depth_m = std::numeric_limits<double>::infinity()) {
     Scene scene;
     scene.sea.wind_speed_mps = wind_mps;
+    scene.sea.depth_m = depth_m;
+    if (std::isfinite(depth_m)) scene.sea.spectrum = SpectrumKind::Tma;
     scene.waves.tiling = tiling;
     const double peak_m = kTwoPi / prepare(scene)->spectrum.peak_wavenumber();
     const double size_m = (tiling == Tiling::Random ? 64.0 : 16.0) * peak_m;
@@ -275,6 +279,17 @@ TEST(Pairs, MakeHeightsOverAPlaceAsSkewAsTheSecondOrderSays) {
             << wind_mps << " m/s: " << skewness.found.mean << " ± " << skewness.found.standard_error
             << " and " << skewness.first_order;
     }
+}
+
+// Of the highest waves over 3 m the pairs' waves are half as long: a sixth of their skewness is lost where they end with those that
+// are paired.
+TEST(Pairs, MakeHeightsOverShallowWaterAsSkewAsTheSecondOrderSays) {
+    const Skewness skewness = skewness_over_places(10.0, Tiling::Periodic, 3.0);
+    RecordProperty("found", std::to_string(skewness.found.mean - skewness.first_order) + " of " +
+                                std::to_string(skewness.law));
+    EXPECT_GT(skewness.law, 0.4);
+    EXPECT_NEAR(skewness.found.mean - skewness.first_order, skewness.law, 0.1 * skewness.law)
+        << skewness.found.mean << " ± " << skewness.found.standard_error << " and " << skewness.first_order;
 }
 
 // Where copies of a tile are blended heights are a little less skew, as sums of independent ones are.

@@ -12,7 +12,7 @@ from mathutils import Vector
 from . import compat
 from .cages import cage_of
 from .module import pelagic
-from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, entry_fields, of_wide_numbers, shortest_for
+from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, entry_fields, number_of, shortest_for, word_before
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -294,11 +294,37 @@ def migrate(obj):
             field.write(group, before)
     if obj.pelagic.version < 5:  # nobody's water became a volume by itself
         obj.pelagic.see_through_by_hand = True
-    for field in FIELDS if obj.pelagic.version < 6 else ():
-        if field.key["type"] == "word":
-            group = getattr(obj.pelagic, field.table)
-            word = of_wide_numbers(field, compat.stored(group, field.name))
-            if word is not None:
-                field.write(group, word)
+    for field, group, path in _drop_downs(obj) if obj.pelagic.version < 7 else ():
+        word = word_before(field, compat.stored(group, field.name))
+        if word is not None:
+            field.write(group, word)
+        _migrate_animation(obj, field, path)
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION
+
+
+def _drop_downs(obj):
+    """Each that chooses a word of the core's: the field, the group of properties, the data path."""
+    for field in FIELDS:
+        group, path = getattr(obj.pelagic, field.table), f"pelagic.{field.path}"
+        if field.key["type"] == "word":
+            yield field, group, path
+        for row, entry in enumerate(getattr(group, field.name) if field.key["type"] == "entries" else ()):
+            yield from ((inner, entry, f"{path}[{row}].{inner.name}") for inner in entry_fields(field) if inner.key["type"] == "word")
+
+
+def _migrate_animation(obj, field, path):
+    """Gives the keyframes of a drop-down, and the numbers in its driver's expression, the words' numbers of today."""
+    for curve in (*compat.curves(obj), *compat.curves_of_tracks(obj)):
+        for point in curve.keyframe_points if curve.data_path == path else ():
+            word = word_before(field, point.co.y)
+            if word is not None:
+                point.handle_left.y = point.handle_right.y = point.co.y = number_of(word)
+
+    def today(found):
+        word = word_before(field, int(found[0]))
+        return found[0] if word is None else str(number_of(word))
+
+    for curve in obj.animation_data.drivers if obj.animation_data else ():
+        if curve.data_path == path:
+            curve.driver.expression = re.sub(r"\b\d{5,}\b", today, curve.driver.expression)

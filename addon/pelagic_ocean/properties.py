@@ -18,7 +18,7 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
 from . import cages
 from .module import pelagic
 
-VERSION = 6  # of the settings in a file; ocean.migrate() brings older ones here
+VERSION = 7  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps",  # and the camera's: they come from the scene
                 "shot.edition"}  # the newest: all settings have values, and a file keeps those of its time (ocean.migrate)
@@ -221,21 +221,23 @@ def _spoken(word):
     return word.upper() if word in ABBREVIATIONS else _sentence(word.replace("-", " "))
 
 
-def _number_of(choice, bits=24):
-    """A word's number in a file. Blender's drop-downs hand it on in single precision, which has 24 bits."""
+def number_of(choice, bits=23):
+    """A word's number in a file. Blender hands it on in single precision, and its F-curves add a half to that before they round it down:
+    so 23 bits are exact."""
     return zlib.crc32(choice.encode()) & ((1 << bits) - 1)
 
 
 def _choices(key, flags):
     """Items whose numbers, which are what a file keeps, don't change when the core gets another word."""
-    return [(choice, _spoken(choice), "", 1 << place if flags else _number_of(choice))
+    return [(choice, _spoken(choice), "", 1 << place if flags else number_of(choice))
             for place, choice in enumerate(key["choices"])]
 
 
-def of_wide_numbers(field, number):
-    """The word that had this number before version 6 of the settings, when numbers had 31 bits and a drop-down rounded them; None: none."""
+def word_before(field, number):
+    """The word that had this number before version 7 of the settings, None: none. It had 31 bits until version 5, which a drop-down rounded,
+    and then 24."""
     return next((choice for choice in field.key["choices"]
-                 if number in (_number_of(choice, 31), int(np.float32(_number_of(choice, 31))))), None)
+                 if number in (number_of(choice, 24), number_of(choice, 31), int(np.float32(number_of(choice, 31))))), None)
 
 
 def _number(key):

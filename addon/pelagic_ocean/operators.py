@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from . import cages, compat, keyed, look, meshes, ocean, play
 from .module import pelagic, problem
-from .properties import BY_PATH
+from .properties import BY_PATH, add_row
 
 CLIP_END_M = 100e3  # beyond the horizon, for cameras and views that would cut the sea off
 
@@ -193,7 +193,7 @@ class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     def execute(self, context):
-        row, obj = self.rows(context).add(), context.object
+        row, obj = add_row(self.rows(context)), context.object
         at = obj.matrix_world.inverted_safe() @ context.scene.cursor.location
         for name, value in STARTS.get(self.path, {}).items():
             setattr(row, name, value)

@@ -251,6 +251,12 @@ with checking("linked from another file, instanced, or overridden, it plays as a
         if how == "override":
             collection.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer, reference=instance)
             objects = [obj for obj in bpy.data.objects if ocean.is_ocean(obj) and obj.override_library]
+            changed, changed_name = objects[0], objects[0].name
+            settings = changed.pelagic
+            settings.water.type, settings.output.attributes, settings.light.turbidity = "turbid", {"velocity"}, 4.0
+            for height_m in (0.0, 0.0):  # which leave the waves
+                properties.add_row(settings.sea.swell).height_m = height_m
+            changed.pelagic_bake.folder, changed.pelagic_in_light.proxy = "//elsewhere", 30
         assert len(objects) == 3
         for frame in (12, 1):
             go_to(frame)
@@ -262,6 +268,12 @@ with checking("linked from another file, instanced, or overridden, it plays as a
         with bpy.data.libraries.load(shot_file) as (source, _):
             assert not source.meshes, source.meshes
         bpy.ops.wm.open_mainfile(filepath=shot_file)
+        if how == "override":  # what it has its own way is in the file
+            changed = next(obj for obj in ocean.oceans() if obj.override_library and obj.name == changed_name)
+            settings = changed.pelagic
+            assert (settings.water.type, settings.output.attributes, settings.light.turbidity) == ("turbid", {"velocity"}, 4.0)
+            assert len(settings.sea.swell) == 2, len(settings.sea.swell)
+            assert (changed.pelagic_bake.folder, changed.pelagic_in_light.proxy) == ("//elsewhere", 30)
         render = bpy.context.scene.render
         render.engine, render.resolution_percentage = "CYCLES", 2
         bpy.context.scene.cycles.samples, bpy.context.scene.cycles.use_denoising = 1, False

@@ -46,6 +46,14 @@ def frame_rate(bpy_scene):
     return shortest_for(render.fps / render.fps_base, lambda fps: render.fps / fps, render.fps_base)
 
 
+def check_frames(bpy_scene):
+    """ValueError where Blender stretches the scene's time: the sea that plays follows that, and a shot's frames can't."""
+    old, new = bpy_scene.render.frame_map_old, bpy_scene.render.frame_map_new
+    if old != new:
+        raise ValueError(f"The scene's time is stretched from {old} to {new}, which frames of a shot and keyframes don't follow: set both alike "
+                         "(Output, Frame Range, Time Stretching). The ocean's own Time scale makes the sea slower or faster")
+
+
 def unit_warning(obj, bpy_scene):
     """What is wrong with the size of a sea where a Blender unit isn't a metre, in words; "" where it is right."""
     units = bpy_scene.unit_settings
@@ -83,6 +91,26 @@ def _with_settings(settings, obj, depsgraph):
     return scene
 
 
+def files_of(settings):
+    """The files that settings name, as they are on disk: (path, time, bytes), None for those of one that isn't there."""
+    named = []
+    for field, value in zip(FIELDS, settings):
+        if field.is_path:
+            named.append(value)
+        elif field.key["type"] == "entries":
+            places = [place for place, inner in enumerate(entry_fields(field)) if inner.is_path]
+            named += [entry[place] for entry in value for place in places]
+    return tuple((path, *_state_of(path)) for path in map(_on_disk, filter(None, named)))
+
+
+def _state_of(path):
+    try:
+        state = Path(path).stat()
+    except (OSError, ValueError):
+        return None, None
+    return state.st_mtime_ns, state.st_size
+
+
 _settled = {}  # settings, and what else counts, → settings, or the words that refuse them
 NOT_CHOSEN = ("planet", "near-far")  # surfaces that are baked alone: their budget is the bake's
 
@@ -99,7 +127,7 @@ def settled(settings, obj, bpy_scene, depsgraph=None):
     cage = kind == "cage" and cage_of(obj, values["surface.cage_file"] or "", depsgraph)
     render = bpy_scene.render
     key = (settings, cage.content if cage else "", frame_rate(bpy_scene), render.resolution_x, render.resolution_y,
-           render.resolution_percentage)
+           render.resolution_percentage, files_of(settings))
     if key not in _settled:
         if len(_settled) > 64:
             _settled.clear()

@@ -20,6 +20,7 @@ from mathutils import Vector
 from . import fitted, handlers, light, look, material, meshes, ocean, surfaces, volumes
 from .module import pelagic
 from .operators import NeedsModule
+from .properties import OVERRIDABLE, overridable
 from .query import first_ocean
 from .surfaces import Surface
 
@@ -244,6 +245,7 @@ def _changed(settings, context):
         volume.data.frame_start = volume.data.frame_offset + 1 + settings.offset
 
 
+@overridable
 class PELAGIC_PG_baked(bpy.types.PropertyGroup):
     path: StringProperty(name="Bake", subtype="FILE_PATH", update=_changed,
                          description="NAME.json in the folder of the bake that this object plays")
@@ -336,7 +338,7 @@ def _menu(self, _context):
 def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
-    bpy.types.Object.pelagic_baked = PointerProperty(type=PELAGIC_PG_baked, name="Pelagic Bake")
+    bpy.types.Object.pelagic_baked = PointerProperty(type=PELAGIC_PG_baked, name="Pelagic Bake", override=OVERRIDABLE)
     if pelagic is not None:
         handlers.add(HANDLERS)
     bpy.types.TOPBAR_MT_file_import.append(_menu)

@@ -14,6 +14,7 @@ from . import ocean, play
 from .exchange import PELAGIC_OT_export_shot, shot_of
 from .module import pelagic
 from .operators import NeedsOcean
+from .properties import OVERRIDABLE, overridable
 
 TIMER_S = 0.1
 
@@ -199,6 +200,7 @@ def _draw(self, context):
     layout.operator(PELAGIC_OT_export_shot.bl_idname, icon="EXPORT")
 
 
+@overridable
 class PELAGIC_PG_bake(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder", default="//bakes", subtype="DIR_PATH",
                            description="Where bakes go, each into a folder of its name; // is beside the .blend")
@@ -211,7 +213,7 @@ PANELS = ("PELAGIC_PT_object_output", "PELAGIC_PT_view_output")
 def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
-    bpy.types.Object.pelagic_bake = PointerProperty(type=PELAGIC_PG_bake, name="Bake")
+    bpy.types.Object.pelagic_bake = PointerProperty(type=PELAGIC_PG_bake, name="Bake", override=OVERRIDABLE)
     bpy.app.handlers.load_pre.append(_stop)
     for name in PANELS:
         getattr(bpy.types, name).append(_draw)

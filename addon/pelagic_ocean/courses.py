@@ -6,6 +6,7 @@ import numpy as np
 
 from . import camera, floating, ocean, query
 from .operators import NeedsModule
+from .properties import add_row
 
 ERROR_M, ERROR_DEG = 0.01, 0.3  # what a smooth path may be off between its keys
 LEAST_STEP_M = 1e-4  # in a frame, or in a tenth of one: what is slower has no course
@@ -83,13 +84,18 @@ class PELAGIC_OT_make_wake(NeedsModule, bpy.types.Operator):
 
     def execute(self, context):
         vessel, sea = context.object, query.first_ocean(context.scene)
+        try:
+            ocean.check_frames(context.scene)
+        except ValueError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         into_sea = sea.matrix_world.inverted_safe()
         way = [(frame, *(into_sea @ floating.calm_matrix(vessel, depsgraph).translation)[:2]) for frame, depsgraph in camera.frames(context, False)]
         keys = keys_through(way)
         if len(keys) < 2:
             self.report({"ERROR"}, "The active object doesn't move in the scene's frames")
             return {"CANCELLED"}
-        row = sea.pelagic.waves.vessels.add()
+        row = add_row(sea.pelagic.waves.vessels)
         row.path = text(keys)
         length, beam = sorted(vessel.dimensions[:2], reverse=True)
         if beam > 0.0:  # of a mesh, whose sides may lie along either axis

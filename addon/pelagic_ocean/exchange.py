@@ -30,6 +30,7 @@ def shot_of(context, obj, meshes=None):
     if obj.pelagic.own_mesh:
         raise ValueError(f"{obj.name}: {OWN_MESH}")
     bpy_scene = context.scene
+    ocean.check_frames(bpy_scene)
     scene = ocean.scene_of(obj, bpy_scene, context.evaluated_depsgraph_get())
     remarks = list(filter(None, [ocean.unit_warning(obj, bpy_scene)]))
     _, rotation, scale = obj.matrix_world.decompose()

@@ -21,6 +21,7 @@ from mathutils import Euler, Matrix, Vector
 from . import bodies, handlers, ocean
 from .module import pelagic
 from .panels import PLACES, draw_words
+from .properties import OVERRIDABLE, overridable
 from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
@@ -55,6 +56,7 @@ OWN = {"own_location": "delta_location", "own_rotation": "delta_rotation_euler",
        "own_quaternion": "delta_rotation_quaternion"}
 
 
+@overridable
 class PELAGIC_PG_float(bpy.types.PropertyGroup):
     enabled: BoolProperty(name="Floating", update=_switched,
                           description="The object follows the water: place it as it lies in calm water")
@@ -332,7 +334,7 @@ CLASSES = (PELAGIC_PG_float, PELAGIC_OT_float,
 def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
-    bpy.types.Object.pelagic_float = PointerProperty(type=PELAGIC_PG_float, name="Floating")
+    bpy.types.Object.pelagic_float = PointerProperty(type=PELAGIC_PG_float, name="Floating", override=OVERRIDABLE)
     if pelagic is not None:
         handlers.add(HANDLERS)
 

@@ -17,7 +17,7 @@ from mathutils import Matrix
 from . import bodies, camera, catcher, compat, courses, floating, ocean
 from .module import pelagic
 from .panels import PLACES, draw_words
-from .properties import shortest
+from .properties import OVERRIDABLE, overridable, shortest
 
 TITLE = "In the Sea's Light"
 # What a body may be off where a shot has it, before it is said: metres, and a share of its size.
@@ -42,6 +42,7 @@ def _changed(settings, _context):
     settings.id_data.update_tag()  # what floats floats otherwise
 
 
+@overridable
 class PELAGIC_PG_in_light(bpy.types.PropertyGroup):
     enabled: BoolProperty(name=TITLE, update=_changed, description="A shot that is exported has this object, with what is parented to it: pelagic render "
                                                   "draws it, its shadow and its mirror image")
@@ -300,7 +301,7 @@ CLASSES = (PELAGIC_PG_in_light, PELAGIC_OT_add_to_sea,
 def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
-    bpy.types.Object.pelagic_in_light = PointerProperty(type=PELAGIC_PG_in_light, name=TITLE)
+    bpy.types.Object.pelagic_in_light = PointerProperty(type=PELAGIC_PG_in_light, name=TITLE, override=OVERRIDABLE)
 
 
 def unregister():

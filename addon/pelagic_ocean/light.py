@@ -27,6 +27,7 @@ VIEW_STOPS = {"Filmic": -0.05, "AgX": 0.25}
 # The core's camera is in air, behind its front glass, and sees 1/n² of the light in the water; Blender's is in it.
 BEHIND_GLASS = 2.0 * math.log2(1.34)
 SKY_WIDTH = 1024
+ALL = -2.0  # below each direction's z
 STARTUP_LAMP_M = (4.0762, 1.0055, 5.9039)  # where Blender's start-up file has its lamp
 # Where Cycles clamps indirect light: ten times white, which is 1 in the start-up file, and here a sunlit white of some 25 kcd/m². With the
 # former a lagoon's floor is a third too dark.
@@ -47,6 +48,9 @@ def ensure_light(bpy_scene, scene, exposure=True):
     world.use_nodes = True
     if not {PICTURE, DISC} <= set(world.node_tree.nodes.keys()):
         _make_nodes(world)
+    looked_up = world.node_tree.nodes[PICTURE].inputs["Vector"]
+    if not looked_up.is_linked:  # of an older file
+        world.node_tree.links.new(_looked_up(Tree(world.node_tree, keeps=True)).socket, looked_up)
     if own_sun(bpy_scene) is None:
         lamp = bpy.data.objects.new("Pelagic Sun", bpy.data.lights.new("Pelagic Sun", "SUN"))
         lamp[MARK] = True
@@ -183,7 +187,7 @@ def _put_sky(world, sky):
 def _make_nodes(world):
     """The picture of the sky, and before it the sun's disc for those who look at it: for all else there is the lamp."""
     tree = Tree(world.node_tree)
-    picture = tree.node("ShaderNodeTexEnvironment")
+    picture = tree.node("ShaderNodeTexEnvironment", {"Vector": _looked_up(tree)})
     picture.name = PICTURE
     seen = tree.call(DISC, _disc, {"Direction": (0.0, 0.0, 1.0), "Radiance": (0.0, 0.0, 0.0), "Angular Radius": 0.0})
     tree.node("ShaderNodeOutputWorld", {"Surface": tree.add("ShaderNodeAddShader", {
@@ -191,6 +195,15 @@ def _make_nodes(world):
         1: tree.add("ShaderNodeBackground", {"Color": seen["Radiance"]})})})
     if hasattr(world, "cycles"):  # its own choice is finer than the picture, and costs each render seconds
         world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", SKY_WIDTH
+
+
+def _looked_up(tree):
+    """The direction in which a ray has the picture: its own, and for the camera's below the horizon the lowest of the sky. Otherwise the
+    picture goes over from there into the dark ground, a line along the horizon; and it shows that wherever the sea ends before the horizon."""
+    x, y, z = tree.add("ShaderNodeTexCoord", output="Generated").parts()
+    half_row = math.pi / SKY_WIDTH
+    is_seen = tree.add("ShaderNodeLightPath", output="Is Camera Ray")
+    return tree.vector(x, y, z.at_least(is_seen * (half_row - ALL) + ALL))
 
 
 def _disc(tree, asked):

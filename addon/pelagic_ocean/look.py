@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Oceans' materials and the scene's sun and sky follow the settings they come from."""
 
-import traceback
-
 import bpy
 from bpy.app.handlers import persistent
 
 from . import depths, drops, handlers, light, material, meshes, ocean, play
-from .module import pelagic, problem
+from .module import pelagic, problem, words_of
 from .properties import FIELDS
 from .query import camera_depth_m, first_ocean
 
@@ -23,6 +21,7 @@ STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
 DUE = "pelagic_look_due"  # on an ocean that has no look yet: with sun and sky or not
 
+_problems = {}  # an ocean's name → why it hasn't the look of its settings, in words
 _shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last, and how the picture is seen
 
 
@@ -63,11 +62,8 @@ def try_to(operator, give):
     """Calls give(). What is to have the look is there without it: whatever goes wrong is a warning of the operator's."""
     try:
         give()
-    except (ValueError, OSError) as error:  # said for people
-        operator.report({"WARNING"}, str(error))
-    except Exception as error:  # another Blender's nodes, say
-        traceback.print_exc()
-        operator.report({"WARNING"}, f"The look isn't complete, {type(error).__name__}: {error}. The console says where")
+    except Exception as error:  # a missing picture, another Blender's nodes
+        operator.report({"WARNING"}, f"The look isn't complete. {words_of(error)}")
 
 
 def give_soon(obj, sun_and_sky):
@@ -88,16 +84,25 @@ def _give_due():
         if DUE in obj:
             sun_and_sky = obj.pop(DUE)
             for bpy_scene in obj.users_scene[:1]:
-                try_to(Console, lambda: give(obj, bpy_scene, sun_and_sky))
+                try:
+                    give(obj, bpy_scene, sun_and_sky)
+                except Exception as error:
+                    _say(obj, words_of(error))
     return None
 
 
-class Console:
-    """Hears what operators report, where there is none."""
+def problem_of(obj):
+    """Why an ocean hasn't the look of its settings, in words; "" where it has."""
+    return _problems.get(obj.name_full, "")
 
-    @staticmethod
-    def report(_kind, text):
-        print(text)
+
+def _say(obj, words):
+    if words == problem_of(obj):
+        return
+    _problems[obj.name_full] = words
+    if bpy.app.background and words:  # nobody sees the panel
+        print(f"Error: {obj.name_full} hasn't its look: {words}", flush=True)
+    play.redraw()
 
 
 @persistent
@@ -110,7 +115,7 @@ def _follow(bpy_scene, depsgraph):
         of_sea = (simulation.significant_height_m, simulation.sea.dense_foam) if simulation.sea else (None, None)
         key = obj.name_full, bpy_scene.name
         under = camera_depth_m(obj, bpy_scene, depsgraph)
-        wanted = [under, of_sea, ocean.frame_rate(bpy_scene), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
+        wanted = [under, of_sea, ocean.frame_rate(bpy_scene), ocean.files_of(settings), settings if problem_of(obj) else (), depths.reaches_far(obj), obj.pelagic.see_through, obj.pelagic.see_through_by_hand] + [settings[place] for place in PLACES]
         is_first = first_ocean(bpy_scene) == obj
         view = light.metered_view(obj, bpy_scene, depsgraph) if is_first else None
         seen = view, bpy_scene.view_settings.view_transform
@@ -123,7 +128,7 @@ def _follow(bpy_scene, depsgraph):
             if before[0] == wanted:
                 if is_first:
                     light.meter(bpy_scene, scene)
-                continue
+                continue  # whatever was wrong with the rest still is
             _mark_under(obj, under)
             material.update_material(obj, scene, *of_sea)
             if is_first:
@@ -131,8 +136,9 @@ def _follow(bpy_scene, depsgraph):
                 (light.meter if dives else light.update_light)(bpy_scene, scene)
             material.put_air(obj, scene, light.sky_picture(bpy_scene))
             drops.put_light(obj, scene, light.sky_picture(bpy_scene))
-        except (ValueError, pelagic.ShotError) as error:
-            print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
+            _say(obj, "")
+        except Exception as error:
+            _say(obj, words_of(error))
 
 
 @persistent
@@ -149,6 +155,7 @@ def _follow_updates(bpy_scene, depsgraph):
 @persistent
 def _forget(*_):
     _shown.clear()
+    _problems.clear()
     light.forget()
     if any(DUE in obj for obj in ocean.oceans()):
         _give_due_soon()
@@ -170,6 +177,10 @@ class PELAGIC_OT_add_light(bpy.types.Operator):
         return pelagic is not None and ocean.is_ocean(context.object)
 
     def execute(self, context):
+        first = first_ocean(context.scene)
+        if first != context.object:
+            self.report({"ERROR"}, f"A scene has one sun and sky, those of its first ocean by name: select {first.name if first else 'it'}")
+            return {"CANCELLED"}
         try:
             scene = ocean.scene_of(context.object, context.scene)
             light.ensure_light(context.scene, scene, self.exposure)

@@ -88,10 +88,13 @@ def _foam_colour(albedo):
 
 def _show_picture(material, scene):
     """The artist's pattern of foam, by rank a normal variable."""
-    node = _changed(material, PICTURE, (scene.effects.foam_pattern, scene.effects.foam_pattern_m))
-    if node is None or "Foam Picture Size" not in material.node_tree.nodes:
+    asked = scene.effects.foam_pattern, scene.effects.foam_pattern_m
+    if material.get(f"{MARK} {PICTURE}") == repr(asked) or "Foam Picture Size" not in material.node_tree.nodes:
         return
-    picture = pelagic.foam_picture(scene)
+    picture = pelagic.foam_picture(scene)  # a file that isn't there is asked for again
+    node = _changed(material, PICTURE, asked)
+    if node is None:
+        return
     if picture is not None:
         node.image = packed_image("Pelagic Foam", picture.repeat(3, axis=2), node.image, is_data=True)
     material.node_tree.nodes["Foam Picture Size"].outputs[0].default_value = scene.effects.foam_pattern_m if picture is not None else 0.0

@@ -3,6 +3,7 @@
 
 import importlib.util
 import sys
+import traceback
 from pathlib import Path
 
 TITLE, VERSION = "Pelagic Ocean", (0, 1, 0)  # bl_info's, which Blender takes away from an extension
@@ -41,3 +42,11 @@ try:
     pelagic, problem = _load(), ""
 except ImportError as error:
     pelagic, problem = None, f"Pelagic's compiled module can't be loaded: {error}."
+
+
+def words_of(error):
+    """What panels and operators say of an exception. Where it isn't meant for people the console says where it comes from."""
+    if isinstance(error, (ValueError, OSError)) and str(error):
+        return str(error)
+    traceback.print_exception(error)
+    return f"{type(error).__name__}: {error}. The console says where"

@@ -102,13 +102,14 @@ class Value:
 
 
 class Tree:
-    """Adds nodes to a node tree that is empty at first."""
+    """Adds nodes to a node tree, which is empty at first unless it keeps what it has."""
 
-    def __init__(self, tree):
+    def __init__(self, tree, keeps=False):
         self.tree = tree
         self._columns = {}  # of the nodes
         self._rows = {}  # that a column has
-        tree.nodes.clear()
+        if not keeps:
+            tree.nodes.clear()
 
     def node(self, kind, inputs=(), **settings):
         """inputs: numbers, tuples or Values by the socket's name or number."""

@@ -12,7 +12,7 @@ from mathutils import Vector
 from . import compat
 from .cages import cage_of
 from .module import pelagic
-from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, entry_fields, of_wide_numbers, shortest_for
+from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, entry_fields, number_of, shortest_for, word_before
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -44,6 +44,14 @@ def clean_name(name):
 def frame_rate(bpy_scene):
     render = bpy_scene.render
     return shortest_for(render.fps / render.fps_base, lambda fps: render.fps / fps, render.fps_base)
+
+
+def check_frames(bpy_scene):
+    """ValueError where Blender stretches the scene's time: the sea that plays follows that, and a shot's frames can't."""
+    old, new = bpy_scene.render.frame_map_old, bpy_scene.render.frame_map_new
+    if old != new:
+        raise ValueError(f"The scene's time is stretched from {old} to {new}, which frames of a shot and keyframes don't follow: set both alike "
+                         "(Output, Frame Range, Time Stretching). The ocean's own Time scale makes the sea slower or faster")
 
 
 def unit_warning(obj, bpy_scene):
@@ -83,6 +91,26 @@ def _with_settings(settings, obj, depsgraph):
     return scene
 
 
+def files_of(settings):
+    """The files that settings name, as they are on disk: (path, time, bytes), None for those of one that isn't there."""
+    named = []
+    for field, value in zip(FIELDS, settings):
+        if field.is_path:
+            named.append(value)
+        elif field.key["type"] == "entries":
+            places = [place for place, inner in enumerate(entry_fields(field)) if inner.is_path]
+            named += [entry[place] for entry in value for place in places]
+    return tuple((path, *_state_of(path)) for path in map(_on_disk, filter(None, named)))
+
+
+def _state_of(path):
+    try:
+        state = Path(path).stat()
+    except (OSError, ValueError):
+        return None, None
+    return state.st_mtime_ns, state.st_size
+
+
 _settled = {}  # settings, and what else counts, → settings, or the words that refuse them
 NOT_CHOSEN = ("planet", "near-far")  # surfaces that are baked alone: their budget is the bake's
 
@@ -99,7 +127,7 @@ def settled(settings, obj, bpy_scene, depsgraph=None):
     cage = kind == "cage" and cage_of(obj, values["surface.cage_file"] or "", depsgraph)
     render = bpy_scene.render
     key = (settings, cage.content if cage else "", frame_rate(bpy_scene), render.resolution_x, render.resolution_y,
-           render.resolution_percentage)
+           render.resolution_percentage, files_of(settings))
     if key not in _settled:
         if len(_settled) > 64:
             _settled.clear()
@@ -294,11 +322,37 @@ def migrate(obj):
             field.write(group, before)
     if obj.pelagic.version < 5:  # nobody's water became a volume by itself
         obj.pelagic.see_through_by_hand = True
-    for field in FIELDS if obj.pelagic.version < 6 else ():
-        if field.key["type"] == "word":
-            group = getattr(obj.pelagic, field.table)
-            word = of_wide_numbers(field, compat.stored(group, field.name))
-            if word is not None:
-                field.write(group, word)
+    for field, group, path in _drop_downs(obj) if obj.pelagic.version < 7 else ():
+        word = word_before(field, compat.stored(group, field.name))
+        if word is not None:
+            field.write(group, word)
+        _migrate_animation(obj, field, path)
     if obj.pelagic.version < VERSION:
         obj.pelagic.version = VERSION
+
+
+def _drop_downs(obj):
+    """Each that chooses a word of the core's: the field, the group of properties, the data path."""
+    for field in FIELDS:
+        group, path = getattr(obj.pelagic, field.table), f"pelagic.{field.path}"
+        if field.key["type"] == "word":
+            yield field, group, path
+        for row, entry in enumerate(getattr(group, field.name) if field.key["type"] == "entries" else ()):
+            yield from ((inner, entry, f"{path}[{row}].{inner.name}") for inner in entry_fields(field) if inner.key["type"] == "word")
+
+
+def _migrate_animation(obj, field, path):
+    """Gives the keyframes of a drop-down, and the numbers in its driver's expression, the words' numbers of today."""
+    for curve in (*compat.curves(obj), *compat.curves_of_tracks(obj)):
+        for point in curve.keyframe_points if curve.data_path == path else ():
+            word = word_before(field, point.co.y)
+            if word is not None:
+                point.handle_left.y = point.handle_right.y = point.co.y = number_of(word)
+
+    def today(found):
+        word = word_before(field, int(found[0]))
+        return found[0] if word is None else str(number_of(word))
+
+    for curve in obj.animation_data.drivers if obj.animation_data else ():
+        if curve.data_path == path:
+            curve.driver.expression = re.sub(r"\b\d{5,}\b", today, curve.driver.expression)

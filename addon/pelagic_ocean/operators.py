@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from . import cages, compat, keyed, look, meshes, ocean, play
 from .module import pelagic, problem
-from .properties import BY_PATH
+from .properties import BY_PATH, add_row
 
 CLIP_END_M = 100e3  # beyond the horizon, for cameras and views that would cut the sea off
 
@@ -181,6 +181,10 @@ class ListOperator(NeedsOcean):
         return getattr(getattr(context.object.pelagic, field.table), field.name)
 
 
+# What an entry begins with, where the middle of its numbers' ranges makes no sea or too much of one.
+STARTS = {"waves.band_gains": {"from_m": 1.0, "to_m": 4.0, "gain": 1.0}, "sea.swell": {"height_m": 1.0, "period_s": 10.0}}
+
+
 class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
     """Add an entry; of a hero wave and a gust's front, at the 3D cursor in the current frame; of a mask, a calm at the 3D cursor; of a vessel, a course across it"""
 
@@ -189,8 +193,10 @@ class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     def execute(self, context):
-        row, obj = self.rows(context).add(), context.object
+        row, obj = add_row(self.rows(context)), context.object
         at = obj.matrix_world.inverted_safe() @ context.scene.cursor.location
+        for name, value in STARTS.get(self.path, {}).items():
+            setattr(row, name, value)
         if self.path == "waves.masks":
             row.east_m, row.north_m, row.waves = at.x, at.y, 0.5
         if self.path == "waves.vessels":  # for a start: across the cursor, along +x

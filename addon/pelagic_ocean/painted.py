@@ -13,6 +13,7 @@ from bpy.props import StringProperty
 from . import ocean, query
 from .light import openexr
 from .operators import NeedsModule
+from .properties import add_row
 
 MOST_PIXELS = 1024  # a side
 FOLDER = "//masks"  # of the pictures: beside the .blend
@@ -151,7 +152,7 @@ class PELAGIC_OT_paint_mask(NeedsModule, bpy.types.Operator):
         of_mesh = re.compile(re.escape(start) + r"[0-9a-f]{8}\.exr")
         row = next((each for each in masks if of_mesh.fullmatch(Path(each.picture.replace("\\", "/")).name)), None)
         if row is None:
-            row = masks.add()
+            row = add_row(masks)
             row.waves, row.edge_m = 0.5, max(2.0 * painted.pixel_m, 0.05 * painted.size_m.min())
         painted.put_into(row)
         row.picture = f"{FOLDER}/{name}"

@@ -7,11 +7,12 @@ import math
 import bpy
 
 from . import depths, ocean, play
-from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
+from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material, problem_of
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
 from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields, unit_of
+from .query import first_ocean
 from .translations import CONTEXT, say
 
 # Title → tables of keys. Water is short, and found above the sea's many rows.
@@ -24,10 +25,10 @@ OPEN = ("Sea", "Water")
 CLEAR_CLIP_M, NEAR_SURFACE_M = 0.02, 2.0  # what a camera may clip without a gap that shows; how deep one is that waves reach
 
 
-def draw_words(layout, text):
-    """A message in lines that fit."""
+def draw_words(layout, text, *values):
+    """A message, with its names, in lines that fit."""
     line = ""
-    for word in bpy.app.translations.pgettext_iface(text, CONTEXT).split():
+    for word in say(text, *values).split():
         if len(line) + len(word) > 40:
             layout.label(text=line, translate=False)
             line = ""
@@ -194,6 +195,8 @@ class Main:
                 draw_words(layout.box(), simulation.problem)
             elif simulation.is_building or simulation.sea:
                 _draw_state(layout, context.object, simulation)
+            if not simulation.problem and problem_of(context.object):  # one of the sea's is of the same settings
+                draw_words(layout.box(), problem_of(context.object))
 
 
 def _draw_state(layout, obj, simulation):
@@ -224,6 +227,9 @@ class Sub:
             row = layout.row(align=True)
             row.operator(PELAGIC_OT_add_light.bl_idname, icon="LIGHT_SUN")
             row.operator(PELAGIC_OT_add_material.bl_idname, icon="MATERIAL")
+            first = first_ocean(context.scene)
+            if first not in (None, context.object):
+                draw_words(layout.box(), "The scene's sun and sky are those of {}, its first ocean by name. What is set here counts in this ocean's own shots and bakes", first.name)
         if self.bl_label == "Surface":
             _draw_surface(layout, settings)
             if settings.own_mesh:

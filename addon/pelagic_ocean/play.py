@@ -18,8 +18,8 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import cages, depths, handlers, keyed, meshes, surfaces, upwelling
-from .module import pelagic
-from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
+from .module import pelagic, words_of
+from .ocean import files_of, frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
 from .properties import FIELDS, PLACE
 from .sea import BuiltSea, Moment
 
@@ -51,6 +51,7 @@ class Simulation:
         self._built = None
         self._key = None
         self._asked = None  # what scene was made from
+        self._tried = None  # that, and the files it names, of the sea that was begun last
         self._surface = None  # what identifies the surface that was made last, and it
         self._job = None
         self._warned, self._warnings = None, ()  # of which scene
@@ -151,15 +152,16 @@ class Simulation:
             if asked != self._asked:
                 self.scene = scene_of(obj, bpy_scene, depsgraph, asked[0])
                 self._asked = asked
-        except (ValueError, OSError) as error:
-            self._refuse(None, str(error))
+        except Exception as error:
+            self.refuse(error)
             return None
         clock = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if keys or settings[PLACE["shot.loop_s"]] or settings[PLACE["waves.heroes"]] or settings[PLACE["waves.vessels"]] or settings[PLACE["sea.gust_fronts"]] else ()
         velocity = wants_velocity(obj, bpy_scene)
         drops = tuple(settings[place] for place in DROPS_FIELDS) if settings[PLACE["effects.spray_drops"]] else ()  # they are the sea's
         key = (tuple(settings[place] for place in SEA_FIELDS), clock, surface_key, velocity, drops, repr(keys))
         self._time_s, self._keys = self.scene.shot.time_s(bpy_scene.frame_current_final), keys
-        if key != self._key or (view is not None and self._built and not self._built.serves(view)):
+        if (key != self._key or self.problem and self._tried != (asked, files_of(asked[0]))
+                or (view is not None and self._built and not self._built.serves(view))):
             self._seek(key, make_surface, view, velocity, wait)
         return view
 
@@ -174,6 +176,7 @@ class Simulation:
                     self.due = None
                 if self._surface is None or self._surface[0] != key[2]:  # of a million points it takes longer than the sea
                     self._surface = key[2], make_surface()
+                self._tried = self._asked, files_of(self._asked[0])
                 self._job = BuiltSea.job(key, keyed.put(self.scene, self._keys), self._surface[1], view, velocity)
             if wait:
                 self._take()
@@ -199,6 +202,10 @@ class Simulation:
 
     def _adopt(self, key, built):
         self._key, self._built, self.problem, self.due = key, built, "", None
+
+    def refuse(self, error):
+        """The ocean can't be shown as it is now: an exception says why."""
+        self._refuse(None, words_of(error))
 
     def _refuse(self, key, problem):
         """The old sea plays on. A place in a file that nobody wrote is left out of the words."""
@@ -339,7 +346,13 @@ def brought_up(obj, bpy_scene, depsgraph, wait=False):
 def _show(obj, bpy_scene, depsgraph, again, wait=False, foam_later=False):
     """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already.
     foam_later: shows the waves, and begins what takes longer."""
-    simulation = _simulation(obj)
+    try:
+        _put(_simulation(obj), obj, bpy_scene, depsgraph, again, wait, foam_later)
+    except Exception as error:  # a handler has nobody who would hear of it
+        _simulation(obj).refuse(error)
+
+
+def _put(simulation, obj, bpy_scene, depsgraph, again, wait, foam_later):
     wait = wait or bpy.app.background or is_rendering()
     view = simulation.follow(obj, bpy_scene, depsgraph, wait)
     if simulation.sea is None or (view is None and simulation.needs_view):

@@ -5,6 +5,7 @@ Key sea.wind_speed_mps is obj.pelagic.sea.wind_speed_mps, in the key's own unit.
 the property use_NAME beside it says whether it has a number. What Blender itself knows (frames, the camera but for its exposure) has none.
 """
 
+import itertools
 import math
 import zlib
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
 from . import cages
 from .module import pelagic
 
-VERSION = 6  # of the settings in a file; ocean.migrate() brings older ones here
+VERSION = 7  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps",  # and the camera's: they come from the scene
                 "shot.edition"}  # the newest: all settings have values, and a file keeps those of its time (ocean.migrate)
@@ -97,7 +98,7 @@ class Field:
             rows = getattr(group, self.name)
             rows.clear()
             for entry in value:
-                row = rows.add()
+                row = add_row(rows)
                 for inner in entry_fields(self):
                     given = getattr(entry, inner.name)
                     inner.write(row, str(Path(given).absolute()) if inner.is_path and given else given)
@@ -107,8 +108,15 @@ class Field:
         setattr(group, self.name, "" if value is None else value)
 
 
+def add_row(rows):
+    """A new entry of a list. It has a name, or of several in a library override Blender would keep the first."""
+    names, row = {row.name for row in rows}, rows.add()
+    row.name = next(name for name in map(str, itertools.count(1)) if name not in names)
+    return row
+
+
 def _text(field, value):
-    return value if value or field.key["default"] is not None else None
+    return value if value or field.key["default"] is not None or field.key["required"] else None
 
 
 READERS = {
@@ -221,21 +229,23 @@ def _spoken(word):
     return word.upper() if word in ABBREVIATIONS else _sentence(word.replace("-", " "))
 
 
-def _number_of(choice, bits=24):
-    """A word's number in a file. Blender's drop-downs hand it on in single precision, which has 24 bits."""
+def number_of(choice, bits=23):
+    """A word's number in a file. Blender hands it on in single precision, and its F-curves add a half to that before they round it down:
+    so 23 bits are exact."""
     return zlib.crc32(choice.encode()) & ((1 << bits) - 1)
 
 
 def _choices(key, flags):
     """Items whose numbers, which are what a file keeps, don't change when the core gets another word."""
-    return [(choice, _spoken(choice), "", 1 << place if flags else _number_of(choice))
+    return [(choice, _spoken(choice), "", 1 << place if flags else number_of(choice))
             for place, choice in enumerate(key["choices"])]
 
 
-def of_wide_numbers(field, number):
-    """The word that had this number before version 6 of the settings, when numbers had 31 bits and a drop-down rounded them; None: none."""
+def word_before(field, number):
+    """The word that had this number before version 7 of the settings, None: none. It had 31 bits until version 5, which a drop-down rounded,
+    and then 24."""
     return next((choice for choice in field.key["choices"]
-                 if number in (_number_of(choice, 31), int(np.float32(_number_of(choice, 31))))), None)
+                 if number in (number_of(choice, 24), number_of(choice, 31), int(np.float32(number_of(choice, 31))))), None)
 
 
 def _number(key):
@@ -268,8 +278,18 @@ MAKERS = {
 }
 
 
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+
+
+def overridable(group):
+    """Lets a library override keep these properties."""
+    for each in group.__annotations__.values():
+        each.keywords["override"] = OVERRIDABLE | ({"USE_INSERTION"} if each.function is CollectionProperty else set())
+    return group
+
+
 def _group(name, annotations, doc):
-    return type("PELAGIC_PG_" + name, (bpy.types.PropertyGroup,), {"__annotations__": annotations, "__doc__": doc})
+    return overridable(type("PELAGIC_PG_" + name, (bpy.types.PropertyGroup,), {"__annotations__": annotations, "__doc__": doc}))
 
 
 def _annotations(fields, classes):
@@ -338,7 +358,7 @@ def _ocean_annotations():
             description="The mesh whose smooth limit surface the sea lies on, with its creases. Without one it is the cage's file"),
         "horizon": BoolProperty(
             name="To the horizon", default=True, update=_touched,
-            description="Rings of ever larger quads round the patch, out to 30 km. A bake leaves them out"),
+            description="Rings of ever larger quads round the patch, out to 90 km. A bake leaves them out"),
         "uv_map": BoolProperty(
             name="UV Map", default=False, update=_touched,
             description="Texture coordinates for image textures. Pelagic's own materials read rest_position instead: "
@@ -380,7 +400,7 @@ def register():
     _classes.append(_group("ocean", annotations, "The settings of an ocean"))
     for made in _classes:
         bpy.utils.register_class(made)
-    bpy.types.Object.pelagic = PointerProperty(type=_classes[-1], name="Pelagic Ocean")
+    bpy.types.Object.pelagic = PointerProperty(type=_classes[-1], name="Pelagic Ocean", override=OVERRIDABLE)
 
 
 def unregister():

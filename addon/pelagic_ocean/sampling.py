@@ -8,6 +8,7 @@ from bpy.props import EnumProperty
 
 from . import meshes
 from .exchange import ocean_of
+from .ocean import check_frames
 from .operators import NeedsModule
 from .query import Water, first_ocean
 
@@ -53,7 +54,7 @@ class PELAGIC_OT_sample_heights(NeedsModule, bpy.types.Operator):
         else:
             try:
                 return getattr(self, "_" + self.into.lower())(context, sea, objects)
-            except LookupError as error:
+            except (LookupError, ValueError) as error:
                 self.report({"ERROR"}, str(error))
         return {"CANCELLED"}
 
@@ -72,6 +73,7 @@ class PELAGIC_OT_sample_heights(NeedsModule, bpy.types.Operator):
             bpy_scene.frame_set(now[0], subframe=now[1])
 
     def _keyframes(self, context, sea, objects):
+        check_frames(context.scene)
         keys = []
         for frame, there, heights in self._frames(context, sea, objects):
             for obj, evaluated, height in zip(objects, there, heights):

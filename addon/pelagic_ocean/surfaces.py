@@ -9,7 +9,8 @@ import numpy as np
 
 from .module import pelagic
 
-HORIZON_M = 30e3  # ends less than a pixel below the true horizon for cameras up to about 15 m above the sea
+HORIZON_M = 30e3  # where rings of quads end that are as fine as they are wide
+FAR_M = 90e3  # where the last one does, which has no waves: a pixel below the horizon for cameras up to about 30 m above the sea
 DEFAULT_CELL_M = 1.0  # of vertices without edges
 FINEST_CELL = 4096  # at most: the largest cell of a mesh over its smallest
 RING_GROWTH = 1.1  # each ring of quads round the patch is wider than the last by this factor
@@ -69,7 +70,7 @@ def _quads(corners):
 
 def patch_points(size_m, resolution, horizon):
     """How many points patch() has."""
-    rings = _ring_count(size_m / resolution) if horizon and size_m < HORIZON_M else 0
+    rings = _ring_count(size_m / resolution) + 1 if horizon and size_m < HORIZON_M else 0
     return (resolution + 1) ** 2 + 4 * resolution * rings
 
 
@@ -108,6 +109,7 @@ def projected_grid(sea, view, share, most, uv_m):
 
 
 def _ring_count(spacing_m):
+    """Without the last one."""
     return math.ceil(math.log(1 + HORIZON_M / spacing_m * (RING_GROWTH - 1), RING_GROWTH))
 
 
@@ -116,9 +118,11 @@ def _with_rings(rest, quads, size_m, resolution):
     side, row = np.arange(resolution), resolution + 1
     # The patch's edge, counter-clockwise from its south-west corner: 4N points.
     edge = np.concatenate([side, side * row + resolution, (row * row - 1) - side, (resolution - side) * row])
-    count = _ring_count(spacing_m)
-    steps_m = spacing_m * RING_GROWTH ** np.arange(1, 1 + count)
+    steps_m = spacing_m * RING_GROWTH ** np.arange(1, 1 + _ring_count(spacing_m))
     scale = 1 + np.cumsum(steps_m) / (size_m / 2)
+    ring_cell_m = np.maximum(steps_m, spacing_m * scale)
+    ring_cell_m, scale = np.append(ring_cell_m, ring_cell_m[-1]), np.append(scale, FAR_M / (size_m / 2))
+    count = len(scale)
     rings = scale[:, None, None] * rest[edge].astype(np.float64)
 
     first = len(rest) + len(edge) * np.arange(count)
@@ -127,7 +131,7 @@ def _with_rings(rest, quads, size_m, resolution):
     outer = first[:, None] + around
     ring_quads = np.stack([inner, outer, np.roll(outer, -1, 1), np.roll(inner, -1, 1)], axis=-1)
     cell_m = np.concatenate([np.full(len(rest), spacing_m),
-                             np.repeat(np.maximum(steps_m, spacing_m * scale), len(edge))])
+                             np.repeat(ring_cell_m, len(edge))])
     return (np.concatenate([rest, rings.reshape(-1, 2)]).astype(np.float32),
             np.concatenate([quads, ring_quads.reshape(-1, 4)]).astype(np.int32), cell_m.astype(np.float32))
 

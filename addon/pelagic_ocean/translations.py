@@ -120,6 +120,8 @@ GERMAN = {
     "7 Near gale": "7 Steifer Wind", "8 Gale": "8 Stürmischer Wind", "9 Strong gale": "9 Sturm", "10 Storm": "10 Schwerer Sturm",
     "11 Violent storm": "11 Orkanartiger Sturm", "12 Hurricane": "12 Orkan",
     "Building the sea…": "Die See entsteht …", "Waves of {} m; foam follows…": "Wellen von {} m; der Schaum folgt …", "There is no ocean in this scene": "In dieser Szene ist kein Ozean",
+    "The scene's sun and sky are those of {}, its first ocean by name. What is set here counts in this ocean's own shots and bakes":
+        "Sonne und Himmel der Szene sind die von {}, dem Namen nach ihrem ersten Ozean. Was hier steht, gilt in den Aufnahmen und Bakes dieses Ozeans",
     "The object's own mesh": "Das eigene Netz des Objekts",
     "Waves of {} m (significant height)": "Signifikante Wellenhöhe {} m",
     "Clear down to {:.0f} m": "Klar bis {:.0f} m Tiefe", "Clear down to {:.1f} m": "Klar bis {:.1f} m Tiefe",
@@ -163,7 +165,8 @@ def _with_units(words):
 
 def say(text, *values):
     """A label, or a sentence with its numbers and names, in the language of the interface."""
-    return bpy.app.translations.pgettext_iface(text, CONTEXT).format(*values)
+    said = bpy.app.translations.pgettext_iface(text, CONTEXT)
+    return said.format(*values) if values else said  # what the core says may have braces
 
 
 def register():

@@ -228,6 +228,7 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
     _signature = ""  # of the settings that were ordered: those of the ocean may change before the bake ends
 
     def order(self, context, obj):
+        ocean.check_frames(context.scene)
         depsgraph = context.evaluated_depsgraph_get()
         scene = scene_of_volume(obj, context.scene, depsgraph, self.kind)
         self._signature = signature_of(obj.evaluated_get(depsgraph), context.scene, self.kind)

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import ocean, play, properties
+from pelagic_ocean import compat, ocean, play, properties
 
 folder = Path(tempfile.mkdtemp())
 
@@ -135,20 +135,41 @@ with checking("a file of the first version gets today's number, and keeps what e
         got = (obj.pelagic.sea.growth, obj.pelagic.effects.whitecap_law, obj.pelagic.light.turbidity, obj.pelagic.water.body)
         assert got == ("height", "monahan-1980", 4.5, False), got
 
-with checking("words of before, when their numbers were too long for a drop-down, and of a drop-down that rounded them"):
-    import zlib
-
+with checking("words of before, when a drop-down rounded their numbers, or an F-curve did: those that are chosen, and those in animations"):
     old = bpy.data.objects[names_of_old[0]]
-    before = {table: word for table, word in (("surface", old.pelagic.surface.kind), ("water", old.pelagic.water.type))}
-    for wide in (lambda number: number, lambda number: int(np.float32(number))):
-        old.pelagic.version = 5
-        for table, name in (("surface", "kind"), ("water", "type")):
-            group = getattr(old.pelagic, table)
-            kept = group.bl_system_properties_get(do_create=True) if hasattr(group, "bl_system_properties_get") else group
-            kept[name] = wide(zlib.crc32(before[table].encode()) & 0x7FFFFFFF)
+    before = {("surface", "kind"): "projected-grid", ("water", "type"): old.pelagic.water.type, ("sea", "spectrum"): "jonswap"}
+    kind, vessel = old.pelagic.surface.kind, old.pelagic.waves.vessels.add()
+
+    def put(group, name, number):
+        kept = group.bl_system_properties_get(do_create=True) if hasattr(group, "bl_system_properties_get") else group
+        kept[name] = number
+
+    for version, number in ((5, lambda word: properties.number_of(word, 31)), (5, lambda word: int(np.float32(properties.number_of(word, 31)))),
+                            (6, lambda word: properties.number_of(word, 24))):
+        old.pelagic.version = version
+        for (table, name), word in before.items():
+            put(getattr(old.pelagic, table), name, number(word))
+        put(vessel, "interpolation", number("linear"))
+        old.animation_data_clear()
+        for table, name, words in (("sea", "spectrum", ("jonswap", "pierson-moskowitz")), ("sea", "short_waves", ("none", "elfouhaily"))):
+            for frame, word in enumerate(words, 1):
+                old.keyframe_insert(f"pelagic.{table}.{name}", frame=frame)
+                curve = next(each for each in compat.curves(old) if each.data_path == f"pelagic.{table}.{name}")
+                curve.keyframe_points[-1].co.y = number(word)
+        old.animation_data.nla_tracks.new().strips.new("Sea", 1, old.animation_data.action.copy())
+        driver = old.driver_add("pelagic.effects.spray_law").driver
+        driver.expression = f"{number('monahan-1986')} if frame < 1000 else {number('andreas-1998')}"
         ocean.migrate(old)
-        assert old.pelagic.version == properties.VERSION
-        assert {"surface": old.pelagic.surface.kind, "water": old.pelagic.water.type} == before
+        assert old.pelagic.version == properties.VERSION and vessel.interpolation == "linear"
+        for (table, name), word in before.items():
+            assert getattr(getattr(old.pelagic, table), name) == word, (table, name, word)
+        for curve in (*compat.curves(old), *compat.curves_of_tracks(old)):
+            words = ("jonswap", "pierson-moskowitz") if curve.data_path.endswith("spectrum") else ("none", "elfouhaily")
+            assert [point.co.y for point in curve.keyframe_points] == [properties.number_of(word) for word in words], curve.data_path
+        assert driver.expression == f"{properties.number_of('monahan-1986')} if frame < 1000 else {properties.number_of('andreas-1998')}"
+    old.animation_data_clear()
+    old.pelagic.waves.vessels.clear()
+    old.pelagic.surface.kind = kind
 
 with checking("a file of the second edition has its water, and today's waves"):
     for obj in ocean.oceans():
@@ -230,6 +251,12 @@ with checking("linked from another file, instanced, or overridden, it plays as a
         if how == "override":
             collection.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer, reference=instance)
             objects = [obj for obj in bpy.data.objects if ocean.is_ocean(obj) and obj.override_library]
+            changed, changed_name = objects[0], objects[0].name
+            settings = changed.pelagic
+            settings.water.type, settings.output.attributes, settings.light.turbidity = "turbid", {"velocity"}, 4.0
+            for height_m in (0.0, 0.0):  # which leave the waves
+                properties.add_row(settings.sea.swell).height_m = height_m
+            changed.pelagic_bake.folder, changed.pelagic_in_light.proxy = "//elsewhere", 30
         assert len(objects) == 3
         for frame in (12, 1):
             go_to(frame)
@@ -241,6 +268,12 @@ with checking("linked from another file, instanced, or overridden, it plays as a
         with bpy.data.libraries.load(shot_file) as (source, _):
             assert not source.meshes, source.meshes
         bpy.ops.wm.open_mainfile(filepath=shot_file)
+        if how == "override":  # what it has its own way is in the file
+            changed = next(obj for obj in ocean.oceans() if obj.override_library and obj.name == changed_name)
+            settings = changed.pelagic
+            assert (settings.water.type, settings.output.attributes, settings.light.turbidity) == ("turbid", {"velocity"}, 4.0)
+            assert len(settings.sea.swell) == 2, len(settings.sea.swell)
+            assert (changed.pelagic_bake.folder, changed.pelagic_in_light.proxy) == ("//elsewhere", 30)
         render = bpy.context.scene.render
         render.engine, render.resolution_percentage = "CYCLES", 2
         bpy.context.scene.cycles.samples, bpy.context.scene.cycles.use_denoising = 1, False

@@ -1,7 +1,10 @@
 """What happens to artists: things done twice, taken away, or turned round."""
 
+import shutil
 import sys
+import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).parent))
 from bpy_extras.object_utils import world_to_camera_view
@@ -9,7 +12,7 @@ from harness import *  # noqa: F403
 from mathutils import Vector
 
 enable()
-from pelagic_ocean import ocean, play
+from pelagic_ocean import light, look, ocean, panels, play
 from pelagic_ocean.query import Water
 
 
@@ -23,6 +26,7 @@ def grid():
     return bpy.context.object
 
 
+FOLDER = Path(tempfile.mkdtemp())
 fresh_file()
 scene = bpy.context.scene
 sea = add_ocean()
@@ -127,6 +131,7 @@ with checking("a sea that is being built for another view isn't taken for this o
     assert simulation.is_building
     view = simulation.follow(sea, scene, depsgraph, wait=True)
     assert view != far and simulation._built.serves(view)
+    bpy.app.handlers.depsgraph_update_post.insert(0, play._on_update)
 
 with checking("an ocean that is scaled to nothing has no camera, and is what it was when it comes back"):
     fresh_file()
@@ -143,6 +148,18 @@ with checking("an ocean that is scaled to nothing has no camera, and is what it 
 
 with checking("a shot that can't be written is said in words"):
     assert refused(lambda: bpy.ops.pelagic.export_shot(filepath="/nowhere/at/all/sea.toml"), "can't be written")
+
+with checking("what is made of frames says that it doesn't follow a stretched time"):
+    scene.render.frame_map_new = 200
+    assert refused(lambda: bpy.ops.pelagic.export_shot(filepath=str(FOLDER / "stretched.toml")), "Time Stretching")
+    assert refused(bpy.ops.pelagic.bake, "Time Stretching") and refused(lambda: bpy.ops.pelagic.bake_volume(kind="spray"), "Time Stretching")
+    raft = cube()
+    assert refused(bpy.ops.pelagic.make_wake, "Time Stretching")
+    assert refused(lambda: bpy.ops.pelagic.sample_heights(into="KEYFRAMES"), "Time Stretching") and not raft.animation_data
+    bpy.data.objects.remove(raft)
+    ocean.select_only(bpy.context, sea)
+    scene.render.frame_map_new = 100
+    assert bpy.ops.pelagic.export_shot(filepath=str(FOLDER / "stretched.toml")) == {"FINISHED"}
 
 with checking("what an artist took out of the sky stays out, and the rest follows; Sun and Sky brings it back"):
     fresh_file()
@@ -161,3 +178,78 @@ with checking("what an artist took out of the sky stays out, and the rest follow
         assert not world.use_nodes or bpy.app.version >= (5, 0), gone  # then each world has nodes
     bpy.ops.pelagic.add_light()
     assert scene.world == world and world.use_nodes and {"Pelagic Sun Disc", "Pelagic Sky"} <= set(nodes.keys())
+
+
+class Layout:
+    """Of a panel: keeps what it says."""
+
+    def __init__(self):
+        self.said = []
+
+    def label(self, text="", **_):
+        self.said.append(text)
+
+    def operator(self, *_, **__):
+        return SimpleNamespace()
+
+    def __getattr__(self, name):
+        return lambda *_, **__: self
+
+
+def said_in(panel, **kept):
+    layout = Layout()
+    panel.draw(SimpleNamespace(layout=layout, **kept), bpy.context)
+    return " ".join(layout.said)
+
+
+with checking("whatever an ocean can't be is in its panel, and gone from there with its cause"):
+    fresh_file()
+    scene = bpy.context.scene
+    sea = add_ocean()
+    settings = sea.pelagic
+    (FOLDER / "kept.exr").write_bytes(light.openexr(np.random.default_rng(1).random((16, 16, 3), np.float32)))
+
+    def says(words):
+        """words: what the panel says; "": that it says of nothing that it is wrong."""
+        bpy.context.view_layer.update()
+        wrong = play.simulation_of(sea).problem or look.problem_of(sea)
+        assert words in wrong and bool(words) == bool(wrong), (words, wrong)
+        assert "".join(wrong.split()) in "".join(said_in(panels.Main).split()), (wrong, said_in(panels.Main))
+
+    says("")
+    bpy.ops.pelagic.list_add(path="waves.vessels")
+    path, settings.waves.vessels[0].path = settings.waves.vessels[0].path, ""
+    says("waves.vessels[0].path")
+    settings.waves.vessels[0].path = path
+    says("")
+    settings.waves.vessels.clear()
+    bpy.ops.pelagic.list_add(path="waves.masks")
+    for group, name in ((settings.waves.masks[0], "picture"), (settings.light, "sky"), (settings.effects, "foam_pattern"),
+                        (settings.sea, "depth_file")):
+        file, none = FOLDER / f"{name}.exr", getattr(group, name)
+        setattr(group, name, str(file))
+        says(file.name)
+        scene.frame_set(scene.frame_current + 1)
+        says(file.name)
+        shutil.copy(FOLDER / "kept.exr", file)  # nothing of Blender's changes
+        scene.frame_set(scene.frame_current + 1)
+        says("")
+        setattr(group, name, none)
+    settings.waves.masks.clear()
+    kept, play.wants_velocity = play.wants_velocity, lambda *_: {}["nobody thought of it"]
+    scene.frame_set(scene.frame_current + 1)
+    says("KeyError: 'nobody thought of it'. The console says where")
+    play.wants_velocity = kept
+    scene.frame_set(scene.frame_current + 1)
+    says("")
+
+with checking("a scene has one sun and sky: the second ocean says whose they are"):
+    lamp = light.own_sun(scene)
+    second = add_ocean()
+    assert second != sea and "those of Ocean, its first ocean" in said_in(panels.Sub, bl_label="Light", tables=())
+    before = lamp.matrix_world.copy()
+    change(second, light__sun_elevation_deg=70.0)
+    assert refused(bpy.ops.pelagic.add_light, "select Ocean") and lamp.matrix_world == before
+    ocean.select_only(bpy.context, sea)
+    assert "first ocean" not in said_in(panels.Sub, bl_label="Light", tables=())
+    assert bpy.ops.pelagic.add_light() == {"FINISHED"}

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import compat, look, meshes, ocean, play
+from pelagic_ocean import compat, look, meshes, ocean, play, properties
 
 
 def grid(side=8, size_m=40.0):
@@ -144,6 +144,17 @@ with checking("list_add and list_remove"):
     bpy.ops.pelagic.list_remove(path="sea.swell", index=0)
     bpy.context.view_layer.update()
     assert np.array_equal(numbers(sea.data), calm)
+
+with checking("an entry of any list, as it comes, leaves a sea that plays"):
+    for field in (field for field in properties.FIELDS if field.key["type"] == "entries"):
+        before = numbers(sea.data)
+        bpy.ops.pelagic.list_add(path=field.path)
+        bpy.context.scene.frame_set(bpy.context.scene.frame_current + 1)
+        assert not play.simulation_of(sea).problem, (field.path, play.simulation_of(sea).problem)
+        height = play.simulation_of(sea).significant_height_m
+        assert height < 4.0, (field.path, height)  # 2.5 m without
+        assert not np.array_equal(numbers(sea.data), before), field.path
+        bpy.ops.pelagic.list_remove(path=field.path, index=0)
 
 with checking("a hero wave stands at the cursor in the current frame"):
     sea, scene = add_ocean(), bpy.context.scene

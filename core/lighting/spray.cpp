@@ -110,7 +110,7 @@ glm::vec3 spray_light(const Spray& spray, glm::vec3 direction, float height_m) {
     spray_shading::Shading shading{spray};
     const float column =
         spray.haze_per_m * spray.scale_m * std::exp(-std::max(height_m, 0.0f) / spray.scale_m);
-    return shading.spray_source(direction, column, view_of(spray));
+    return shading.spray_source(shading.spray_light_along(direction, view_of(spray)), column);
 }
 
 void see_through_spray(const Spray& spray, std::span<const glm::vec3> to_eye,

@@ -118,7 +118,7 @@ float torn_below(vec3 torn, float z, float lift) {
 // Straight up from there.
 float spray_column(SprayPlace at, SprayView spray) {
     float column = at.point.extinction * at.point.thinner * spray.scale_m;
-    if (!spray.is_torn) return column;
+    if (!spray.is_torn || at.steps >= 5.0f) return column;
     return column + spray.step_m * (torn_below(at.torn, 5.0f, at.lift) - torn_below(at.torn, max(at.steps, -at.lift), at.lift));
 }
 
@@ -249,9 +249,15 @@ float spray_mean_of(SprayPlace a, SprayPlace b, vec2 from_m, vec2 to_m, SprayVie
     return mean + (all > 0.0f ? ribbons * (threads / all) : ribbons);
 }
 
-// Light that a ray in this direction has scattered into it below so thick a column, over the extinction.
-vec3 spray_source(vec3 ray, float column, SprayView spray) {
-    float left = exp(-(1.0f - kSprayForward * kSprayForward) * column / max(spray.to_sun.z, kSprayLowSun));
+// The light along a ray that is the same at all its places.
+struct SprayLight {
+    vec3 around;  // from all sides but the sun
+    vec3 sun;     // irradiance, on a plane across it
+    float phase;  // the part of it that goes on towards the eye, by solid angle
+    float high;   // the sine of its elevation
+};
+
+SprayLight spray_light_along(vec3 ray, SprayView spray) {
     float cosine = dot(ray, spray.to_sun);
     float phase = 0.5f * (phase_lobe(cosine, spray.forward.x) + phase_lobe(cosine, spray.forward.y));
     // Of light from all sides most comes from ahead, and along the sea from the low sky there.
@@ -264,15 +270,21 @@ vec3 spray_source(vec3 ray, float column, SprayView spray) {
         vec3 low = mix(spray.low_beside, turned > 0.0f ? spray.low_ahead : spray.low_behind, turned * turned);
         sky = mix(sky, low, kSprayForward * across * across);
     }
-    vec3 around = mix(spray.below, sky, 0.5f + 0.5f * kSprayForward * ray.z);
-    return around + spray.sun * (left * phase + (1.0f - left) * 0.07957747f);
+    return SprayLight(mix(spray.below, sky, 0.5f + 0.5f * kSprayForward * ray.z), spray.sun, phase,
+                      max(spray.to_sun.z, kSprayLowSun));
 }
 
-SprayPath spray_behind(SprayPath path, vec3 ray, float thickness, float column, SprayView spray) {
+// What of it is scattered into the ray below so thick a column, over the extinction.
+vec3 spray_source(SprayLight light, float column) {
+    float left = exp(-(1.0f - kSprayForward * kSprayForward) * column / light.high);
+    return light.around + light.sun * (left * light.phase + (1.0f - left) * 0.07957747f);
+}
+
+SprayPath spray_behind(SprayPath path, SprayLight light, float thickness, float column) {
     float left = exp(-thickness);
     float lost = thickness < 1.0e-3f ? thickness * (1.0f - 0.5f * thickness) : 1.0f - left;
     return SprayPath(path.transmittance * left,
-                     path.scattered + path.transmittance * lost * spray_source(ray, column, spray));
+                     path.scattered + path.transmittance * lost * spray_source(light, column));
 }
 
 vec4 spray_between(float column, int row) {
@@ -338,7 +350,9 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
     }
     float off = row < 0 || row < end - 1 ? 0.0f : row == end ? astray : astray_before;
     SprayPlace a = spray_place(here, lift, (spray.eye_m + slope * at_m - here.x) / spray.scale_m - off, spray);
+    SprayLight light = spray_light_along(ray, spray);
     SprayPath path = SprayPath(1.0f, vec3(0.0f));
+    float above = spray_column(a, spray);
     float rise_per_m = slope * across / spray.scale_m;
     bool has_left = false;
     while (row < end) {
@@ -349,21 +363,22 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
         off = row < end - 1 ? 0.0f : row == end ? astray : astray_before;
         SprayPlace b = spray_place(here, lift, (spray.eye_m + slope * next_m - here.x) / spray.scale_m - off, spray);
         float length_m = (next_m - at_m) / across;
-        path = spray_behind(path, ray, spray_mean_of(a, b, at_m * ahead, next_m * ahead, spray) * length_m,
-                            0.5f * (spray_column(a, spray) + spray_column(b, spray)), spray);
+        float next_above = spray_column(b, spray);
+        path = spray_behind(path, light, spray_mean_of(a, b, at_m * ahead, next_m * ahead, spray) * length_m,
+                            0.5f * (above + next_above));
         rise_per_m = (b.point.z - a.point.z) / length_m;
         at_m = next_m;
         a = b;
+        above = next_above;
         has_left = slope > 0.0f && spray.eye_m + slope * at_m > high_m;
         if (has_left) break;
     }
     if (has_left) return path;
     if (!is_endless) {
         SprayPlace b = spray_place(ends, ends_lift, ends_z, spray);
-        return spray_behind(path, ray, spray_mean_of(a, b, at_m * ahead, end_m * ahead, spray) * max((end_m - at_m) / across, 0.0f),
-                            0.5f * (spray_column(a, spray) + spray_column(b, spray)), spray);
+        return spray_behind(path, light, spray_mean_of(a, b, at_m * ahead, end_m * ahead, spray) * max((end_m - at_m) / across, 0.0f),
+                            0.5f * (above + spray_column(b, spray)));
     }
     // Beyond the last row the ray goes on rising over a sea like that there.
-    float above = spray_column(a, spray);
-    return spray_behind(path, ray, above / (max(rise_per_m, 1.0e-6f) * spray.scale_m), 0.5f * above, spray);
+    return spray_behind(path, light, above / (max(rise_per_m, 1.0e-6f) * spray.scale_m), 0.5f * above);
 }

@@ -157,7 +157,7 @@ WorkDone picture_work(const Plan& plan, std::span<const int> frames, const Rende
     at(work, Work::Sky) = (1.0 - water) * samples;
     if (options.lighting.spray) {
         const SprayMapSize map =
-            spray_map_size(camera.resolution.x + 2 * options.overscan_px.x * options.samples);
+            spray_map_size(camera.resolution.x / options.samples + 2 * options.overscan_px.x);
         at(work, Work::SprayTexels) = 1e-6 * map.columns * map.rows * moments;
         at(work, Work::SpraySamples) = samples;
     }

@@ -268,8 +268,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                  "set objects[].caustics to 0");
     if (options.lighting.spray) {
         need.add("the map of the spray",
-                 spray_map_bytes(spray_map_size(sampled.camera.resolution.x +
-                                                2 * options.overscan_px.x * options.samples)),
+                 spray_map_bytes(spray_map_size(scene.camera.resolution.x + 2 * options.overscan_px.x)),
                  "set effects.spray to false");
         add_seen_drops(need, plan);
     }

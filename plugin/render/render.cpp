@@ -331,7 +331,7 @@ class RendererOf final : public Impl {
         spray_ = {};
         if (drawn_.is_below(view_)) return;
         const bool are_near = options_.lighting.spray && are_drops_near(scene_, view_);
-        spray_ = sea_.spray_before(view_, drawn_.grid_options(), are_near);
+        spray_ = sea_.spray_before(view_, drawn_.grid_options(), options_.samples, are_near);
         if (!are_near || spray_.empty()) return;
         if (!flying_) flying_.emplace(sea_.frame().sea(), kDropsSquare_m, watch);
         flying_->at(scene_.shot.time_s(pass.frame), glm::dvec2(view_.position_m), in_air_, watch.cancel);

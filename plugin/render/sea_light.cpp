@@ -58,9 +58,10 @@ Air SeaLight<T>::air_before(double height_m) const {
 }
 
 template <class T>
-Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& grid, bool drops) const {
+Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& grid, int samples,
+                                bool drops) const {
     if (!choice_.spray) return {};
-    Spray spray = make_spray_map(frame(), view, grid, spray_map_size(view.resolution.x), drops);
+    Spray spray = make_spray_map(frame(), view, grid, spray_map_size(view.resolution.x / samples), drops);
     light_spray(spray, choice_, sky_, water_, law_coverage(frame().sea().plan().from->scene));
     return spray;
 }

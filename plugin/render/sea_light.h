@@ -97,8 +97,9 @@ class SeaLight {
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none. `drops`: its large
-    // drops are shown one by one.
-    Spray spray_before(const View& view, const ProjectedGridOptions& grid, bool drops = false) const;
+    // drops are shown one by one. The view's pixels are the samples, so many a side, of a picture's.
+    Spray spray_before(const View& view, const ProjectedGridOptions& grid, int samples,
+                       bool drops = false) const;
     // Before the first answer of a picture: all places that it will show, and what earlier times have left there, so
     // that its parts don't each go through them. Nothing without persistent foam. The last throws BuildCancelled.
     void say(const Points<T>& points) { state_.say(kQuery, points); }

@@ -14,7 +14,7 @@ namespace pelagic {
 struct SprayMapSize {
     int columns = 2, rows = 2;
 };
-// In proportion to the picture's width, up to where finer cells show no more. Accuracy and time: tests/bench/README.md.
+// In proportion to the picture's width, whatever its samples, up to where finer cells show no more. Accuracy and time: tests/bench/README.md.
 SprayMapSize spray_map_size(int picture_width);
 
 // [bytes] of the map and of what it is made from.
@@ -26,7 +26,9 @@ Spray spray_by(const SprayLaw& law);
 // Without light yet. Query 0 of the frame's plan is that of pictures (picture_plan()), with Product::Displacement; the footprints
 // of no texel are finer than the view's own pixels. Columns span what the view sees, or the whole circle where it sees its nadir or the zenith. Rows
 // go from a part of the eye's height to where the layer is behind the horizon. Texels are means over themselves, and over
-// two metres at least, where volumes have a voxel's, ribbons also over as much as rows are apart: near the camera a picture's spray is smoother than a fine volume's. Empty where the
+// two metres at least, where volumes have a voxel's. Ribbons are means over as much as rows are apart, and columns where those are farther apart,
+// by a normal distribution round each texel: what a ray takes as linear between texels has no trace of their grid. So near the camera a
+// picture's spray is smoother than a fine volume's. Empty where the
 // scene has no spray, and where no wave breaks. `drops`: the large drops near the eye are shown one by one (seen_drops.h); otherwise
 // they are in it. On all threads of the calling arena; the same bits whatever their number.
 template <class T>

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr SprayMapSize kSprayMap{.columns = 112, .rows = 96};
+constexpr SprayMapSize kSprayMap{.columns = 84, .rows = 128};
 
 double milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();

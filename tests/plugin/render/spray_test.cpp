@@ -218,6 +218,50 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
     }
 }
 
+// Rays take what lies between the map's places as linear. What lies aslant and is finer than rows are apart would be a row of puffs, one
+// at each row that it crosses. So each place near the camera is nearly the mean of those before and behind it, and of those beside it.
+TEST(RenderedSpray, RibbonsAreNoPuffsInRowsOfTheMap) {
+    Scene scene = spray_storm(1.0);
+    scene.sea.wind_speed_mps = 24.0;
+    scene.effects.whitecap_law = WhitecapLaw::Callaghan2008;
+    scene.effects.spray_law = SpraySource::Andreas1998;
+    const View view = view_at(scene.camera, 1);
+    Frame<float> frame(
+        std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}, spray_options(scene))));
+    const ProjectedGridOptions grid = projected_grid_options(*frame.sea().plan().from);
+    for (const int width : {160, 240}) {
+        double square = 0.0, by_rows = 0.0, by_columns = 0.0;
+        for (const double time_s : {0.0, 7.0, 20.0}) {
+            frame.set(time_s);
+            const Spray spray = make_spray_map(frame, view, grid, spray_map_size(width));
+            const auto at = [&](int column, int row) {
+                return static_cast<double>(
+                    spray.texels[static_cast<std::size_t>(row * spray.columns + column)].y);
+            };
+            for (int row = 1; row + 1 < spray.rows; ++row) {
+                const double away_m =
+                    static_cast<double>(spray.first_m) * std::exp(static_cast<double>(spray.row_step) * row);
+                if (away_m < 10.0 || away_m > 200.0) continue;
+                for (int column = 1; column + 1 < spray.columns; ++column) {
+                    const auto off = [&](int columns, int rows) {
+                        const double mean =
+                            0.5 * (at(column - columns, row - rows) + at(column + columns, row + rows));
+                        return (at(column, row) - mean) * (at(column, row) - mean);
+                    };
+                    square += at(column, row) * at(column, row);
+                    by_rows += off(0, 1);
+                    by_columns += off(1, 0);
+                }
+            }
+        }
+        ASSERT_GT(square, 0.0);
+        std::printf("    map of a picture %d wide: off the mean of the next rows by %.3f, columns %.3f\n",
+                    width, std::sqrt(by_rows / square), std::sqrt(by_columns / square));
+        EXPECT_LT(by_rows, 0.3 * 0.3 * square);
+        EXPECT_LT(by_columns, 0.3 * 0.3 * square);
+    }
+}
+
 TEST(RenderedSpray, IsNoneWithoutTheKeyAndWithoutWind) {
     const Scene without = spray_storm(0.0);
     const Picture expected = spray_picture(without);
@@ -247,11 +291,16 @@ TEST(RenderedSpray, CostsNoTransform) {
     EXPECT_EQ(more.transforms_per_frame(), less.transforms_per_frame());
     EXPECT_EQ(more.frame_bytes(), less.frame_bytes());
     EXPECT_EQ(less.queries[0].query.products, picture_plan(without, std::array{1}).queries[0].query.products);
-    const auto bytes = [](const Scene& scene) {
-        return render_memory(scene, spray_options(scene), std::array{1}, {}, 2).bytes();
-    };
-    EXPECT_EQ(bytes(with),
-              bytes(without) + spray_map_bytes(spray_map_size(spray_storm(1.0).camera.resolution.x)));
+    // The map is as fine whatever the number of samples.
+    for (const int samples : {1, 3}) {
+        const auto bytes = [samples](const Scene& scene) {
+            RenderOptions options = spray_options(scene);
+            options.samples = samples;
+            return render_memory(scene, options, std::array{1}, {}, 2).bytes();
+        };
+        EXPECT_EQ(bytes(with),
+                  bytes(without) + spray_map_bytes(spray_map_size(spray_storm(1.0).camera.resolution.x)));
+    }
 }
 
 // Under one radiance everywhere nothing gets brighter than that: the furnace, with a sea that reflects less.

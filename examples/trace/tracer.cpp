@@ -79,7 +79,7 @@ Tracer::Impl::Impl(const Scene& scene, const TraceOptions& options, Sky sky, int
     }
     air_ = light_.air_before(view_.position_m.z);
     air_below_ = light_.air_before(0.0);
-    spray_ = light_.spray_before(view_, grid_options_);
+    spray_ = light_.spray_before(view_, grid_options_, options.picture.samples);
     unlit_ = light_.sky();
     unlit_.sun_radiance = unlit_.sun_irradiance = glm::vec3(0.0f);
 

@@ -100,7 +100,7 @@ def _say(obj, words):
     if words == problem_of(obj):
         return
     _problems[obj.name_full] = words
-    if bpy.app.background and words:  # nobody sees the panel
+    if bpy.app.background and words not in ("", play.simulation_of(obj).problem):  # nobody sees the panel
         print(f"Error: {obj.name_full} hasn't its look: {words}", flush=True)
     play.redraw()
 

@@ -2,6 +2,7 @@
 """The compiled module: `pelagic`, and `problem`, a sentence that says why it is None if it is. The add-on's name and version."""
 
 import importlib.util
+import re
 import sys
 import traceback
 from pathlib import Path
@@ -44,9 +45,14 @@ except ImportError as error:
     pelagic, problem = None, f"Pelagic's compiled module can't be loaded: {error}."
 
 
+def without_place(text):
+    """What the core says, without a place in a file that nobody wrote."""
+    return re.sub(r"^\S*:\d+:\d+: ", "", text, flags=re.MULTILINE)
+
+
 def words_of(error):
     """What panels and operators say of an exception. Where it isn't meant for people the console says where it comes from."""
     if isinstance(error, (ValueError, OSError)) and str(error):
-        return str(error)
+        return without_place(str(error))
     traceback.print_exception(error)
     return f"{type(error).__name__}: {error}. The console says where"

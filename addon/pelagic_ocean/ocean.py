@@ -96,7 +96,7 @@ def files_of(settings):
     named = []
     for field, value in zip(FIELDS, settings):
         if field.is_path:
-            named.append(value)
+            named.append(value if value != field.key["default"] else "")  # a word
         elif field.key["type"] == "entries":
             places = [place for place, inner in enumerate(entry_fields(field)) if inner.is_path]
             named += [entry[place] for entry in value for place in places]

@@ -10,7 +10,6 @@ while the old one plays on; without a window, and during renders, whoever asks w
 """
 
 import math
-import re
 import threading
 import weakref
 
@@ -18,7 +17,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import cages, depths, handlers, keyed, meshes, surfaces, upwelling
-from .module import pelagic, words_of
+from .module import pelagic, without_place, words_of
 from .ocean import files_of, frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled, wants_velocity
 from .properties import FIELDS, PLACE
 from .sea import BuiltSea, Moment
@@ -208,8 +207,8 @@ class Simulation:
         self._refuse(None, words_of(error))
 
     def _refuse(self, key, problem):
-        """The old sea plays on. A place in a file that nobody wrote is left out of the words."""
-        problem = re.sub(r"^\S*:\d+:\d+: ", "", problem, flags=re.MULTILINE)
+        """The old sea plays on."""
+        problem = without_place(problem)
         if bpy.app.background and problem != self.problem:  # nobody sees the panel
             print(f"Error: {self._name} stands still: {problem}", flush=True)
         self._key, self.problem = key, problem

@@ -11,6 +11,7 @@ from . import compat, ocean
 from .module import pelagic
 from .operators import NeedsOcean
 from .properties import BY_PATH, OF_CAMERA
+from .translations import say
 
 THUMBNAILS = Path(__file__).parent / "thumbnails"  # examples/preset-thumbnails.py makes them
 
@@ -46,7 +47,7 @@ def _with_tables_of(other, scene):
 def _says(preset):
     """What it looks like, and which settings or tables of settings it changes."""
     tables = dict.fromkeys(path.split(".")[0] for path in preset["values"] if path in BY_PATH)
-    return f"{preset['help'][:1].upper()}{preset['help'][1:]}. Sets {', '.join(tables)}"
+    return say("{}. Sets {}", say(f"{preset['help'][:1].upper()}{preset['help'][1:]}"), ", ".join(say(table.title()) for table in tables))
 
 
 class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
@@ -61,7 +62,7 @@ class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
     @classmethod
     def description(cls, _context, properties):
         return next((_says(preset) for preset in pelagic.presets() if preset["name"] == properties.name),
-                    "Make this sea of your own the ocean's, with its waves, effects, light and water")
+                    say("Make this sea of your own the ocean's, with its waves, effects, light and water"))
 
     def execute(self, context):
         obj = context.object

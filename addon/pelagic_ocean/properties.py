@@ -7,6 +7,7 @@ the property use_NAME beside it says whether it has a number. What Blender itsel
 
 import itertools
 import math
+import re
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,8 +38,8 @@ UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCI
          "s": {"subtype": "TIME_ABSOLUTE", "unit": "TIME"}, "pixels": {"subtype": "PIXEL"}}
 ABBREVIATIONS = {"fft", "jonswap", "tma", "usda", "usdc"}
 SIGNS = {"degrees": "°"}  # shorter in a label
-LABELS = {"light.visibility_km": "Visibility", "effects.sea_minus_air_c": "Sea warmer than air",
-          "camera.exposure_ev": "Exposure", "camera.ev100": "Light meter"}  # where a key's name makes none
+LABELS = {"sea.fetch_m": "Wind fetch", "light.visibility_km": "Visibility", "effects.sea_minus_air_c": "Sea warmer than air",
+          "camera.exposure_ev": "Exposure", "camera.ev100": "Light meter"}  # where a key's name makes none, or one that Blender knows of another thing
 INTEGER_LIMIT = 2**31 - 1  # of Blender's
 
 
@@ -205,12 +206,74 @@ def label_of(key):
     return key["label"] + (f" ({unit_of(key)})" if unit_of(key) else "")
 
 
+# ---- What a tooltip says: a shot file's words, with what an artist sees in place of keys
+
+
+def _all_keys():
+    for key in pelagic.keys() if pelagic else ():
+        yield from (key, *key["keys"])
+
+
+NAMES = {key["name"]: LABELS.get(key["path"], key["label"]) for key in _all_keys()} | {
+    key["path"]: LABELS.get(key["path"], key["label"]) for key in _all_keys()}
+WORDS = {choice for key in _all_keys() for choice in key["choices"] if choice in ABBREVIATIONS or re.search("[^a-z]", choice)}
+EITHER = re.compile(r'(\w+) = "([\w-]+)"')
+A_NAME = re.compile(r"[A-Za-z][\w-]*(?:\.[a-z]\w*)*")
+WIDE = 1e6  # no end for an artist
+
+
+def _of_artists(text):
+    """A sentence in the words of the panels."""
+    def seen(found):
+        name = found[0]
+        if name in WORDS:
+            return _spoken(name)
+        return NAMES.get(name, name) if "_" in name or "." in name else name
+
+    return _sentence(A_NAME.sub(seen, EITHER.sub(lambda found: f"{NAMES.get(found[1], found[1])} {_spoken(found[2])}", text)))
+
+
+def _parts_of(key):
+    """Its help without what it says of each word, and that: {word: text}."""
+    text, of_words = key["help"], {}
+    for choice in key["choices"]:
+        found = re.search(rf"(?:(?<=^)|(?<=[.;] )){re.escape(choice)}: (.*?)(?:; |(?=\. [A-Z])|$)", text)
+        if found:
+            of_words[choice] = _of_artists(found[1])
+            text = text[:found.start()] + text[found.end():]
+    return _of_artists(re.sub(r"(\. )+$", "", text.replace(". . ", ". ")).rstrip(". ")), of_words
+
+
+def _limits(key, say):
+    """From where to where a number goes, in its unit; "" where an artist meets no end."""
+    if key["type"] not in ("number", "integer"):
+        return ""
+    low, high = key["range"]
+    unit = SIGNS.get(key["unit"], " " + key["unit"] if key["unit"] else "")
+    if abs(low) >= WIDE and abs(high) >= WIDE:
+        return ""
+    return say("{} or more").format(f"{low:g}{unit}") if high >= WIDE else say("{} to {}").format(f"{low:g}", f"{high:g}{unit}")
+
+
+FORM = re.compile(r"^(a string, )?|,? from the shot file's folder")
+
+
+def tooltip(key, say=lambda text: text):
+    """What Blender shows of a key. say: into another language."""
+    parts = [say(_parts_of(key)[0] or key["label"]), _limits(key, say)]
+    if key["type"] in ("text", "data file", "data time"):
+        parts.append(say(_sentence(FORM.sub("", key["accepted"]).replace('"', ""))))
+    return ". ".join(filter(None, parts))
+
+
+def switch_tooltip(field, say=lambda text: text):
+    what = {None: "Whether {} is given; otherwise it is chosen", math.inf: "Whether {} is finite; otherwise it is infinite"}.get(
+        field.absent, "Whether {} is a number; otherwise it is " + str(field.absent))
+    return say(what).format(say(field.key["label"]))
+
+
 def _common(key):
-    text = _sentence(key["help"]) or key["label"]
-    if key["accepted"]:
-        accepted = key["accepted"].partition(", or { keys")[0]  # which are a shot file's
-        text += f". Accepted: {accepted}"
-    return {"name": label_of(key), "description": text, "update": _touched}
+    return {"name": label_of(key), "description": tooltip(key), "update": _touched}
 
 
 def _numeric(key, limit=math.inf):
@@ -237,7 +300,8 @@ def number_of(choice, bits=23):
 
 def _choices(key, flags):
     """Items whose numbers, which are what a file keeps, don't change when the core gets another word."""
-    return [(choice, _spoken(choice), "", 1 << place if flags else number_of(choice))
+    of_words = _parts_of(key)[1]
+    return [(choice, _spoken(choice), of_words.get(choice, ""), 1 << place if flags else number_of(choice))
             for place, choice in enumerate(key["choices"])]
 
 
@@ -297,16 +361,14 @@ def _annotations(fields, classes):
     made = {}
     for field in fields:
         if field.switch:
-            what, otherwise = {None: ("given", "chosen"), math.inf: ("finite", "infinite")}.get(
-                field.absent, ("a number", field.absent))
             made[field.switch] = BoolProperty(
                 name=field.key["label"], default=field.key["default"] not in (None, field.absent), update=_touched,
-                description=f"Whether {field.key['label'].lower()} is {what}; otherwise it is {otherwise}")
+                description=switch_tooltip(field))
         if field.key["type"] == "entries":
-            entry = _group(field.path.replace(".", "_"), _annotations(entry_fields(field), classes), field.key["help"])
+            entry = _group(field.path.replace(".", "_"), _annotations(entry_fields(field), classes), tooltip(field.key))
             classes.append(entry)
             made[field.name] = CollectionProperty(type=entry, name=field.key["label"],
-                                                  description=_sentence(field.key["help"]))
+                                                  description=tooltip(field.key))
         else:
             made[field.name] = MAKERS[field.key["type"]](field.key)
     return made
@@ -321,9 +383,9 @@ CUSTOM = "custom"  # in place of a level: a budget
 
 
 def _quality_items():
-    levels = BY_PATH["quality.level"].key["choices"] if "quality.level" in BY_PATH else ()
-    return [(choice, _spoken(choice), "", number) for number, choice in enumerate(levels)] + [
-        (CUSTOM, "Custom budget", "The cheapest settings within an error, or the most accurate within a time", len(levels))]
+    level = BY_PATH["quality.level"].key if "quality.level" in BY_PATH else {"choices": (), "help": ""}
+    return [(choice, _spoken(choice), _parts_of(level)[1].get(choice, ""), number) for number, choice in enumerate(level["choices"])] + [
+        (CUSTOM, "Custom budget", "The cheapest settings within an error, or the most accurate within a time", len(level["choices"]))]
 
 
 def _budget_switches():

@@ -17,6 +17,7 @@ from . import compat, links, ocean
 from .baking import Bakes, draw_progress, folder_of
 from .nodes import Tree
 from .properties import BY_PATH, FIELDS, PLACE
+from .translations import say
 
 MARK = "pelagic_spray"  # on a material of the add-on
 FORWARD = 0.85  # mean cosine of what droplets scatter, which are much larger than light's wavelengths (Hansen & Travis 1974)
@@ -223,7 +224,7 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
 
     @classmethod
     def description(cls, _context, properties):
-        return f"{KINDS[properties.kind].help}. Baked for the scene's frames, over the patch's square"
+        return say("{}. Baked for the scene's frames, over the patch's square", say(KINDS[properties.kind].help))
 
     _signature = ""  # of the settings that were ordered: those of the ocean may change before the bake ends
 

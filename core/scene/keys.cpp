@@ -165,20 +165,27 @@ void add_sea(Built& out) {
                                        .key_parts = key_parts(KeyPart::Water),
                                        .of_picture = "sea.depth_file"}),
         row<&SeaState::spectrum>({.name = "spectrum",
-                                  .help = "how the energy is shared among the wavelengths",
+                                  .help =
+                                      "how the energy is shared among the wavelengths. pierson-moskowitz: a "
+                                      "sea as grown as its wind lets it; jonswap: one that the wind raises "
+                                      "over the fetch, its peak the sharper the younger it is; "
+                                      "jonswap-1973: the same with the numbers of 1973; tma: jonswap in "
+                                      "shallow water; elfouhaily: one law from the peak to ripples; "
+                                      "omega-2: a bare tail that ends at the peak; phillips: as in "
+                                      "Tessendorf's notes, for people who come from there; file: a buoy's, "
+                                      "of spectrum_file",
                                   .key_parts = kWaves}),
         row<&SeaState::growth>(
             {.name = "growth",
-             .help =
-                 "of the wind's waves. height-and-peak: both are the growth law's, the peak goes with significant_height_m, "
-                 "and what the sun's glitter shows of short waves is left to the wind; height: the height is the growth "
-                 "law's and the spectrum's shape gives the peak, which then keeps its place",
+             .help = "of the wind's waves. height-and-peak: both are the growth law's, the peak goes with "
+                     "significant_height_m, and what the sun's glitter shows of short waves is left to the "
+                     "wind; height: the height is the growth law's and the spectrum's shape gives the peak, "
+                     "which then keeps its place",
              .key_parts = kWaves}),
         row<&SeaState::short_waves>(
             {.name = "short_waves",
-             .help =
-                 "beyond a few peak wavenumbers: elfouhaily, the tail and the spreading that have the slopes of "
-                 "sun glitter; none, the spectrum's own",
+             .help = "beyond a few peak wavenumbers. elfouhaily: the tail and the spreading that have the "
+                     "slopes of sun glitter; none: the spectrum's own",
              .key_parts = kWaves}),
         row<&SeaState::significant_height_m>(
             {.name = "significant_height_m",
@@ -190,7 +197,12 @@ void add_sea(Built& out) {
              .key_parts = kWaves,
              .may_have_keys = true}),
         row<&SeaState::spreading>(
-            {.name = "spreading", .help = "how it is shared among the directions", .key_parts = kWaves}),
+            {.name = "spreading",
+             .help =
+                 "how it is shared among the directions. hasselmann: narrowest at the peak, as measured in "
+                 "the North Sea; donelan-banner: as measured on Lake Ontario; cosine: as wide for all wavelengths; elfouhaily: the spectrum's of this name, "
+                 "down to ripples",
+             .key_parts = kWaves}),
         row<&SeaState::directionality>(
             {.name = "directionality",
              .help =
@@ -313,7 +325,7 @@ void add_waves(Built& out) {
     add_table<&Scene::waves>(
         out.tables, out.keys, {"waves", "how waves are made from it", {}, {}},
         row<&Waves::model>({.name = "model",
-                            .help = "fft: tiles of waves; trochoid: a sum of wave trains",
+                            .help = "how waves are made. fft: tiles of waves; trochoid: a sum of wave trains",
                             .key_parts = kWaves}),
         row<&Waves::choppiness>(
             {.name = "choppiness",
@@ -368,9 +380,8 @@ void add_waves(Built& out) {
                  .soft = SoftRange{0.0, 2.0}})),
         row<&Waves::tiling>(
             {.name = "tiling",
-             .help =
-                 "of the cascades: random, copies of each tile at random offsets, blended, so that no pattern is "
-                 "seen from the air; periodic, each tile repeats after its size",
+             .help = "of the cascades. random: copies of each tile at random offsets, blended, so that no "
+                     "pattern is seen from the air; periodic: each tile repeats after its size",
              .key_parts = kWaves}),
         entries<&Waves::band_gains>(
             {.name = "band_gains",
@@ -504,7 +515,8 @@ void add_waves(Built& out) {
                      "first course, after the last it goes on",
                  .accepted = "a string, \"frame east north, frame east north, …\", of two keys or more"}),
             row<&Vessel::interpolation>(
-                {.name = "interpolation", .help = "of the path between keys: straight, or smooth"}),
+                {.name = "interpolation",
+                 .help = "of the path between keys. linear: straight; smooth: round"}),
             row<&Vessel::length_m>({.name = "length_m",
                                     .help = "of the hull at the water",
                                     .unit = "m",
@@ -585,10 +597,12 @@ void add_surface(Built& out) {
         row<&Surface::kind>(
             {.name = "kind",
              .help =
-                 "what is baked: a square patch, or the projected grid of the camera, or a mesh round the camera that is "
-                 "fine below it and goes to the horizon with faces that stay, or the projected grid "
-                 "on a sphere that touches z = 0 at the origin, or the limit surface of a cage. Pictures show the open sea to the horizon, "
-                 "of a planet with the camera's z as its height, unless beyond says otherwise; cages as they stand",
+                 "what is baked. patch: a square; projected-grid: what the camera sees, in cells of its "
+                 "pixels; near-far: a mesh round the camera that is fine below it and goes to the horizon "
+                 "with faces that stay; cage: the limit surface of a cage; planet: the projected grid on a "
+                 "sphere that touches z = 0 at the origin. Pictures show the open sea to the horizon, of a "
+                 "planet with the camera's z as its height, unless beyond says otherwise; cages as they "
+                 "stand",
              .key_parts = key_parts(KeyPart::Surface, KeyPart::Mesh)}),
         row<&Surface::size_m>(
             {.name = "size_m",
@@ -624,10 +638,9 @@ void add_surface(Built& out) {
              .key_parts = key_parts(KeyPart::Cage)}),
         row<&Surface::beyond>(
             {.name = "beyond",
-             .help =
-                 "in pictures, what lies round the patch or the cage: the open sea to the horizon, at z = 0, or "
-                 "nothing, so that the sky is behind it; by-kind is the sea for a patch and nothing for a "
-                 "cage. The other kinds reach the horizon themselves. Meshes and maps don't know it",
+             .help = "in pictures, what lies round the patch or the cage. by-kind: the sea for a patch and "
+                     "nothing for a cage; sea: the open sea to the horizon, at z = 0; nothing: the sky is "
+                     "behind it. The other kinds reach the horizon themselves. Meshes and maps don't know it",
              // What pictures draw is in their fingerprints (plugin/render/drawn_sea.h), where it makes a difference.
              .key_parts = key_parts(KeyPart::Choice)}));
 }
@@ -843,8 +856,10 @@ void add_light_and_water(Built& out) {
         out.tables, out.keys, {"water", "the water body", {}, {}},
         row<&Water::type>(
             {.name = "type",
-             .help = "what the water holds besides plankton: nothing, some silt, much of it; or one of "
-                     "Jerlov's types, of the open sea and of coasts, clear to murky",
+             .help =
+                 "what the water holds besides plankton. ocean: nothing; coastal: some silt; turbid: much "
+                 "of it; jerlov-I: the clearest of Jerlov's types of the open sea; jerlov-III: the murkiest "
+                 "of them; jerlov-1C: the clearest of his types of coasts; jerlov-9C: the murkiest of them",
              .key_parts = kWater}),
         row<&Water::chlorophyll_mg_m3>({.name = "chlorophyll_mg_m3",
                                         .help = "plankton: greens the water",
@@ -914,9 +929,8 @@ void add_effects_and_quality(Built& out) {
              .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::whitecap_law>(
             {.name = "whitecap_law",
-             .help =
-                 "how much foam a wind makes: monahan-1980, much in storms; monahan-1986, with sea_minus_air_c; "
-                 "callaghan-2008, which stays at 8 % beyond 23 m/s",
+             .help = "how much foam a wind makes. monahan-1980: much in storms; monahan-1986: goes with "
+                     "sea_minus_air_c as well; callaghan-2008: stays at 8 % beyond 23 m/s",
              .key_parts = key_parts(KeyPart::Foam)}),
         row<&Effects::sea_minus_air_c>(
             {.name = "sea_minus_air_c",
@@ -1012,9 +1026,8 @@ void add_effects_and_quality(Built& out) {
                               .key_parts = key_parts(KeyPart::Spray)}),
         row<&Effects::spray_law>(
             {.name = "spray_law",
-             .help =
-                 "how much spray a wind makes: andreas-1998, drops torn off crests, seen in a gale; monahan-1986, "
-                 "the bubbles' alone, too thin to be seen",
+             .help = "how much spray a wind makes. andreas-1998: drops torn off crests, seen in a gale; "
+                     "monahan-1986: the bubbles' alone, too thin to be seen",
              .key_parts = key_parts(KeyPart::Spray)}),
         row<&Effects::spray_gain>({.name = "spray_gain",
                                    .help = "how much spray there is; 1 is the law's",
@@ -1030,7 +1043,10 @@ void add_effects_and_quality(Built& out) {
     add_table<&Scene::quality>(
         out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
         row<&Quality::level>(
-            {.name = "level", .help = "how much time accuracy may take", .key_parts = kQuality}),
+            {.name = "level",
+             .help = "how much time accuracy may take. draft: for finding the view; preview: finer; "
+                     "final: for pictures that move; reference: what the others are compared with",
+             .key_parts = kQuality}),
         row<&Quality::max_error>(
             {.name = "max_error",
              .help =
@@ -1191,9 +1207,10 @@ void add_output(Built& out) {
     constexpr KeyPartSet kMesh = key_parts(KeyPart::Mesh), kChoice = key_parts(KeyPart::Choice);
     add_table<&Scene::output>(
         out.tables, out.keys, {"output", "what a bake writes", {}, {}},
-        row<&Output::mesh>({.name = "mesh",
-                            .help = "how the mesh is written: as binary crates, as text, or not",
-                            .key_parts = kMesh}),
+        row<&Output::mesh>(
+            {.name = "mesh",
+             .help = "how the mesh is written. usda: as text; usdc: as binary crates; none: not",
+             .key_parts = kMesh}),
         row<&Output::attributes>(
             {.name = "attributes", .help = "what the mesh carries per vertex", .key_parts = kMesh}),
         row<&Output::maps>(
@@ -1208,8 +1225,9 @@ void add_output(Built& out) {
                                      .help = "each cascade's own periodic tile as well",
                                      .key_parts = kChoice}),
         row<&Output::mesh_scheme>({.name = "mesh_scheme",
-                                   .help = "none: every vertex lies on the sea; catmullClark, of a patch: a "
-                                           "cage whose limit surface is the sea, without normals",
+                                   .help =
+                                       "what the mesh is. none: every vertex lies on the sea; catmullClark: "
+                                       "of a patch, a cage whose limit surface is the sea, without normals",
                                    .key_parts = kMesh}),
         row<&Output::volumes>(
             {.name = "volumes",

@@ -49,6 +49,7 @@ def ends(key):
 SAME = {"JONSWAP", "TMA", "FFT", "USDA", "USDC", "Elfouhaily", "Phillips", "Hasselmann", "Omega 2", "Monahan 1980", "Monahan 1986", "Andreas 1998",
         "Callaghan 2008", "Planet", "Chlorophyll", "Voxel", "Pelagic", "Presets", "Level Set", "Jerlov I", "Jerlov IA", "Jerlov IB", "Jerlov II", "Jerlov III", "Jerlov 1C",
         "Jerlov 3C", "Jerlov 5C", "Jerlov 7C", "Jerlov 9C"}
+BLENDERS = {"", "Check and warn on overwriting existing files", "Filepath used for exporting the file", "Filepath used for importing the file"}
 with checking("a drop-down can choose each word, and be keyed with each"):
     plain = bpy.data.objects.new("Plain", None)
     scene.collection.objects.link(plain)
@@ -92,20 +93,44 @@ with checking("each label, operator and sentence has German words, with the same
     said |= {preset["label"] for preset in pelagic.presets() if preset["group"] == "beaufort"}
     missing = {text for text in said if translations.base(text)[0] not in {*translations.GERMAN, *SAME} and text not in translations.GERMAN}
     assert len(said) > 150 and not missing, missing
+    tips = {properties._sentence(preset["help"]) for preset in pelagic.presets()}
+    for each in (*bpy.types.PropertyGroup.__subclasses__(), *(getattr(bpy.ops.pelagic, name) for name in dir(bpy.ops.pelagic))):
+        if hasattr(each, "get_rna_type") or each.__name__.startswith("PELAGIC_"):
+            rna = each.get_rna_type() if hasattr(each, "get_rna_type") else each.bl_rna
+            shown = [one for one in rna.properties if one.identifier not in ("name", "rna_type") and not one.identifier.startswith("bl_")]
+            tips |= {one.description for one in shown} | {item.description for one in shown if one.type == "ENUM" for item in one.enum_items}
+            tips |= {rna.description} if hasattr(each, "get_rna_type") else set()
+    whole = translations._whole(translations.GERMAN)
+    assert len(tips) > 250 and not tips - {*whole, *BLENDERS}, tips - {*whole, *BLENDERS}
     for text, german in translations.GERMAN.items():
         assert re.findall("{.*?}", text) == re.findall("{.*?}", german), text
     view = bpy.context.preferences.view
     before, view.language = view.language, next(each for each in ("de_DE", "de") if each in bpy.app.translations.locales)
     view.use_translate_interface = True
-    spoken = {"Significant height": "Signifikante Wellenhöhe", "Wind direction (°)": "Windrichtung (°)", "Fetch": "Streichlänge"}
+    spoken = {"Significant height": "Signifikante Wellenhöhe", "Wind direction (°)": "Windrichtung (°)", "Wind fetch": "Streichlänge"}
     for text, german in spoken.items():
         assert translations.say(text) == german, (text, translations.say(text))
     assert bpy.app.translations.pgettext_iface("Use Mesh as Ocean", "Operator") == "Netz als Ozean"
+    assert bpy.app.translations.pgettext_iface("Wind fetch") == "Streichlänge"  # Blender has a fetch of something else
+    for text in tips - BLENDERS:
+        assert bpy.app.translations.pgettext_tip(text) != text, text
     assert translations.say("Viewport: {} of {} vertices", 1, 2) == "Ansicht: 1 von 2 Punkten"
     translations.unregister()
     assert [translations.say(text) for text in spoken] == [*spoken]
     translations.register()
     view.language = before
+
+with checking("a tooltip says what a setting is, from where to where it goes and what each word of it means, without a shot file's words"):
+    fields = [field for setting in properties.FIELDS for field in (setting, *properties.entry_fields(setting))]
+    tips = {field.path: properties.tooltip(field.key) for field in fields}
+    assert not [tip for tip in tips.values() if re.search(r'Accepted|_(?:m|s|deg|mps|px|file)\b|\b[a-z]+\.[a-z]+_|= "|shot file', tip)], tips
+    assert tips["sea.wind_speed_mps"].endswith("0 to 80 m/s") and tips["shot.seed"].endswith(". 0 or more")
+    assert tips["waves.lean_deg"].endswith("0 to 60°") and "Significant height" in properties._parts_of(properties.BY_PATH["sea.growth"].key)[1]["height-and-peak"]
+    for field in fields:
+        if field.key["type"] == "word":
+            unsaid = {word for word in field.key["choices"] if word not in properties._parts_of(field.key)[1]}
+            assert all(word.startswith("jerlov-") for word in unsaid), (field.path, unsaid)
+            assert not any(f"{word}:" in tips[field.path] for word in field.key["choices"]), tips[field.path]
 
 with checking("panels show what matters to the surface, and a unit once, beside its number"):
     obj.pelagic.uv_map = False

@@ -329,6 +329,9 @@ def migrate(obj):
         if word is not None:
             field.write(group, word)
         _migrate_animation(obj, field, path)
+    for field in FIELDS if obj.pelagic.version < 7 else ():  # names, as add_row() gives
+        for number, row in enumerate(getattr(getattr(obj.pelagic, field.table), field.name) if field.key["type"] == "entries" else (), 1):
+            row.name = str(number)
     obj.pelagic.version = VERSION
 
 

@@ -102,7 +102,8 @@ def _say(obj, words):
     _problems[obj.name_full] = words
     if bpy.app.background and words not in ("", play.simulation_of(obj).problem):  # nobody sees the panel
         print(f"Error: {obj.name_full} hasn't its look: {words}", flush=True)
-    play.redraw()
+    if not play.is_rendering():
+        play.redraw()
 
 
 @persistent

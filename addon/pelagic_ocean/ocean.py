@@ -309,6 +309,8 @@ def wants_velocity(obj, bpy_scene):
 
 def migrate(obj):
     """Brings settings of an older file to today's. A file without a number is of version 1."""
+    if obj.pelagic.version >= VERSION:
+        return
     if obj.pelagic.version < 2:  # each mesh had these, and somebody may use them
         for name in ("uv_map", "velocity"):
             if not obj.pelagic.is_property_set(name):
@@ -327,8 +329,10 @@ def migrate(obj):
         if word is not None:
             field.write(group, word)
         _migrate_animation(obj, field, path)
-    if obj.pelagic.version < VERSION:
-        obj.pelagic.version = VERSION
+    for field in FIELDS if obj.pelagic.version < 7 else ():  # names, as add_row() gives
+        for number, row in enumerate(getattr(getattr(obj.pelagic, field.table), field.name) if field.key["type"] == "entries" else (), 1):
+            row.name = str(number)
+    obj.pelagic.version = VERSION
 
 
 def _drop_downs(obj):

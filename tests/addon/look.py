@@ -94,10 +94,13 @@ with checking("the world is the core's sky, at its place, and the lamp its sun")
     across = np.array(sky.sun_irradiance) / sky.sun_direction[2]
     assert np.allclose(lamp.data.energy * np.array(lamp.data.color), across, rtol=2e-3)
 
+# A mirror alone shows how fine the sky's picture is, which each light makes anew and each render samples.
+WHOLE_SKY, light.SKY_WIDTH = light.SKY_WIDTH, 256
+
 with checking("a camera sees the sky's horizon down to the sea, and nothing else has other light from below"):
     sky = pelagic.Sky(flat_sea())
     bpy.data.objects["Sea"].hide_render = True
-    towards = np.array([[1, 0, 0.5 * math.pi / light.SKY_WIDTH]], np.float32)
+    towards = np.array([[1, 0, math.pi / light.SKY_WIDTH]], np.float32)
     for off in (0.05, 20.0):  # degrees below the horizon
         picture, _ = seen(90.0 - off, 0.0, 4)
         assert np.allclose(picture, sky.radiance(towards)[0], rtol=0.03), (off, picture, sky.radiance(towards)[0])
@@ -107,9 +110,6 @@ with checking("a camera sees the sky's horizon down to the sea, and nothing else
     nodes.links.remove(nodes.nodes[light.PICTURE].inputs["Vector"].links[0])
     lit.append(seen(180.0, 0.0, 4)[0])
     assert lit[0].min() > 0.0 and np.array_equal(*lit), lit
-
-# A mirror alone shows how fine the sky's picture is, which each light makes anew and each render samples.
-WHOLE_SKY, light.SKY_WIDTH = light.SKY_WIDTH, 256
 
 with checking("rough water and foam are the core's, facing the sun and away from it"):
     for variance, coverage in (((0.03, 0.015, 0.005), 0.0), ((0.02, 0.02, 0.0), 0.5)):

@@ -249,8 +249,9 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add("exposure " + number_text(source.exposure_stops))
         .add(source.colours.shown_by + (source.colours.acescg ? " acescg" : ""))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
-             " layers " + layers_text(source.scene, options_.layers) + (lighting.spray ? " spray" : "") +
-             objects_text(source.scene) + window_text(source.scene.camera.resolution, options_));
+             " layers " + layers_text(source.scene, options_.layers) +
+             (lighting.spray ? " smooth spray" : "") + objects_text(source.scene) +
+             window_text(source.scene.camera.resolution, options_));
     if (plan.from->weather) {
         hash.add(weather_plan_text(plan, true));
         weather_ = plan;

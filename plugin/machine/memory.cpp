@@ -117,7 +117,7 @@ MemoryLimit memory_limit(const Sources& sources) {
 }
 
 MemoryLimit memory_limit_or(std::size_t max_memory_bytes) {
-    return max_memory_bytes > 0 ? MemoryLimit{max_memory_bytes, "the limit that was asked for is"}
+    return max_memory_bytes > 0 ? MemoryLimit{max_memory_bytes, "the limit that was asked for is", true}
                                 : memory_limit();
 }
 

@@ -191,8 +191,16 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, doub
     };
     const auto reach_m = [&](double height_m, double fov_deg, double footprint_m, double faces) {
         const double wide_m = footprint_m / pixel_of(fov_deg);
-        const double slant_m =
-            std::max(std::pow(wide_m, 2.0 / 3.0) * std::cbrt(height_m), wide_m * std::sqrt(faces));
+        // Seen steeply no wave hides another, and each pixel counts with the footprint that blurs as it does: kPixel of
+        // core/surface/projected_grid.cpp. What the faces' fit says of level views has that in it.
+        constexpr double kPixel = 0.6, kSteep = 4.0;
+        const auto slant_of = [&](double pixel_wide_m) {
+            return std::pow(pixel_wide_m, 2.0 / 3.0) * std::cbrt(height_m);
+        };
+        const double steep_m = kind.is_of_frame && kind.are_pictures
+                                   ? std::min(slant_of(wide_m / kPixel), kSteep * height_m)
+                                   : 0.0;
+        const double slant_m = std::max({slant_of(wide_m), wide_m * std::sqrt(faces), steep_m});
         return std::sqrt(std::max(slant_m * slant_m - height_m * height_m, 0.0));
     };
     double lowest_m = std::max(camera.position_m.z, 1.0), highest_m = lowest_m,

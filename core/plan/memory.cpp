@@ -77,9 +77,11 @@ void require_memory(const MemoryNeed& need, const MemoryLimit& limit, const std:
                     const char* how) {
     if (need.bytes() <= limit.bytes) return;
     const MemoryPart most = need.parts().front();
+    const std::string remedy = most.remedy.empty() ? std::string() : ": " + most.remedy;
     throw NotEnoughMemory(run + " needs " + how + " " + bytes_text(need.bytes()) + " of memory, and " +
-                          limit.whose + " " + bytes_text(limit.bytes) + "; most of it, " +
-                          bytes_text(most.bytes) + ", is for " + most.what + ": " + most.remedy);
+                              limit.whose + " " + bytes_text(limit.bytes) + "; most of it, " +
+                              bytes_text(most.bytes) + ", is for " + most.what + remedy,
+                          limit.is_asked);
 }
 
 }  // namespace pelagic

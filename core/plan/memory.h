@@ -42,12 +42,19 @@ std::string memory_text(const MemoryNeed& need);
 struct MemoryLimit {
     std::size_t bytes = 0;
     std::string whose;
+    bool is_asked = false;  // by the user: elsewhere or later it is the same
 };
 
 // A run that needs more than it may have. what() says how much is needed and there, for what, and what to change.
 class NotEnoughMemory : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit NotEnoughMemory(const std::string& text, bool is_asked = false)
+        : std::runtime_error(text), is_asked_(is_asked) {}
+    // Of the limit: MemoryLimit::is_asked.
+    bool is_asked() const { return is_asked_; }
+
+  private:
+    bool is_asked_;
 };
 
 // Throws NotEnoughMemory. `run`: "this bake". `how`: "at least" where a part of the need isn't known yet.

@@ -704,7 +704,9 @@ std::size_t Plan::foam_history_bytes() const {
         const double count = tiles[static_cast<std::size_t>(level)];
         if (!(count > 0.0)) continue;
         const Plan own = plan_of_foam_level(*this, foam->cell_of(level));
-        bytes += static_cast<std::size_t>(std::ceil(count)) * foam->tile_bytes() + own.sea_bytes() +
+        // All levels share the sea's coast.
+        const std::size_t coast = own.trains ? own.trains->coast_bytes(own.knobs.double_precision) : 0;
+        bytes += static_cast<std::size_t>(std::ceil(count)) * foam->tile_bytes() + own.sea_bytes() - coast +
                  own.frame_bytes();
     }
     return bytes;

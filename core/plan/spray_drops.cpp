@@ -58,7 +58,9 @@ std::size_t spray_drops_bytes(const Plan& plan, const SprayDropsPlan& drops, dou
     const double cells = area_m2 / (drops.cell_m * drops.cell_m);
     // Of a cell: its place, and what is asked there. Of a parcel: as it starts, and as it is shown.
     constexpr double kCellBytes = 8.0 * sizeof(double), kParcelBytes = 26.0 * sizeof(double);
-    return own.sea_bytes() + own.frame_bytes() +
+    const std::size_t coast =  // that is the sea's
+        own.trains ? own.trains->coast_bytes(own.knobs.double_precision) : 0;
+    return own.sea_bytes() - coast + own.frame_bytes() +
            static_cast<std::size_t>(cells * (kCellBytes + kParcelBytes * drops.parcels_per_s *
                                                               drops.interval_s * drops.intervals()));
 }

@@ -294,7 +294,10 @@ void add_sea(Built& out) {
              .is_silent_off = true}),
         entries<&SeaState::swell>(
             {.name = "swell",
-             .help = "waves of far storms, each a narrow spectrum of its own",
+             .help =
+                 "waves of far storms, each a narrow spectrum of its own. Its groups come back, half as strong, after about the side of the "
+                 "largest tile of waves over their speed (g times the period / 4π in deep water): 446 s of a swell of 14 s by default; larger "
+                 "waves.cascades make that longer",
              .key_parts = kWaves,
              .most_entries = limits::kSwells,
              .entry_name = "Swell"},
@@ -798,13 +801,16 @@ void add_light_and_water(Built& out) {
     constexpr KeyPartSet kLight = key_parts(KeyPart::Light), kWater = key_parts(KeyPart::Water);
     add_table<&Scene::light>(
         out.tables, out.keys, {"light", "sun and sky", {}, {}},
-        row<&Light::sun_elevation_deg>({.name = "sun_elevation_deg",
-                                        .help = "above the horizon",
-                                        .unit = "degrees",
-                                        .range = limits::kSunElevation_deg,
-                                        .soft = SoftRange{-10.0, 90.0},
-                                        .key_parts = kLight,
-                                        .may_have_keys = true}),
+        row<&Light::sun_elevation_deg>(
+            {.name = "sun_elevation_deg",
+             .help =
+                 "of the sun's middle above the horizon: the true (geometric) one, which is also where it's "
+                 "seen, since the air here refracts nothing; real air shows a setting sun half a degree higher",
+             .unit = "degrees",
+             .range = limits::kSunElevation_deg,
+             .soft = SoftRange{-10.0, 90.0},
+             .key_parts = kLight,
+             .may_have_keys = true}),
         row<&Light::sun_azimuth_deg>({.name = "sun_azimuth_deg",
                                       .help = "towards the sun, counter-clockwise from +x (east)",
                                       .unit = "degrees",
@@ -1212,7 +1218,10 @@ void add_output(Built& out) {
              .help = "how the mesh is written. usda: as text; usdc: as binary crates; none: not",
              .key_parts = kMesh}),
         row<&Output::attributes>(
-            {.name = "attributes", .help = "what the mesh carries per vertex", .key_parts = kMesh}),
+            {.name = "attributes",
+             .help =
+                 "what the mesh carries per vertex. Velocities are the waves' orbital ones, by linear theory: no Stokes drift is in them",
+             .key_parts = kMesh}),
         row<&Output::maps>(
             {.name = "maps", .help = "images over the patch, a file a frame", .key_parts = kChoice}),
         row<&Output::map_resolution>({.name = "map_resolution",

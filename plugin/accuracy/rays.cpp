@@ -58,7 +58,7 @@ class TracedPicture {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays_.size(), kGrain), [&](const auto& range) {
             RayTracer tracer({.tiles = &frame_.tiles(),
                               .everywhere = frame_.everywhere(),
-                              .finest_footprint_m = frame_.shot().finest_ray_m,
+                              .finest_footprint_m = frame_.shot().finest_cell_m,
                               .origin_m = origin_m_,
                               .tolerance = tolerance});
             for (std::size_t i = range.begin(); i < range.end(); ++i) tracer.trace(rays_[i], false, hits[i]);

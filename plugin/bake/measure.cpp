@@ -9,6 +9,7 @@
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/sequence.h"
+#include "plugin/machine/memory.h"
 
 namespace pelagic {
 namespace {
@@ -118,7 +119,9 @@ std::size_t measure_bytes(const Scene& scene, int threads) {
     std::size_t beside = 0;
     for (const MeasureItem& item : measure_items(scene))
         beside = std::max(beside, bake_memory(plan_bake(item.without), 1, threads).bytes());
-    return bake_memory(plan_bake(scene), 1, threads).bytes() + beside;
+    MemoryNeed program;  // which is there once
+    machine::add_program(program);
+    return bake_memory(plan_bake(scene), 1, threads).bytes() + beside - (beside > 0 ? program.bytes() : 0);
 }
 
 Measured measure(const Scene& scene, const MeasureOptions& options) {

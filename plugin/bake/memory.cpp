@@ -10,6 +10,7 @@
 #include "plugin/bake/bake.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/format/vdb/vdb.h"
+#include "plugin/machine/memory.h"
 
 namespace pelagic {
 namespace {
@@ -28,6 +29,15 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
     const std::size_t in_flight = std::min<std::size_t>(frames, kFramesInFlight);
     // Files that belong to no frame are written one after another, before there are values.
     MemoryNeed before, during;
+    // That of the stage. One whose light has keys has its own in each frame, which is an output like others.
+    const bool has_sky = plan.from->scene.output.mesh != MeshFormat::None &&
+                         std::ranges::none_of(plan.outputs, [](const PlannedOutput& output) {
+                             return output.row->kind == OutputKind::Sky;
+                         });
+    for (MemoryNeed* of : {&before, &during}) {
+        machine::add_program(*of);
+        if (has_sky) machine::add_sky(*of);
+    }
     add_sea(before, plan, threads);
     add_sea(during, plan, threads);
     std::size_t fixed = 0;

@@ -59,6 +59,8 @@ class Choices {
     virtual double error(std::size_t row, std::size_t step) = 0;
     virtual double ms(std::size_t row, std::size_t step) const = 0;
     virtual void apply(std::size_t row, std::size_t step, Settled& to) const = 0;
+    // What takes less than any of them but isn't chosen from, in words; empty: nothing does.
+    virtual std::string cheaper() const { return {}; }
 
     std::size_t rows = 1, steps = 1;
     bool may_be_cheaper_finer = false;
@@ -223,7 +225,7 @@ RenderOptions fixed_options(const Scene& scene, const FixedSettings& fixed) {
 class Pictures final : public Choices {
   public:
     Pictures(const Scene& scene, const FixedSettings& fixed, const MeasuredErrors& errors, const Rates& rates)
-        : errors_(errors), rates_(rates), frames_(frames_to_measure(scene)) {
+        : scene_(scene), fixed_(fixed), errors_(errors), rates_(rates), frames_(frames_to_measure(scene)) {
         for (const SkyWords& sky : kSkies)
             if (fixed.sky_quality.value_or(sky.quality) == sky.quality) skies_.push_back(sky);
         RenderOptions options = fixed_options(scene, fixed);
@@ -256,7 +258,19 @@ class Pictures final : public Choices {
         to.settings = "quality.level = \"" + std::string(word_of(to.scene.quality.level)) +
                       "\", surface.cell_px = " + number_text(to.scene.surface.cell_px) + ", " + samples +
                       " × " + samples + " samples a pixel and " + skies_[row].words + " of the sky";
-        to.what = "pictures have";
+        to.what = "final pictures have";
+    }
+    std::string cheaper() const override {
+        Scene draft = scene_;
+        draft.quality.level = QualityLevel::Draft;
+        const RenderOptions options = fixed_options(draft, fixed_);
+        check_render(draft, options);
+        const double draft_ms =
+            cost_ms(picture_work(picture_plan(of_samples(draft, options.samples), frames_, options), frames_,
+                                 options),
+                    rates_);
+        return "a draft (quality.level = \"draft\" and no budget) takes about " + rough_text(draft_ms) +
+               " ms";
     }
 
   private:
@@ -266,6 +280,8 @@ class Pictures final : public Choices {
         return options;
     }
 
+    Scene scene_;
+    FixedSettings fixed_;
     MeasuredErrors errors_;
     Rates rates_;
     std::vector<int> frames_;
@@ -364,6 +380,8 @@ Settled settled_by(const Scene& scene, Purpose purpose, const SettleOptions& wit
         (settled.measuring_bytes > 0
              ? "; measured on a small picture, which held about " + bytes_text(settled.measuring_bytes)
              : std::string());
+    if (!settled.holds && budget.frame_ms)
+        if (const std::string cheaper = from->cheaper(); !cheaper.empty()) settled.text += "; " + cheaper;
     if (!folder) return settled;
     const Said said = said_in(*folder, scene.shot, purpose, settled.budget);
     settled.before = said.record;

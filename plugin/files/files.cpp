@@ -9,8 +9,10 @@
 #include "plugin/files/files.h"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -81,9 +83,29 @@ Advice advice(int error) {
             return {"too many files are open", "close some programs or raise the limit (ulimit -n)"};
         case ESTALE:
             return {"the network folder is gone", "mount it again or choose another folder"};
+        case ENOTSUP:
+            return {"the system keeps no files there", "choose another folder"};
         default:
             return {std::generic_category().message(error), "fix that or choose another folder"};
     }
+}
+
+fs::path folder_of(const fs::path& target) {
+    return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+// The folder, or what it would be made in.
+fs::path nearest_folder(fs::path folder) {
+    std::error_code ignored;
+    while (!folder.empty() && !fs::exists(folder, ignored) && folder != folder.parent_path())
+        folder = folder.parent_path();
+    return folder.empty() ? fs::path(".") : folder;
+}
+
+// /proc holds no files. Asked for one it answers that something is missing.
+bool holds_no_files(const fs::path& folder) {
+    struct statfs there {};
+    return statfs(folder.c_str(), &there) == 0 && there.f_type == PROC_SUPER_MAGIC;
 }
 
 [[noreturn]] void fail_to_write(const fs::path& target, int error) {
@@ -98,10 +120,6 @@ Advice advice(int error) {
     throw FileError(
         "cannot use the folder '" + line_text(folder.string()) + "': " + a.reason + ": " + a.remedy, folder,
         std::error_code(error, std::generic_category()));
-}
-
-fs::path folder_of(const fs::path& target) {
-    return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
 // The end of a hidden file's name: the machine's name, with '/' replaced.
@@ -200,7 +218,8 @@ class Temporary {
             const int number = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
             if (number < 0) {
                 if (errno == EEXIST || errno == EINTR) continue;
-                fail_to_write(target_, errno);
+                const int error = errno;
+                fail_to_write(target_, holds_no_files(folder_of(target_)) ? ENOTSUP : error);
             }
             // A process that deletes leftovers may have locked the file first, and may have deleted it.
             struct stat status {};
@@ -352,18 +371,16 @@ void ensure_folder(const std::filesystem::path& asked) {
     const fs::path folder = asked.empty() ? fs::path(".") : asked;
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) fail_to_make_folder(folder, error.value());
+    if (error) fail_to_make_folder(folder, holds_no_files(nearest_folder(folder)) ? ENOTSUP : error.value());
     // The system's answer, not the mode bits': it includes root, access lists and read-only file systems.
     if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
 }
 
 void check_folder(const std::filesystem::path& folder) {
     std::error_code ignored;
-    fs::path there = folder;
-    while (!there.empty() && !fs::exists(there, ignored) && there != there.parent_path())
-        there = there.parent_path();
-    if (there.empty()) there = ".";
+    const fs::path there = nearest_folder(folder);
     if (!fs::is_directory(there, ignored)) fail_to_make_folder(folder, ENOTDIR);
+    if (holds_no_files(there)) fail_to_make_folder(folder, ENOTSUP);
     if (faccessat(AT_FDCWD, there.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
 }
 

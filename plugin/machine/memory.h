@@ -24,6 +24,11 @@ MemoryLimit memory_limit(const Sources& sources = {});
 // The limit that a user gives, or memory_limit() where none is given (0).
 MemoryLimit memory_limit_or(std::size_t max_memory_bytes);
 
+// Adds what a run takes whatever it is of: the program and its libraries, the shot as it was read, tables of its own.
+void add_program(MemoryNeed& need);
+// What making a sky takes and what it holds, by daylight or of a picture.
+void add_sky(MemoryNeed& need);
+
 // For a program's main(), before it has threads: those that it and its libraries make get stacks of 2 MiB, whatever the
 // limit of stacks (ulimit -s) is, and under a limit of address space all share one heap: each further one of glibc's takes
 // 64 MiB of it.

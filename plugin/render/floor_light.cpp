@@ -15,6 +15,8 @@ namespace {
 
 // The finer map's: the net of light at that depth has lines some three texels wide.
 constexpr double kTexelsADepth = 128.0;
+// Where pixels are as wide as a net's mesh, it is even.
+constexpr double kMeshesADepth = 8.0;
 constexpr int kShaftSide = 512;       // texels of the shafts' map
 constexpr double kMostMargin = 0.25;  // over a map's side
 
@@ -70,20 +72,23 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
     wanted.finest_cell_m = first(std::max(needs.finest_cell_m, needs.finest_pixel_m));
 }
 
-std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side) {
+std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m, double finest_m,
+                              int side) {
     if (!water.has_body || scene.water.caustics == 0.0) return 0;
-    const auto bytes = [](int of_side, std::size_t maps) {
-        const auto texels = static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side);
-        return texels * maps * sizeof(float) + caustics_bytes(of_side, kMostMargin);
+    const auto texels = [](int of_side, std::size_t maps) {
+        return static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side) * maps * sizeof(float);
     };
     double lowest_m = scene.camera.position_m.z;
     for (const auto& key : scene.camera.keys) lowest_m = std::min(lowest_m, key.position_m.z);
-    constexpr double kAboveWaves_m = 30.0;
+    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file,
+               shows = has_map || (shows_floor(water, static_cast<double>(water.floor_m)) &&
+                                   kMeshesADepth * finest_m <= static_cast<double>(water.floor_m)),
+               has_shafts = lowest_m < waves_m;
     // A level of half the side after the other: a third more, and once more while they grow.
-    const std::size_t shafts = lowest_m < kAboveWaves_m ? bytes(kShaftSide, 3) : 0;
-    const bool has_map = scene.sea.depth_file != SeaState{}.depth_file;
-    if (!has_map && !shows_floor(water, static_cast<double>(water.floor_m))) return shafts;
-    return shafts + bytes(side, 2);
+    const std::size_t held = (shows ? texels(side, 2) : 0) + (has_shafts ? texels(kShaftSide, 3) : 0);
+    // One is made after the other.
+    return held + std::max(shows ? caustics_bytes(side, kMostMargin) : 0,
+                           has_shafts ? caustics_bytes(kShaftSide, kMostMargin) : 0);
 }
 
 bool shows_floor(const WaterBody& water, double depth_m) {
@@ -128,8 +133,6 @@ void light_floor(Floor& floor, const Frame<T>& frame, const FloorLightWanted& wa
     const View& view = wanted.view;
     const int side = wanted.side;
     const double gain = wanted.gain * caustics_share(sun_of(wanted));
-    // Where pixels are as wide as a net's mesh, it is even.
-    constexpr double kMeshesADepth = 8.0;
     const double depth_m =
         floor.has_depths() ? depth_before(view, floor) : static_cast<double>(wanted.water.floor_m);
     floor.set_light({});

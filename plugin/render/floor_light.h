@@ -26,8 +26,10 @@ struct FloorLightWanted {
     bool operator==(const FloorLightWanted&) const = default;
 };
 
-// What making them holds, at most, and they themselves [bytes].
-std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, int side = FloorLightWanted{}.side);
+// What making them holds, at most, and they themselves [bytes]. waves_m: how high waves are, by which a camera may be in the water;
+// finest_m: the finest footprint of pixels, beside which a level floor's pattern may be too fine to show.
+std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m,
+                              double finest_m = 0.0, int side = FloorLightWanted{}.side);
 
 // For a view, whichever others its frame's plan is for: with both footprints.
 void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaView& seen);

@@ -1,6 +1,8 @@
 // What the pictures of a shot need, before any of them is rendered.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -8,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/constants.h"
 #include "core/base/precision.h"
 #include "core/plan/effects.h"
 #include "core/plan/hulls.h"
@@ -18,6 +21,7 @@
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/drawn_sea.h"
 #include "plugin/render/floor_light.h"
@@ -186,7 +190,8 @@ constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(floa
                                     sizeof(glm::dvec4) +
                                     2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
 
-// [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
+// [bytes] of any sample of a batch, and of one that shows the sea: Batch<T>, with its answers, in double beside those in single.
+constexpr std::size_t kAnySampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + sizeof(SeaRadiance);
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) + 2 * sizeof(SeaRadiance) +
                                      2 * sizeof(std::size_t) + sizeof(double) + sizeof(MeniscusSight) +
@@ -196,7 +201,9 @@ constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) 
 
 // Of the frame in which the floor shows best: at one of the keys, since the way to it and how clear the water is go straight from key to key, or
 // nearly.
-std::size_t most_floor_light_bytes(const Scene& scene, const DirectionalSpectrum& spectrum) {
+std::size_t most_floor_light_bytes(const Scene& scene, const Plan& plan) {
+    const PreparedScene& prepared = *plan.from;
+    const double finest_m = plan.queries.front().query.pixel_m.front();
     std::set<int> frames{scene.shot.first_frame};
     for (const KeyedNumber& number : scene.keyed)
         for (const NumberKeys::Key& key : number.keys.keys)
@@ -204,19 +211,62 @@ std::size_t most_floor_light_bytes(const Scene& scene, const DirectionalSpectrum
     std::size_t most = 0;
     for (const int frame : frames) {
         const Scene moment = scene_at(scene, frame);
-        most = std::max(most, floor_light_bytes(moment, make_water(moment, spectrum)));
+        most = std::max(most, floor_light_bytes(moment, make_water(moment, prepared.spectrum),
+                                                prepared.extent.height_m, finest_m));
     }
     return most;
+}
+
+// A camera as it is at a frame, but for its roll.
+void stand_still(Camera& camera, int frame) {
+    const View view = view_at(camera, frame);
+    camera.keys.clear();
+    camera.position_m = view.position_m;
+    camera.look_at_m = view.position_m + view.forward;
+    camera.fov_deg = std::atan(view.tan_half_width) * (360.0 / kPi);
+    camera.focal_length_mm.reset();
+}
+
+// The largest share of the samples of a batch of so many rows that may show the sea: those that look below the horizon, or so little
+// above it that waves may stand before them.
+double most_of_sea(const Scene& sampled, double waves_m, std::span<const int> frames, int rows) {
+    constexpr int kColumns = 16, kRows = 64;
+    constexpr double kRise = 0.03;
+    if (sampled.surface.kind == SurfaceKind::Cage) return 1.0;
+    const int at_once = std::clamp(rows * kRows / sampled.camera.resolution.y, 1, kRows);
+    int most = 0;
+    for (const int frame : frames) {
+        const View view = view_at(sampled.camera, frame);
+        if (view.position_m.z < 2.0 * waves_m) return 1.0;
+        std::array<int, kRows> of_row{};
+        for (int y = 0; y < kRows; ++y)
+            for (int x = 0; x < kColumns; ++x)
+                if (view.direction((glm::dvec2(x, y) + 0.5) / glm::dvec2(kColumns, kRows) *
+                                   glm::dvec2(view.resolution))
+                        .z < kRise)
+                    ++of_row[y];
+        for (int first = 0; first + at_once <= kRows; ++first)
+            most =
+                std::max(most, std::accumulate(of_row.begin() + first, of_row.begin() + first + at_once, 0));
+    }
+    return static_cast<double>(most) / (at_once * kColumns);
 }
 
 }  // namespace
 
 MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
                          std::optional<int> in_flight, int threads) {
-    const Scene sampled = of_samples(scene, options.samples);
+    Scene sampled = of_samples(scene, options.samples);
+    // A frame alone is no run, whatever the shot has beside it.
+    if (frames.size() == 1) {
+        sampled.shot.first_frame = sampled.shot.last_frame = frames.front();
+        stand_still(sampled.camera, frames.front());
+    }
     const Plan plan = picture_plan(sampled, frames, options);
     const PixelWindow data = data_window(scene.camera.resolution, options);
     MemoryNeed need;
+    machine::add_program(need);
+    machine::add_sky(need);
     add_sea(need, plan, threads);
     with_precision(plan.knobs.double_precision, [&]<class T>(T) {
         const std::size_t points = plan.queries[0].query.points;
@@ -224,21 +274,28 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                  points * (kPointBytes<T> + (needs_motion(options.layers) ? 3 * sizeof(T) : 0)),
                  "raise surface.cell_px, or ask for a smaller picture (--size)");
         std::size_t at_hand = 0;
+        int rows_at_hand = 0;
         for (const PicturePart& part : picture_parts(scene.camera.resolution, options))
             for (const PixelWindow& window : part.windows) {
                 const glm::ivec2 samples = window.size() * options.samples;
                 const int rows = std::min(rows_of_batch(samples.x, options.samples), samples.y);
                 at_hand =
                     std::max(at_hand, static_cast<std::size_t>(rows) * static_cast<std::size_t>(samples.x));
+                rows_at_hand = std::max(rows_at_hand, rows);
             }
-        need.add("the pixels at hand", at_hand * kSampleBytes<T>,
+        const bool is_whole = !options.region && options.overscan_px == glm::ivec2(0);
+        const double of_sea =
+            is_whole ? most_of_sea(sampled, plan.from->extent.height_m, frames, rows_at_hand) : 1.0;
+        need.add("the pixels at hand",
+                 at_hand * kAnySampleBytes + static_cast<std::size_t>(of_sea * static_cast<double>(at_hand)) *
+                                                 (kSampleBytes<T> - kAnySampleBytes),
                  "ask for a smaller picture (--size) or fewer --samples");
         if (sampled.surface.kind == SurfaceKind::Cage)
             need.add("the cage's surface",
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
-    if (const std::size_t floor = most_floor_light_bytes(scene, plan.from->spectrum); floor > 0)
+    if (const std::size_t floor = most_floor_light_bytes(scene, plan); floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/plan/memory.h"
 #include "core/plan/products.h"
+#include "core/scene/text.h"
 #include "core/surface/rest_surface.h"
 #include "plugin/bake/bake.h"
 #include "plugin/render/batch.h"
@@ -59,6 +61,11 @@ nlohmann::ordered_json json_of(const FrameAccount& account) {
     return {{"seconds_a_frame", account.seconds},
             {"bytes_a_frame", account.bytes},
             {"memory_bytes", account.memory_bytes}};
+}
+
+std::string text_of(const FrameAccount& account) {
+    return "takes about " + rough_text(account.seconds) + " s of computing and " + bytes_text(account.bytes) +
+           " in its files, before they are packed";
 }
 
 }  // namespace pelagic::cli

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
@@ -26,5 +27,7 @@ FrameAccount picture_account(const Scene& scene, const RenderOptions& options, i
                              const Rates& rates);
 
 nlohmann::ordered_json json_of(const FrameAccount& account);
+// "takes about 0.12 s of computing and 3.4 MiB in its files, before they are packed".
+std::string text_of(const FrameAccount& account);
 
 }  // namespace pelagic::cli

@@ -127,7 +127,11 @@ int run(const AccuracyArguments& arguments) {
         return line_text(folder.string()) + " has the " + std::to_string(done) +
                " rows that were measured, and earlier ones";
     };
-    return guarded_run({.shot = {}, .threads = arguments.threads, .stopped = stopped}, [&](Session& session) {
+    const Guard guard{.shot = {},
+                      .threads = arguments.threads,
+                      .stopping = "stopping: the row at hand is given up",
+                      .stopped = stopped};
+    return guarded_run(guard, [&](Session& session) {
         session.stop->files_begin();
         SweepWatch watch{.progress =
                              [&](const std::string& row, const std::string& setting) {

@@ -60,8 +60,12 @@ void print_done(const RunReport& report, const std::string& out) {
 // The system gave less than the bake was allowed: what it holds, so that people see what is large.
 std::string out_of_memory(const Scene& scene, int threads) {
     const MemoryNeed need = bake_memory(plan_bake(scene), kFramesInFlight, threads);
-    return "out of memory; this bake holds " + memory_text(need) + "; to need less, " +
-           need.parts().front().remedy + "; files already written are whole";
+    const std::vector<MemoryPart> parts = need.parts();
+    const auto most =
+        std::ranges::find_if(parts, [](const MemoryPart& part) { return !part.remedy.empty(); });
+    return "out of memory; this bake holds " + memory_text(need) +
+           (most == parts.end() ? std::string() : "; to need less, " + most->remedy) +
+           "; files already written are whole";
 }
 
 int run(const RunArguments& arguments) {
@@ -69,6 +73,8 @@ int run(const RunArguments& arguments) {
     Scene scene = without_budget(asked);
     return run_frames(arguments, run_options(arguments, scene.shot),
                       {.name = "bake",
+                       .stopping = "stopping after the current file",
+                       .share_is = "the foam's past",
                        .out_of_memory = [&](int threads) { return out_of_memory(scene, threads); },
                        .work =
                            [&](RunOptions options, Session& session) {

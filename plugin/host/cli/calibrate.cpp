@@ -26,7 +26,7 @@ void print(const Calibration& measured) {
 
 int run(const std::string& threads) {
     // Nothing is half written: signals end it at once.
-    return guarded_run({.shot = {}, .threads = threads, .stops = false}, [](Session& session) {
+    return guarded_run({.shot = {}, .threads = threads}, [](Session& session) {
         const Calibration measured = session.threads.execute([&] {
             return measure_machine(
                 {.progress = [&](double done) { session.progress.show_measuring(done); }, .cancel = nullptr});

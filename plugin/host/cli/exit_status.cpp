@@ -38,9 +38,10 @@ int status_of(const std::exception& error) {
         return status_of_system(file->code());
     if (const auto* system = dynamic_cast<const std::system_error*>(&error))
         return status_of_system(system->code());
-    if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const NotEnoughMemory*>(&error) ||
-        dynamic_cast<const ChosenMeanwhile*>(&error) || dynamic_cast<const TryAgain*>(&error) ||
-        is_about_threads(error))
+    if (const auto* memory = dynamic_cast<const NotEnoughMemory*>(&error))
+        return memory->is_asked() ? kWrongUsage : kTryAgain;
+    if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const ChosenMeanwhile*>(&error) ||
+        dynamic_cast<const TryAgain*>(&error) || is_about_threads(error))
         return kTryAgain;
     if (dynamic_cast<const ShotError*>(&error) || dynamic_cast<const WrongUsage*>(&error) ||
         dynamic_cast<const std::invalid_argument*>(&error))

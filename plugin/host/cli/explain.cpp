@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -111,8 +112,7 @@ int print_prices(const Scene& scene, const ExplainArguments& arguments) {
         options.measured(whole);
         return int{kDone};
     };
-    return guarded_run(
-        {.shot = {}, .threads = arguments.threads, .stops = false, .out_of_memory = out_of_memory}, print);
+    return guarded_run({.shot = {}, .threads = arguments.threads, .out_of_memory = out_of_memory}, print);
 }
 
 // What the shot's budget, if it has one, asks for.
@@ -163,20 +163,49 @@ void print_objects(const Scene& scene) {
                   << ", " << bytes_text(object.mesh->bytes()) << ".\n";
 }
 
-// --json: what a frame takes here, by what was measured of this machine where that is known.
-void tell_accounts(const Settled& pictures, const Plan& plan) {
+// What a frame takes here, by what was measured of this machine where that is known.
+struct Accounts {
+    int threads;
+    bool is_measured;
+    std::optional<FrameAccount> bake;  // none: nothing is baked
+    FrameAccount picture;
+};
+Accounts accounts_of(const Settled& pictures, const Plan& plan) {
     const int threads = tbb::this_task_arena::max_concurrency();
     const auto kept = kept_calibration(cache_folder());
     const Rates rates = kept ? kept->rates() : rates_on(threads);
     const Shot& shot = plan.from->scene.shot;
-    nlohmann::ordered_json told{{"event", "result"},  {"verb", "explain"},
-                                {"name", shot.name},  {"frames", {shot.first_frame, shot.last_frame}},
-                                {"threads", threads}, {"rates", kept ? "measured" : "recorded"}};
-    if (!plan.outputs.empty()) {
-        told["bake"] = json_of(bake_account(plan, shot.last_frame - shot.first_frame + 1, threads, rates));
+    Accounts accounts{.threads = threads,
+                      .is_measured = kept.has_value(),
+                      .bake = std::nullopt,
+                      .picture = picture_account(pictures.scene, pictures.options, threads, rates)};
+    if (!plan.outputs.empty())
+        accounts.bake = bake_account(plan, shot.last_frame - shot.first_frame + 1, threads, rates);
+    return accounts;
+}
+
+void print_accounts(const Accounts& accounts) {
+    std::cout << "On " << count_text(accounts.threads, "thread", "threads") << ", by "
+              << (accounts.is_measured
+                      ? "what was measured of this machine"
+                      : "the recorded speed of another machine (pelagic calibrate measures this one)")
+              << ":\n";
+    if (accounts.bake) std::cout << "  A baked frame " << text_of(*accounts.bake) << ".\n";
+    std::cout << "  A picture " << text_of(accounts.picture) << ".\n" << std::flush;
+}
+
+// --json.
+void tell_accounts(const Accounts& accounts, const Settled& pictures, const Plan& plan) {
+    const Shot& shot = plan.from->scene.shot;
+    nlohmann::ordered_json told{
+        {"event", "result"},           {"verb", "explain"},
+        {"name", shot.name},           {"frames", {shot.first_frame, shot.last_frame}},
+        {"threads", accounts.threads}, {"rates", accounts.is_measured ? "measured" : "recorded"}};
+    if (accounts.bake) {
+        told["bake"] = json_of(*accounts.bake);
         told["bake"]["transforms_a_frame"] = plan.transforms_per_frame();
     }
-    told["pictures"] = json_of(picture_account(pictures.scene, pictures.options, threads, rates));
+    told["pictures"] = json_of(accounts.picture);
     told["pictures"]["resolution"] = {pictures.scene.camera.resolution.x, pictures.scene.camera.resolution.y};
     told["pictures"]["samples"] = pictures.options.samples;
     told["text"] = explain(plan);
@@ -222,8 +251,10 @@ Verb add_explain(CLI::App& program) {
                 std::cout << explain(plan);
                 const Settled pictures = print_settled(scene, Purpose::Pictures, "\nBudget of pictures");
                 print_memory(pictures.scene, pictures.options, plan);
+                const Accounts accounts = accounts_of(pictures, plan);
+                print_accounts(accounts);
                 print_warnings(arguments->shot, scene);
-                if (is_json()) tell_accounts(pictures, plan);
+                tell_accounts(accounts, pictures, plan);
                 return arguments->measure ? print_prices(plan.from->scene, *arguments) : int{kDone};
             }};
 }

@@ -145,7 +145,7 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
         "echo \"" +
         kFarmBegun +
         "$id on ${SLURMD_NODENAME:-$(hostname -s)}, $(date '+%F %T')\"\n"
-        "# Told to stop, the program ends at its file's end, and then this. A second signal ends it at once: one that\n"
+        "# Told to stop, the program ends with whole files, and then this. A second signal ends it at once: one that\n"
         "# the queue has sent to both isn't handed on. TERM for all: what a script has beside it ignores INT.\n"
         "stop() {\n"
         "    caught=1\n"
@@ -284,72 +284,71 @@ int run(FarmArguments arguments) {
     if (out.string().find('\\') != std::string::npos)
         throw WrongUsage("--out " + quoted_text(out.string()) +
                          ": Slurm takes no \\ in the path of a task's output; accepted: a path without");
-    return guarded_run(
-        {.shot = arguments.shot, .threads = arguments.threads, .stops = false}, [&](Session& session) {
-            const TaskNeed need = session.threads.execute(
-                [&] { return settle_job(arguments, options, scene, fixed, order, session); });
-            session.progress.clear();
-            FarmJob job{.verb = arguments.verb,
-                        .shot = fs::absolute(arguments.shot).lexically_normal().string(),
-                        .of = scene.shot,
-                        .instruction_set = arguments.instruction_set};
-            nlohmann::ordered_json told{
-                {"verb", job.verb},
-                {"shot", job.shot},
-                {"name", job.of.name},
-                {"frame_range", {job.of.first_frame, job.of.last_frame}},
-                {"threads", need.threads},
-                {"task_memory_bytes", need.memory_bytes},
-                {"frame", json_of(need.frame)},
-                {"instruction_set", job.instruction_set},
-                {"tasks", nlohmann::ordered_json::array()},
-            };
-            const std::size_t tasks = tasks_for(arguments, options.frames.size(), need.frame.seconds);
-            const std::string name = job.of.name + '.' + job.verb;
-            for (const std::vector<int>& part : split(options.frames, tasks)) {
-                std::string frames = frames_text(part);
-                std::erase(frames, ' ');
-                const std::string log = FilePattern{name + '.', ""}.file(part.front()) +
-                                        FilePattern{"-", ".log"}.file(part.back());
-                job.tasks.push_back({.frames = frames,
-                                     .log = log,
-                                     .slurm = name + '.' + std::to_string(job.tasks.size()) + ".slurm"});
-                told["tasks"].push_back({{"task", job.tasks.size() - 1},
-                                         {"frames", frames},
-                                         {"log", log},
-                                         {"slurm", job.tasks.back().slurm}});
-            }
-            const fs::path folder = out / "farm", array = folder / (name + ".sh"),
-                           last = folder / (name + ".verify.sh");
-            const fs::path program = own_program();
-            files::ensure_folder(folder);
-            const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
-                                 std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;
-            const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
-                                                                  static_cast<double>(tasks));
-            files::write_atomically(array, array_script(arguments, job, need, program, out, seconds));
-            files::write_atomically(last, verify_script(arguments, job, program, out, is_part));
-            files::write_atomically(folder / (name + ".json"),
-                                    told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
-            std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
-                      << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
-                      << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)
-                      << ", about " << duration_text(need.frame.seconds) << " a frame by the plan\n"
-                      << "array:  " << line_text(array.string()) << "\nverify: " << line_text(last.string())
+    return guarded_run({.shot = arguments.shot, .threads = arguments.threads}, [&](Session& session) {
+        const TaskNeed need = session.threads.execute(
+            [&] { return settle_job(arguments, options, scene, fixed, order, session); });
+        session.progress.clear();
+        FarmJob job{.verb = arguments.verb,
+                    .shot = fs::absolute(arguments.shot).lexically_normal().string(),
+                    .of = scene.shot,
+                    .instruction_set = arguments.instruction_set};
+        nlohmann::ordered_json told{
+            {"verb", job.verb},
+            {"shot", job.shot},
+            {"name", job.of.name},
+            {"frame_range", {job.of.first_frame, job.of.last_frame}},
+            {"threads", need.threads},
+            {"task_memory_bytes", need.memory_bytes},
+            {"frame", json_of(need.frame)},
+            {"instruction_set", job.instruction_set},
+            {"tasks", nlohmann::ordered_json::array()},
+        };
+        const std::size_t tasks = tasks_for(arguments, options.frames.size(), need.frame.seconds);
+        const std::string name = job.of.name + '.' + job.verb;
+        for (const std::vector<int>& part : split(options.frames, tasks)) {
+            std::string frames = frames_text(part);
+            std::erase(frames, ' ');
+            const std::string log =
+                FilePattern{name + '.', ""}.file(part.front()) + FilePattern{"-", ".log"}.file(part.back());
+            job.tasks.push_back({.frames = frames,
+                                 .log = log,
+                                 .slurm = name + '.' + std::to_string(job.tasks.size()) + ".slurm"});
+            told["tasks"].push_back({{"task", job.tasks.size() - 1},
+                                     {"frames", frames},
+                                     {"log", log},
+                                     {"slurm", job.tasks.back().slurm}});
+        }
+        const fs::path folder = out / "farm", array = folder / (name + ".sh"),
+                       last = folder / (name + ".verify.sh");
+        const fs::path program = own_program();
+        files::ensure_folder(folder);
+        const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
+                             std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;
+        const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
+                                                              static_cast<double>(tasks));
+        files::write_atomically(array, array_script(arguments, job, need, program, out, seconds));
+        files::write_atomically(last, verify_script(arguments, job, program, out, is_part));
+        files::write_atomically(folder / (name + ".json"),
+                                told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
+        std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
+                  << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
+                  << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)
+                  << ", about " << duration_text(need.frame.seconds) << " a frame by the plan\n"
+                  << "array:  " << line_text(array.string()) << "\nverify: " << line_text(last.string())
+                  << '\n';
+        told["event"] = "result";
+        told["array"] = array.string();
+        told["verify"] = last.string();
+        tell_json(told);
+        if (arguments.submit)
+            submit(array, last);
+        else
+            std::cout << "submit: job=$(sbatch --parsable " << line_text(shell_word(array.string()))
+                      << ") && sbatch --dependency=afterany:$job " << line_text(shell_word(last.string()))
                       << '\n';
-            told["event"] = "result";
-            told["array"] = array.string();
-            told["verify"] = last.string();
-            tell_json(told);
-            if (arguments.submit)
-                submit(array, last);
-            else
-                std::cout << "submit: job=$(sbatch --parsable " << line_text(shell_word(array.string()))
-                          << ") && sbatch --dependency=afterany:$job " << line_text(shell_word(last.string()))
-                          << '\n';
-            std::cout << std::flush;
-            return int{kDone};
-        });
+        std::cout << std::flush;
+        return int{kDone};
+    });
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void print_other_sets(const RunReport& report, const RunOptions& options, const 
 
 int guarded_run(const Guard& guard, const std::function<int(Session&)>& work) {
     std::optional<StopSignals> stop;  // from here on nobody's closing of a log ends the work
-    if (guard.stops) stop.emplace();
+    if (!guard.stopping.empty()) stop.emplace(guard.stopping);
     Threads threads(guard.threads);
     try {
         Progress progress;  // which has gone before a message comes
@@ -108,13 +108,14 @@ int run_frames(const RunArguments& arguments, RunOptions options, const FrameVer
     };
     return guarded_run({.shot = arguments.shot,
                         .threads = arguments.threads,
+                        .stopping = verb.stopping,
                         .out_of_memory = verb.out_of_memory,
                         .stopped = stopped},
                        [&](Session& session) {
                            options.cancel = &session.stop->cancelled();
                            options.progress = [&](const RunProgress& now) {
                                if (now.stage == RunStage::Frames) session.stop->files_begin();
-                               verb.show ? verb.show(now, session.progress) : session.progress.show(now);
+                               session.progress.show(now, verb.share_is);
                            };
                            report = session.threads.execute([&] { return verb.work(options, session); });
                            if (report.cancelled) throw BuildCancelled();

@@ -39,7 +39,8 @@ struct Session {
 struct Guard {
     std::string shot;     // the file that refusals name; empty: none
     std::string threads;  // the text of --threads
-    bool stops = true;    // on signals, at the end of what it writes
+    // What a first signal stops, in words; empty: signals end the program at once, as they would any other.
+    std::string stopping{};
     // What is said, after the program's name, of a lack of memory that only the system saw, on so many threads; empty: what
     // run_program() says.
     std::function<std::string(int threads)> out_of_memory{};
@@ -67,12 +68,12 @@ Settled settled_for(const RunOptions& options, const Scene& scene, Purpose purpo
 
 // What such a verb does, beside that.
 struct FrameVerb {
-    std::string name;                                                      // as programs read it
+    std::string name;      // as programs read it
+    std::string stopping;  // as Guard's
+    std::string share_is;  // what a frame's share is of (RunProgress::share), for people
     std::function<std::string(int threads)> out_of_memory;                 // as Guard's
     std::function<RunReport(const RunOptions& options, Session&)> work;    // on the session's threads
     std::function<void(const RunReport&, const std::string& out)> report;  // what was done, in words
-    // Tells other things of a run's progress than Progress does; empty: doesn't.
-    std::function<void(const RunProgress&, Progress&)> show{};
 };
 // guarded_run() of it.
 int run_frames(const RunArguments& arguments, RunOptions options, const FrameVerb& verb);

@@ -28,7 +28,8 @@ const char* const kProgramFooter =
     "  0        everything that was asked for is whole\n"
     "  1        an error that nobody knows; please report it\n"
     "  2        what was asked for can't be, and the same again gives the same: the command line, a shot\n"
-    "           file, a folder that may not be written into (permissions), a part that this machine lacks\n"
+    "           file, a folder that may not be written into (permissions, /proc), more memory than\n"
+    "           --max-memory allows, a part that this machine lacks\n"
     "  3        not whole: verify or farm --status found something missing or wrong\n"
     "  75       try again, later or on another machine: the disk (full, failing, read-only, gone), memory, threads,\n"
     "           or another run that was first\n"
@@ -73,11 +74,11 @@ const char* const kVerifySet =
     "Default: any set will do, and a note says of a shot that several have";
 
 const char* const kMaxMemory =
-    "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
+    "Refuse a shot that would take more memory than this, before any work (exit status 2): 8G, 512M.\n"
     "Default: what the machine has, or less where a container or ulimit allows less";
 const char* const kPreviewMaxMemory =
-    "Refuse a picture that would take more memory than this, before any work: 8G, 512M. A window\n"
-    "draws less instead, and says so.\n"
+    "Refuse a picture that would take more memory than this, before any work (exit status 2): 8G,\n"
+    "512M. A window draws less instead, and says so.\n"
     "Default: what the machine has, or less where a container or ulimit allows less";
 
 const char* const kTrustTimes =

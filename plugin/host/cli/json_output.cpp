@@ -74,7 +74,7 @@ JsonOutput::~JsonOutput() {
 
 void JsonOutput::end(int status) {
     nlohmann::ordered_json event{{"event", "end"}, {"status", status}};
-    if (status != 0) event["error"] = last_message_;
+    if (status != 0 && !last_message_.empty()) event["error"] = last_message_;
     tell_json(event);
 }
 

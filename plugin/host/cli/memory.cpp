@@ -48,7 +48,7 @@ std::size_t memory_of(const std::string& memory) {
 
 int refuse_memory(const std::string& shot, const NotEnoughMemory& error) {
     std::cerr << line_text(shot) << ": " << error.what() << "; or allow more with --max-memory\n";
-    return kTryAgain;
+    return status_of(error);
 }
 
 }  // namespace pelagic::cli

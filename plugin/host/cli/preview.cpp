@@ -121,11 +121,10 @@ int run(const PreviewArguments& arguments) {
     if (arguments.offscreen) {
         refuse_file("--offscreen", *arguments.offscreen, {".png", ".exr"});
         // Signals end it at once: no file is begun.
-        return guarded_run(
-            {.shot = arguments.shot, .threads = arguments.threads, .stops = false}, [&](Session& session) {
-                return session.threads.execute(
-                    [&] { return draw_offscreen(scene, *arguments.offscreen, arguments, session.progress); });
-            });
+        return guarded_run({.shot = arguments.shot, .threads = arguments.threads}, [&](Session& session) {
+            return session.threads.execute(
+                [&] { return draw_offscreen(scene, *arguments.offscreen, arguments, session.progress); });
+        });
     }
     const Threads threads(arguments.threads);
     const auto save = [&](const Scene& now, const Scene& shot) { save_shot(arguments.shot, now, shot); };

@@ -63,9 +63,9 @@ std::string left_text(const RunProgress& progress) {
     return duration_text(progress.seconds / progress.done * left) + " left";
 }
 
-std::string past_text(const RunProgress& progress) {
+std::string share_text(const RunProgress& progress, const std::string& share_is) {
     if (!(progress.share > 0.0)) return {};
-    return "the foam's past: " + percent(progress.share);
+    return share_is + ": " + percent(progress.share);
 }
 
 std::string joined(std::initializer_list<std::string> parts, std::string_view between) {
@@ -85,20 +85,21 @@ void print(const std::string& text) {
 
 }  // namespace
 
-std::string progress_line(const RunProgress& progress) {
+std::string progress_line(const RunProgress& progress, const std::string& share_is) {
     const std::string count = std::to_string(finished(progress)) + " of " + std::to_string(progress.total);
     if (progress.done == 0)
-        return joined({progress.kept > 0 ? count + " frames are whole already" : "", past_text(progress)},
-                      ", ");
+        return joined(
+            {progress.kept > 0 ? count + " frames are whole already" : "", share_text(progress, share_is)},
+            ", ");
     return "frame " + std::to_string(progress.frame) + ": " +
-           joined({count, rate_text(progress), left_text(progress), past_text(progress)}, ", ");
+           joined({count, rate_text(progress), left_text(progress), share_text(progress, share_is)}, ", ");
 }
 
-std::string progress_bar(const RunProgress& progress, int columns) {
+std::string progress_bar(const RunProgress& progress, const std::string& share_is, int columns) {
     const std::string count = std::to_string(finished(progress)) + '/' + std::to_string(progress.total);
     const std::string frame = progress.done > 0 ? "frame " + std::to_string(progress.frame) : std::string();
-    const std::string text =
-        joined({frame, count, rate_text(progress), left_text(progress), past_text(progress)}, "  ");
+    const std::string text = joined(
+        {frame, count, rate_text(progress), left_text(progress), share_text(progress, share_is)}, "  ");
     // The last column stays empty, because many terminals wrap there. 3: brackets and a space.
     const int room = std::min(columns - 1 - static_cast<int>(text.size()) - 3, kLongestBar);
     if (room < kShortestBar) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
@@ -116,6 +117,12 @@ void Progress::tell(const RunProgress& progress) {
     if (told_ == moment && now - last_ < std::chrono::seconds(1)) return;
     told_ = moment;
     last_ = now;
+    double share = progress.share;
+    if (progress.stage == RunStage::Frames && progress.total > 0) {
+        // A frame is computed while the one before it is written: what is done of it isn't added to what is whole.
+        furthest_ = std::max(furthest_, (finished(progress) + progress.share) / progress.total);
+        share = furthest_;
+    }
     tell_json({{"event", "progress"},
                {"stage", word_of(progress.stage)},
                {"frame", progress.frame},
@@ -123,12 +130,10 @@ void Progress::tell(const RunProgress& progress) {
                {"kept", progress.kept},
                {"total", progress.total},
                {"seconds", progress.seconds},
-               {"share", progress.stage == RunStage::Frames && progress.total > 0
-                             ? (finished(progress) + progress.share) / progress.total
-                             : progress.share}});
+               {"share", share}});
 }
 
-void Progress::show(const RunProgress& progress) {
+void Progress::show(const RunProgress& progress, const std::string& share_is) {
     if (is_json()) return tell(progress);
     switch (progress.stage) {
         case RunStage::Planning:
@@ -155,8 +160,8 @@ void Progress::show(const RunProgress& progress) {
         return;  // nothing to report yet
     frame_said_ = true;
     last_ = now;
-    if (terminal_) return write_over(progress_bar(progress, terminal_columns()));
-    print(progress_line(progress) + '\n');
+    if (terminal_) return write_over(progress_bar(progress, share_is, terminal_columns()));
+    print(progress_line(progress, share_is) + '\n');
 }
 
 void Progress::show_building(double built) {

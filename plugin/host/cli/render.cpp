@@ -187,15 +187,6 @@ PictureOrder order_of(const RenderArguments& arguments, FixedSettings& fixed) {
 
 namespace {
 
-// Pictures take long: each says how far it is.
-void show_pictures(const RunProgress& now, Progress& progress) {
-    if (now.stage != RunStage::Frames || (now.share == 0.0 && now.done > 0)) return progress.show(now);
-    if (now.share > 0.0)
-        progress.show("frame " + std::to_string(now.at) + ": " +
-                      std::to_string(std::lround(100.0 * now.share)) + " %, " + std::to_string(now.done) +
-                      " of " + std::to_string(now.total - now.kept) + " whole");
-}
-
 void print_rendered(const RunReport& report, const PictureOrder& order, const RunOptions& options,
                     const std::string& out) {
     const Shot& shot = order.scene.shot;
@@ -237,11 +228,13 @@ int run(const RenderArguments& arguments) {
     };
     return run_frames(arguments, options,
                       {.name = "render",
+                       .stopping = "stopping: the picture at hand is given up, computed ones are written",
+                       .share_is = "the picture",
                        .out_of_memory = out_of_memory,
                        .work = work,
-                       .report = [&](const RunReport& report,
-                                     const std::string& out) { print_rendered(report, order, options, out); },
-                       .show = show_pictures});
+                       .report = [&](const RunReport& report, const std::string& out) {
+                           print_rendered(report, order, options, out);
+                       }});
 }
 
 }  // namespace

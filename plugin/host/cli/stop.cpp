@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <string>
 #include <string_view>
 
 #include "plugin/host/cli/exit_status.h"
@@ -23,6 +24,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 
 std::array<struct sigaction, kStopping.size()> before{};
 struct sigaction pipe_before {};
+std::string first_words;  // made before a handler may read them
 
 void say(std::string_view text) {
     // An error of stderr can't be reported.
@@ -38,13 +40,14 @@ extern "C" void pelagic_stop_handler(int signal) {
                   : "\npelagic: stopped before the first frame; no frame was touched\n");
         _exit(kSignal + signal);
     }
-    say("\npelagic: stopping after the current file; again to stop at once\n");
+    say(first_words);
     errno = saved;
 }
 
 }  // namespace
 
-StopSignals::StopSignals() {
+StopSignals::StopSignals(const std::string& stopping) {
+    first_words = "\npelagic: " + stopping + "; again to stop at once\n";
     stop_asked = false;
     stop_signal = 0;
     writing = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <string>
 
 namespace pelagic::cli {
 
@@ -11,7 +12,8 @@ namespace pelagic::cli {
 // stays ignored. SIGPIPE is ignored: closing a log must not end a bake. Only one object at a time.
 class StopSignals {
   public:
-    StopSignals();
+    // stopping: what is said of the first signal, "stopping after the current file".
+    explicit StopSignals(const std::string& stopping);
     ~StopSignals();
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;

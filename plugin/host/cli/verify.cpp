@@ -92,6 +92,7 @@ int run(const VerifyArguments& arguments) {
     };
     return guarded_run({.shot = {},
                         .threads = arguments.threads,
+                        .stopping = "stopping the check",
                         .stopped = [&] { return at + " was not read to its end"; }},
                        check_all);
 }

@@ -21,6 +21,7 @@
 #include "plugin/host/preview/drawn_objects.h"
 #include "plugin/host/preview/live.h"
 #include "plugin/host/preview/sea_textures.h"
+#include "plugin/machine/memory.h"
 #include "plugin/render/seen_drops.h"
 
 namespace pelagic {
@@ -30,6 +31,8 @@ namespace {
 // in software and a graphics card's otherwise.
 MemoryNeed live_memory(const Plan& plan) {
     MemoryNeed need;
+    machine::add_program(need);
+    machine::add_sky(need);
     add_sea(need, plan, tbb::this_task_arena::max_concurrency());
     if (plan.from->weather) {  // a sea that changes is another in each frame that waits
         Plan one = plan;

@@ -119,6 +119,8 @@ std::string smaller() {
 
 MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     MemoryNeed need;
+    machine::add_program(need);
+    machine::add_sky(need);
     add_sea(need, planned.plan, threads);
     // Fields of the frame are freed one after another, as soon as the driver has them.
     const std::size_t frame = planned.plan.frame_bytes();
@@ -151,7 +153,8 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
         need.add("the cage's surface", planned.drawn->surface_bytes(points) + points * sizeof(glm::vec4),
                  "lower surface.cage_level, or raise surface.cell_px");
     if (const std::size_t floor =
-            floor_light_bytes(planned.scene, make_water(planned.scene, planned.plan.from->spectrum));
+            floor_light_bytes(planned.scene, make_water(planned.scene, planned.plan.from->spectrum),
+                              planned.plan.from->extent.height_m);
         floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(planned.scene); pictures > 0)

@@ -136,6 +136,14 @@ void give(S from, S* to, const char* name) {
     std::memcpy(to, &from, std::min(size, sizeof(S)));
 }
 
+// Of a member that is 0 or 1: another number may be what a later version has.
+inline bool flag(int value, const char* name) {
+    if (value != 0 && value != 1)
+        throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) +
+                                    ", which this version of the library doesn't know; accepted: 0, 1");
+    return value == 1;
+}
+
 // A place [m], within the range of cameras.
 inline void check_place(double metres, const char* name) {
     if (!limits::kCameraCoordinate_m.holds(metres))

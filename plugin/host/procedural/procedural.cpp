@@ -75,6 +75,10 @@ pelagic_vessel vessel_of(const Scene& scene, std::size_t index, double frame) {
 
 View view_of(const pelagic_camera& camera) {
     const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
+    for (const int pixels : {camera.width, camera.height})
+        if (!limits::kImageResolution.holds(pixels))
+            throw std::invalid_argument("camera.width, height: outside the range; accepted: " +
+                                        text_of(limits::kImageResolution));
     return checked_view({.position_m = vector(camera.position_m),
                          .right = vector(camera.right),
                          .up = vector(camera.up),
@@ -118,8 +122,8 @@ Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
     return expansion_of(frame, view_of(taken(camera, "camera")),
                         {.cell_px = asked.cell_px == 0.0 ? kCell_px : asked.cell_px,
                          .error_px = asked.error_px,
-                         .triangles = asked.triangles != 0,
-                         .on_earth = asked.on_earth != 0});
+                         .triangles = flag(asked.triangles, "options.triangles"),
+                         .on_earth = flag(asked.on_earth, "options.on_earth")});
 }
 
 pelagic_mesh_size size_of(const Expansion& expansion) {
@@ -278,8 +282,8 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
         about.loop_s = shot.sea->first()->loop_s();
         about.significant_height_m = shot.sea->first()->total().significant_height_m();
         about.peak_wavelength_m = kTwoPi / plan.from->spectrum.peak_wavenumber();
-        about.finest_cell_m = shot.query().cell_m.front();
-        about.finest_pixel_m = shot.query().pixel_m.front();
+        about.finest_cell_m = shot.finest_cell_m;
+        about.finest_pixel_m = shot.finest_pixel_m;
         about.frame_bytes = plan.frame_bytes();
         about.foam_bytes = plan.foam_history_bytes();
         about.vessels = shot.scene.waves.vessels.size();

@@ -33,8 +33,12 @@ constexpr ProductSet kProducts =
 // What a frame of a sea holds at most where its host doesn't say how fine it is to be.
 constexpr std::size_t kUnasked_bytes = std::size_t{256} << 20;
 
-// finest_cell_m: becomes what was asked for, or what the shot's camera needs and kUnasked_bytes hold.
-Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
+struct Planned {
+    Plan plan;
+    double finest_cell_m,
+        finest_pixel_m;  // as asked for, or as the shot's camera needs and kUnasked_bytes hold
+};
+Planned plan_of(const Scene& scene, const SeaOptions& options) {
     auto prepared = prepare(scene);
     const bool is_asked = options.finest_cell_m > 0.0 || options.finest_pixel_m > 0.0;
     // One alone stands for both: pixels as the shot's camera sees them beside a host's cells would be what takes most.
@@ -53,14 +57,15 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
     const std::size_t most_bytes =
         options.max_memory_bytes > 0 ? std::min(kUnasked_bytes, options.max_memory_bytes) : kUnasked_bytes;
     for (;; cell_m *= 2.0, pixel_m *= 2.0) {
-        finest_cell_m = cell_m;
+        const double finest_pixel_m = std::min(cell_m, pixel_m);
         const Query query = view_query(*prepared, {.products = kProducts,
                                                    .finest_cell_m = cell_m,
-                                                   .finest_pixel_m = std::min(cell_m, pixel_m),
+                                                   .finest_pixel_m = finest_pixel_m,
                                                    .points = Chunk<float>::kPoints});
         Plan plan = make_plan(prepared, {query}, {.double_precision = false});
         constexpr double kCoarsest_m = 1.0;  // a sea of trains takes the same at any
-        if (is_asked || plan.frame_bytes() <= most_bytes || cell_m > kCoarsest_m) return plan;
+        if (is_asked || plan.frame_bytes() <= most_bytes || cell_m > kCoarsest_m)
+            return {std::move(plan), cell_m, finest_pixel_m};
     }
 }
 
@@ -141,22 +146,21 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
                                       std::min(options.threads, tbb::info::default_concurrency()))
                                 : std::make_unique<tbb::task_arena>()) {
     arena->execute([&] {
-        Plan plan = plan_of(scene, options, finest_ray_m);
+        Planned planned = plan_of(scene, options);
         MemoryNeed need;
-        add_sea(need, plan, arena->max_concurrency());
+        // A host's own number is for the frame alone.
+        if (options.max_memory_bytes == 0) machine::add_program(need);
+        add_sea(need, planned.plan, arena->max_concurrency());
         require_memory(need, machine::memory_limit_or(options.max_memory_bytes), "a frame of this sea");
-        sea = std::make_shared<const SeaOverTime<float>>(std::move(plan), watch);
+        sea = std::make_shared<const SeaOverTime<float>>(std::move(planned.plan), watch);
         if (sea->plan().foam) without_past = sea->first()->whitecaps({});
         // As the plan's levels have it; a sea of trains has none.
-        finest_ray_m =
-            query().cell_m.front() > 0.0 ? query().cell_m.front() : std::max(finest_ray_m, finest_cell_m());
+        const auto finest_of = [&](double first_m, double planned_m) {
+            return first_m > 0.0 ? first_m : std::max(planned_m, whole_cell_m(*sea->first()));
+        };
+        finest_cell_m = finest_of(query().cell_m.front(), planned.finest_cell_m);
+        finest_pixel_m = finest_of(query().pixel_m.front(), planned.finest_pixel_m);
     });
-}
-
-double ShotSea::finest_cell_m() const {
-    // A sea of trains has no first cell.
-    const double first_m = query().cell_m.front();
-    return first_m > 0.0 ? first_m : whole_cell_m(*sea->first());
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
@@ -214,7 +218,7 @@ void ShotFrame::check_times(const float* time_s, std::size_t count, const char* 
 // Level by level: a bound that holds for all footprints of a wide range would be loose for each.
 template <class Bound>
 DisplacementBounds ShotFrame::over_levels(FootprintRange cells, const Bound& bound) const {
-    double level_m = level_below_m(std::max(cells.finest_m, of_->finest_cell_m()));
+    double level_m = level_below_m(std::max(cells.finest_m, of_->finest_cell_m));
     DisplacementBounds all = bound(bounds_.from_level(level_m));
     // Where a footprint resolves no waves, nothing moves, and larger ones change nothing.
     const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
@@ -236,7 +240,7 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
     // So large a region has every wave in it.
     constexpr double kAnywhere_m = 65536.0;
     const glm::dvec2 side_m = region.max_m - region.min_m;
-    if (std::min(side_m.x, side_m.y) >= kAnywhere_m && cells.finest_m <= of_->finest_cell_m()) {
+    if (std::min(side_m.x, side_m.y) >= kAnywhere_m && cells.finest_m <= of_->finest_cell_m) {
         const SurfaceBounds all = everywhere();
         const glm::dvec3 most_m(glm::dvec2(all.reach_m), all.height_m);
         return {glm::dvec3(region.min_m, 0.0) - most_m, glm::dvec3(region.max_m, 0.0) + most_m};
@@ -264,7 +268,7 @@ const SurfaceTiles& ShotFrame::tiles() const {
     const std::lock_guard<std::mutex> lock(lock_);
     const auto& masks = of_->sea->plan().masks;
     if (!tiles_)
-        tiles_ = std::make_unique<const SurfaceTiles>(*query_, of_->finest_cell_m(), half_open_s_,
+        tiles_ = std::make_unique<const SurfaceTiles>(*query_, of_->finest_cell_m, half_open_s_,
                                                       of_->ray_cache_bytes, masks ? &*masks : nullptr);
     return *tiles_;
 }
@@ -281,8 +285,31 @@ void ShotFrame::remember_cell_px(const View& view, double error_px, bool on_eart
     cells_ = {view, error_px, on_earth, cell_px};
 }
 
-void ShotFrame::ask(const Points<float>& points, const Results<float>& results, CoverageOf coverage,
+struct ShotFrame::Counted {
+    Points<float> points;
+    std::vector<float> cell_m, pixel_m;  // that they point into
+};
+
+ShotFrame::Counted ShotFrame::counted(const Points<float>& points) const {
+    Counted to{points, {}, {}};
+    // Tiles hold them within their levels; wave trains have none.
+    if (of_->query().cell_m.front() > 0.0) return to;
+    const auto count = [&](Strided<const float> asked, double finest_m, std::vector<float>& own) {
+        const auto least_m = static_cast<float>(finest_m);
+        own.assign(asked ? points.count : 1, least_m);
+        if (!asked) return Strided<const float>{own.data(), 0};
+        for (std::size_t i = 0; i < points.count; ++i) own[i] = std::max(asked[i], least_m);
+        return Strided<const float>{own.data()};
+    };
+    to.points.cell_m = count(points.cell_m, of_->finest_cell_m, to.cell_m);
+    to.points.pixel_m = count(points.pixel_m, of_->finest_pixel_m, to.pixel_m);
+    return to;
+}
+
+void ShotFrame::ask(const Points<float>& asked, const Results<float>& results, CoverageOf coverage,
                     bool alone) const {
+    const Counted held = counted(asked);
+    const Points<float>& points = held.points;
     if (coverage == CoverageOf::FirstVersion && without_past_) {
         Results<float> now = results;
         now.set(Product::Breaking, results.numbers(Product::Coverage));
@@ -320,12 +347,22 @@ void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float
 
 void ShotFrame::water_at(std::span<const glm::dvec2> places_m, float footprint_m,
                          std::span<WaterState> water) const {
-    pelagic::water_at(bounds_, *query_, places_m, footprint_m, water, true);
+    // Each answer is of its place alone. So many take some milliseconds, where the sea has folded a hundred times that.
+    constexpr std::size_t kAskedEach = 256;
+    const bool has_levels = of_->query().cell_m.front() > 0.0;
+    if (!has_levels) footprint_m = std::max(footprint_m, static_cast<float>(of_->finest_cell_m));
+    for (std::size_t first = 0; first < places_m.size(); first += kAskedEach) {
+        stop_if(&of_->is_cancelled);
+        const std::size_t count = std::min(kAskedEach, places_m.size() - first);
+        pelagic::water_at(bounds_, *query_, places_m.subspan(first, count), footprint_m,
+                          water.subspan(first, count), true);
+    }
 }
 
 void ShotFrame::prepare(const Points<float>& points) const {
     stop_if(&of_->is_cancelled);
-    of_->arena->execute([&] { state_.prepare(0, points, of_->watch()); });
+    const Counted held = counted(points);
+    of_->arena->execute([&] { state_.prepare(0, held.points, of_->watch()); });
 }
 
 ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px) {

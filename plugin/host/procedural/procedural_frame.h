@@ -43,7 +43,8 @@ struct ShotSea {
 
     Scene scene;
     std::size_t ray_cache_bytes;
-    double finest_ray_m = 0.0;                      // finer footprints of rays count as that
+    double finest_cell_m = 0.0,
+           finest_pixel_m = 0.0;  // finer footprints, of points and rays, count as these; > 0
     mutable std::atomic<bool> is_cancelled{false};  // by any thread, while others use the sea
     BuildWatch watch() const { return {.cancel = &is_cancelled}; }
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
@@ -51,8 +52,6 @@ struct ShotSea {
     std::optional<Whitecaps>
         without_past;  // as if no foam were persistent; none where none is. Of the first key of a sea that changes
     const Query& query() const { return sea->plan().queries.front().query; }
-    // The cell below which nothing more is resolved [m], > 0.
-    double finest_cell_m() const;
 };
 
 // Points as evaluate() takes them, and when each is asked for.
@@ -69,8 +68,8 @@ class ShotFrame {
   public:
     ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s);
 
-    // Not while others use the frame. Throws std::invalid_argument for times that aren't accepted. As all that follow but bounds and
-    // water_at(), BuildCancelled where the sea is.
+    // Not while others use the frame. Throws std::invalid_argument for times that aren't accepted. As all that follow but bounds,
+    // BuildCancelled where the sea is.
     void set(double open_s, double close_s);
     bool is_set() const {
         return is_set_;
@@ -109,6 +108,9 @@ class ShotFrame {
     template <class Bound>
     DisplacementBounds over_levels(FootprintRange cells, const Bound& bound) const;
 
+    // With footprints as they count.
+    struct Counted;
+    Counted counted(const Points<float>& points) const;
     void ask(const Points<float>& points, const Results<float>& results, CoverageOf coverage,
              bool alone) const;
 

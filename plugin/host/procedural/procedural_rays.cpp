@@ -30,15 +30,16 @@ class Batch {
         if (rays.tolerance != 0.0 && !(rays.tolerance >= 0.05 && rays.tolerance <= 4.0))
             throw std::invalid_argument(
                 "rays.tolerance is outside the range; accepted: 0.05 to 4 footprints, or 0");
+        const bool on_earth = flag(rays.on_earth, "rays.on_earth");
         if (rays.count == 0) return;
         required(rays.direction, "rays.direction");
         check_count(rays.count, "rays.count");
         frame.check_times(rays.time_s, rays.count, "rays.time_s");
         sea_ = {.tiles = &frame.tiles(),
                 .everywhere = frame.everywhere(),
-                .finest_footprint_m = frame.shot().finest_ray_m,
+                .finest_footprint_m = frame.shot().finest_cell_m,
                 .origin_m = {rays.origin_m[0], rays.origin_m[1]},
-                .curvature_per_m = rays.on_earth != 0 ? kEarthCurvature_per_m : 0.0,
+                .curvature_per_m = on_earth ? kEarthCurvature_per_m : 0.0,
                 .tolerance = rays.tolerance == 0.0 ? 0.5 : rays.tolerance};
     }
 

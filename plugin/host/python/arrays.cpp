@@ -128,6 +128,23 @@ void Copies::give_back() const {
     }
 }
 
+bool overlap(const py::array& a, const py::array& b) {
+    const auto span_of = [](const py::array& array) {
+        const auto at = reinterpret_cast<std::intptr_t>(array.data());
+        std::array<std::intptr_t, 2> span{at, at + array.itemsize()};
+        for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
+            const py::ssize_t way = array.strides(axis) * (array.shape(axis) - 1);
+            span[way < 0 ? 0 : 1] += way;
+        }
+        return span;
+    };
+    if (a.size() == 0 || b.size() == 0) return false;
+    const auto of_a = span_of(a), of_b = span_of(b);
+    // Columns of one table lie between each other, and apart.
+    return of_a[0] < of_b[1] && of_b[0] < of_a[1] &&
+           py::module_::import("numpy").attr("shares_memory")(a, b).cast<bool>();
+}
+
 Strided<glm::vec3> writable_vectors(const py::handle& object, const Asked& asked, Copies& copies) {
     return written_view<glm::vec3>(object, asked, 3, copies);
 }

@@ -63,6 +63,9 @@ struct Readable {
 Readable<glm::vec2> readable_points(const pybind11::handle& object, const Asked& asked, Copies& copies);
 Readable<glm::vec3> readable_vectors(const pybind11::handle& object, const Asked& asked, Copies& copies);
 
+// Whether numbers of both share a byte.
+bool overlap(const pybind11::array& a, const pybind11::array& b);
+
 // A new array that owns the vector's memory: of this shape, or else (n,) of numbers and (n, components) of
 // glm's vectors.
 template <class Number, class Element>

@@ -11,10 +11,13 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <shared_mutex>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -38,7 +41,7 @@ constexpr Range kRest_m = limits::kCameraCoordinate_m;
 struct Arguments {
     py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal;
     std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
-    std::optional<std::vector<std::string>> outputs;
+    std::optional<Names> outputs;
 };
 
 struct Footprints {
@@ -93,14 +96,18 @@ Strided<const glm::vec2> axes(const py::object& object, const Asked& asked, Copi
     return view;
 }
 
+glm::dvec2 origin_of(std::array<double, 2> given_m) {
+    for (const double metres : given_m)
+        if (!kRest_m.holds(metres))
+            throw py::value_error("origin: accepted: (x, y), " + text_of(kRest_m) + " m");
+    return {given_m[0], given_m[1]};
+}
+
 // Of an array that lives as long as they do.
 Points<float> points_of(const py::object& array, std::array<double, 2> origin_m, const char* name,
                         Copies& copies) {
     const auto [points, count] = readable_points(array, {name}, copies);
-    if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
-        throw py::value_error("origin: accepted: (x, y), finite [m]");
-    return {
-        .origin_m = {origin_m[0], origin_m[1]}, .count = static_cast<std::size_t>(count), .rest_m = points};
+    return {.origin_m = origin_of(origin_m), .count = static_cast<std::size_t>(count), .rest_m = points};
 }
 
 // While the work waits for its parts, this thread takes up nobody else's: Blender runs drivers as tasks of the same TBB,
@@ -117,6 +124,80 @@ template <class T>
 Strided<T> from(const Strided<T>& view, std::size_t first) {
     return view ? Strided<T>{&view[first], view.stride_bytes} : view;
 }
+
+Results<float> from(const Results<float>& results, std::size_t first) {
+    Results<float> rest;
+    for (const ProductRow& row : kProductTable) {
+        if (!results.given()[index(row.product)]) continue;
+        if (row.components == 3) {
+            const auto product = VectorProduct::checked(row.product);
+            rest.set(product, from(results.vectors(product), first));
+        } else {
+            const auto product = NumberProduct::checked(row.product);
+            rest.set(product, from(results.numbers(product), first));
+        }
+    }
+    return rest;
+}
+
+// Places in squares, each with its middle as its points' origin, so that single precision rounds none by more than a
+// quarter of a millimetre, whichever others there are. Throws std::invalid_argument for what is no place on the sea.
+class Squares {
+  public:
+    struct Square {
+        glm::dvec2 middle_m;
+        std::size_t first = 0, count = 0;  // of the places, square by square
+    };
+
+    Squares(std::span<const double> xy_m, Strided<const float> footprint_m) : order_(xy_m.size() / 2) {
+        constexpr double kSide_m = 8192.0;
+        const auto place_m = [&](std::size_t i) { return glm::dvec2(xy_m[2 * i], xy_m[2 * i + 1]); };
+        const auto middle_m = [&](std::size_t i) { return kSide_m * glm::round(place_m(i) / kSide_m); };
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            if (!kRest_m.holds(place_m(i).x) || !kRest_m.holds(place_m(i).y))
+                throw std::invalid_argument("xy: point " + std::to_string(i) +
+                                            " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        const auto is_before = [&](std::size_t a, std::size_t b) {
+            const glm::dvec2 of_a = middle_m(a), of_b = middle_m(b);
+            return std::tuple(of_a.x, of_a.y, a) < std::tuple(of_b.x, of_b.y, b);
+        };
+        is_sorted_ = std::is_sorted(order_.begin(), order_.end(), is_before);
+        if (!is_sorted_) std::sort(order_.begin(), order_.end(), is_before);
+        for (const std::size_t i : order_) {
+            if (all.empty() || all.back().middle_m != middle_m(i))
+                all.push_back({middle_m(i), offset_m_.size(), 0});
+            ++all.back().count;
+            offset_m_.emplace_back(place_m(i) - middle_m(i));
+            if (footprint_m) footprint_m_.push_back(footprint_m[i]);
+        }
+    }
+
+    // Relative to the square's middle.
+    Points<float> points(const Square& square) const {
+        Points<float> points{
+            .origin_m = square.middle_m, .count = square.count, .rest_m = {&offset_m_[square.first]}};
+        if (!footprint_m_.empty()) points.cell_m = points.pixel_m = {&footprint_m_[square.first]};
+        return points;
+    }
+
+    // Values of the places in the caller's order.
+    template <class T>
+    void put_back(Strided<T> values) const {
+        if (is_sorted_) return;
+        std::vector<T> in_order(order_.size());
+        for (std::size_t k = 0; k < order_.size(); ++k) in_order[order_[k]] = values[k];
+        for (std::size_t k = 0; k < order_.size(); ++k) values[k] = in_order[k];
+    }
+
+    std::vector<Square> all;
+
+  private:
+    std::vector<std::size_t> order_;
+    bool is_sorted_ = true;
+    std::vector<glm::vec2> offset_m_;
+    std::vector<float> footprint_m_;
+};
 
 class PythonFrame {
   public:
@@ -174,22 +255,20 @@ class PythonFrame {
     }
 
     py::dict heights(const py::object& xy, std::array<double, 2> origin_m, const py::object& footprint_m,
-                     const std::optional<std::vector<std::string>>& outputs, const py::object& progress,
+                     const std::optional<Names>& outputs, const py::object& progress,
                      const py::object& cancel) const {
         require_output(index(Product::Position));
-        const auto places = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(xy);
+        const auto places = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(xy);
         if (!places || places.ndim() != 2 || places.shape(1) != 2)
             throw py::value_error("xy: accepted: numbers of shape (n, 2)");
         const py::ssize_t count = places.shape(0);
+        const glm::dvec2 origin = origin_of(origin_m);
         Evaluation asked;
-        Points<float> points = points_of(places, origin_m, "xy", asked.copies);
         Footprints footprints;
         read_footprints(footprints, footprint_m, {"footprint_m", count}, asked.copies);
-        points.cell_m = points.pixel_m = footprints.view;
-
         ProductSet wanted;
         if (outputs)
-            for (const std::string& name : *outputs) wanted.set(output_of(name));
+            for (const std::string& name : outputs->all) wanted.set(output_of(name));
         else
             for (const Product product : {Product::Normal, Product::Velocity})
                 wanted[index(product)] = sea_.outputs[index(product)];
@@ -201,36 +280,67 @@ class PythonFrame {
             write_to(asked, i, array, count);
             written[kProductTable[i].identifier] = array;
         }
-        std::vector<glm::vec2> rest_m(points.count);
-        std::vector<float> residual_m(points.count), height_m(points.count);
+        const auto size = static_cast<std::size_t>(count);
+        const double* const xy_m = places.data();
+        std::vector<glm::vec2> rest_m(size);
+        std::vector<float> residual_m(size), height_m(size);
         Watch watch(progress, cancel);
         try {
-            work(takes_long(asked, points.count), watch, [&] {
-                require_on_the_sea(points, "xy");
+            work(takes_long(asked, size), watch, [&] {
+                const Squares squares({xy_m, 2 * size}, footprints.view);
                 const std::shared_lock reading(mutex_);
                 require_time();
                 ProductSet summed = asked.results.given() & ~lasting_products();
                 summed.set(index(Product::Displacement));
                 if ((asked.results.given() & lasting_products()).any()) summed.set(index(Product::Breaking));
-                const PreparedQuery<float> query(state_.frame(), 0, summed, points.origin_m);
-                for (std::size_t first = 0; first < points.count; first += kPiece) {
-                    if (*watch.flag()) throw BuildCancelled();
-                    const Points<float> piece{.origin_m = points.origin_m,
-                                              .count = std::min(kPiece, points.count - first),
-                                              .rest_m = from(points.rest_m, first),
-                                              .cell_m = from(points.cell_m, first),
-                                              .pixel_m = from(points.pixel_m, first)};
-                    alone([&] {
-                        find_highest_rest(bounds_, query, piece, {}, {&rest_m[first]}, {&residual_m[first]});
-                    });
-                }
-                std::vector<glm::vec3> displacement_m(points.count);
+                std::vector<glm::vec3> displacement_m(size);
                 if (!asked.results.holds(Product::Displacement))
                     asked.results.set(Product::Displacement, {displacement_m.data()});
-                points.rest_m = {rest_m.data()};
-                alone([&] { state_.evaluate(query, points, asked.results, watch_of(watch)); });
+                for (const Squares::Square& square : squares.all) {
+                    Points<float> points = squares.points(square);
+                    points.origin_m += origin;
+                    const PreparedQuery<float> query(state_.frame(), 0, summed, points.origin_m);
+                    for (std::size_t first = 0; first < points.count; first += kPiece) {
+                        if (*watch.flag()) throw BuildCancelled();
+                        const Points<float> piece{.origin_m = points.origin_m,
+                                                  .count = std::min(kPiece, points.count - first),
+                                                  .rest_m = from(points.rest_m, first),
+                                                  .cell_m = from(points.cell_m, first),
+                                                  .pixel_m = from(points.pixel_m, first)};
+                        alone([&] {
+                            find_highest_rest(bounds_, query, piece, {}, {&rest_m[square.first + first]},
+                                              {&residual_m[square.first + first]});
+                        });
+                    }
+                    points.rest_m = {&rest_m[square.first]};
+                    const Results<float> results = from(asked.results, square.first);
+                    const auto tell = [&](double done) {
+                        watch.tell(
+                            (static_cast<double>(square.first) + done * static_cast<double>(square.count)) /
+                            static_cast<double>(size));
+                    };
+                    alone([&] {
+                        state_.evaluate(query, points, results, {.progress = tell, .cancel = watch.flag()});
+                    });
+                    // What counts from the square's middle is to count from the origin.
+                    const auto position_m = results.vectors(Product::Position);
+                    for (std::size_t i = 0; i < points.count; ++i) {
+                        rest_m[square.first + i] += glm::vec2(square.middle_m);
+                        if (position_m) position_m[i] += glm::vec3(square.middle_m, 0.0);
+                    }
+                }
                 const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
-                for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
+                for (std::size_t i = 0; i < size; ++i) height_m[i] = displaced_m[i].z;
+                squares.put_back(Strided<glm::vec2>{rest_m.data()});
+                squares.put_back(Strided<float>{residual_m.data()});
+                squares.put_back(Strided<float>{height_m.data()});
+                for (const ProductRow& row : kProductTable) {
+                    if (!asked.results.given()[index(row.product)]) continue;
+                    if (row.components == 3)
+                        squares.put_back(asked.results.vectors(VectorProduct::checked(row.product)));
+                    else
+                        squares.put_back(asked.results.numbers(NumberProduct::checked(row.product)));
+                }
             });
         } catch (const BuildCancelled&) {
             watch.rethrow();
@@ -256,7 +366,7 @@ class PythonFrame {
         bool none_given = true;
         for (const py::object& array : arrays) none_given = none_given && array.is_none();
         if (given.outputs)
-            for (const std::string& name : *given.outputs) wanted.set(output_of(name));
+            for (const std::string& name : given.outputs->all) wanted.set(output_of(name));
         else if (none_given)
             wanted = sea_.outputs;
         for (std::size_t i = 0; i < kProductCount; ++i)
@@ -298,6 +408,12 @@ class PythonFrame {
         for (std::size_t i = 0; i < kProductCount; ++i) {
             if (arrays[i].is_none()) continue;
             write_to(asked, i, arrays[i], count);
+            for (const auto& [name, other] : written)
+                if (overlap(py::reinterpret_borrow<py::array>(other),
+                            py::reinterpret_borrow<py::array>(arrays[i])))
+                    throw py::value_error(std::string(kProductTable[i].identifier) + ": overlaps " +
+                                          name.cast<std::string>() +
+                                          "; accepted: arrays that share no memory");
             written[kProductTable[i].identifier] = arrays[i];
         }
         return written;
@@ -373,7 +489,7 @@ std::string output_lines() {
 const std::string kEvaluateDoc =
     "The sea at points, into the caller's arrays: a dict of what was written.\n\n"
     "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
-    "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
+    "origin: (x, y) [m], in double precision, as far out as points: a sea a million metres away loses nothing.\n"
     "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's levels; default its "
     "first.\n"
     "cell_axis_m, pixel_axis_m: float32 (n, 2), for footprints that are ellipses: the long axis [m], where it is "
@@ -381,7 +497,7 @@ const std::string kEvaluateDoc =
     "rest_normal: float32 (n, 3), normals of the surface that the sea lies on, where that isn't flat: then normals are those of "
     "the waves on it.\n" +
     output_lines() +
-    "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
+    "Velocities are orbital, of linear waves: no Stokes drift is in them. They are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
     "sea's products.\n\n"
     "Arrays are float32, of any strides; nothing between their numbers is touched. They are read and written in place, but "
@@ -408,8 +524,7 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>)
         [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
            const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
            const py::object& pixel_axis_m, const py::object& rest_normal, ArrayArgument<kRows>... arrays,
-           const std::optional<std::vector<std::string>>& outputs, const py::object& progress,
-           const py::object& cancel) {
+           const std::optional<Names>& outputs, const py::object& progress, const py::object& cancel) {
             return self.evaluate(
                 rest, origin, {cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal, {arrays...}, outputs},
                 progress, cancel);
@@ -424,7 +539,7 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>)
         [](const py::object& self, double t, const py::object& rest, std::array<double, 2> origin,
            const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
            const py::object& pixel_axis_m, const py::object& rest_normal, ArrayArgument<kRows>... arrays,
-           const std::optional<std::vector<std::string>>& outputs) {
+           const std::optional<Names>& outputs) {
             return PythonFrame::begin(
                 self, t, rest, origin,
                 {cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal, {arrays...}, outputs});
@@ -455,9 +570,10 @@ void add_frame(py::module_& module) {
             py::arg("progress") = none(), py::arg("cancel") = none(),
             "The sea above places of the world: what evaluate() gives at the points at rest that are displaced "
             "there, found by iteration; where the sea has folded over itself, at the highest. The sea must hold positions.\n\n"
-            "xy: numbers of shape (n, 2), relative to origin [m]. footprint_m: as cell_m and pixel_m of "
-            "evaluate().\n"
-            "A dict: height_m, float32 (n,); rest_m, float32 (n, 2), the points at rest; residual_m, float32 "
+            "xy: numbers of shape (n, 2), relative to origin [m], in double precision. footprint_m: as cell_m and pixel_m "
+            "of evaluate().\n"
+            "A dict: height_m, float32 (n,); rest_m, float32 (n, 2), the points at rest, relative to origin, and so rounded where "
+            "they are far from it; residual_m, float32 "
             "(n,), how far from its place each one's surface is, below a millimetre but for a few places of a sea that "
             "has folded over; and the outputs named, by default normal and velocity, of "
             "those that the sea holds. All are finite. progress, cancel: as evaluate()'s.")

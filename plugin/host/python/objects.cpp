@@ -21,6 +21,7 @@ namespace py = pybind11;
 
 const SceneObject& object_at(const Scene& scene, py::ssize_t index) {
     const auto count = static_cast<py::ssize_t>(scene.objects.size());
+    if (count == 0) throw py::index_error("objects[" + std::to_string(index) + "]: the scene has no objects");
     if (index < 0 || index >= count)
         throw py::index_error("objects[" + std::to_string(index) + "]: accepted: 0 … " +
                               std::to_string(count) + ", without its end");

@@ -48,23 +48,34 @@ namespace {
 using Levels = std::variant<double, std::vector<double>>;
 
 struct SeaRequest {
-    std::vector<std::string> products;
+    Names products;
     std::optional<Levels> cell_m, pixel_m;
     std::optional<std::vector<double>> lattice;
     std::vector<View> views;
     bool pixels = false;
 };
 
-std::vector<double> levels(const std::optional<Levels>& levels, const Surface& surface) {
+// name: the caller's, for messages.
+std::vector<double> levels(const std::optional<Levels>& levels, const char* name, const Surface& surface) {
     if (!levels) return {surface.size_m / surface.resolution};
-    if (const double* one = std::get_if<double>(&*levels)) return {*one};
-    return std::get<std::vector<double>>(*levels);
+    const double* const one = std::get_if<double>(&*levels);
+    std::vector<double> given = one ? std::vector{*one} : std::get<std::vector<double>>(*levels);
+    double before_m = -1.0;
+    for (const double level_m : given) {
+        if (!(level_m >= 0.0 && level_m > before_m && std::isfinite(level_m)))
+            throw py::value_error(std::string(name) +
+                                  ": accepted: a finite number from 0 up [m], or such that rise");
+        before_m = level_m;
+    }
+    if (given.empty())
+        throw py::value_error(std::string(name) + ": is empty; accepted: a number [m], or rising ones");
+    return given;
 }
 
 Query plain_query(const Scene& scene, const SeaRequest& request) {
     Query query;
-    query.cell_m = levels(request.cell_m, scene.surface);
-    query.pixel_m = levels(request.pixel_m, scene.surface);
+    query.cell_m = levels(request.cell_m, "cell_m", scene.surface);
+    query.pixel_m = levels(request.pixel_m, "pixel_m", scene.surface);
     if (request.lattice) {
         const std::vector<double>& given = *request.lattice;
         Lattice lattice;
@@ -110,7 +121,7 @@ SeaOrder order_of(const Scene& scene, SeaRequest request) {
                    .held = {},
                    .plain = {},
                    .request = std::move(request)};
-    for (const std::string& name : order.request.products) order.asked.set(output_of(name));
+    for (const std::string& name : order.request.products.all) order.asked.set(output_of(name));
     order.held = order.asked;
     if (order.asked[index(Product::Position)]) order.held.set(index(Product::Displacement));
     const SeaRequest& kept = order.request;
@@ -182,10 +193,10 @@ void add_sea(py::module_& module) {
                py::arg("lattice") = py::none(), py::arg("views") = py::tuple(), py::arg("pixels") = false);
     };
     with_request([&](const auto&... arguments) {
-        sea.def(py::init([](const Scene& scene, std::vector<std::string> products,
-                            std::optional<Levels> cell_m, std::optional<Levels> pixel_m,
-                            std::optional<std::vector<double>> lattice, std::vector<View> views, bool pixels,
-                            const py::object& progress, const py::object& cancel) {
+        sea.def(py::init([](const Scene& scene, Names products, std::optional<Levels> cell_m,
+                            std::optional<Levels> pixel_m, std::optional<std::vector<double>> lattice,
+                            std::vector<View> views, bool pixels, const py::object& progress,
+                            const py::object& cancel) {
                     Watch watch(progress, cancel);
                     return build_sea(order_of(scene, {std::move(products), std::move(cell_m),
                                                       std::move(pixel_m), lattice, std::move(views), pixels}),
@@ -194,7 +205,7 @@ void add_sea(py::module_& module) {
                 arguments..., py::arg("progress") = py::none(), py::arg("cancel") = py::none());
         sea.def_static(
             "begin",
-            [](const Scene& scene, std::vector<std::string> products, std::optional<Levels> cell_m,
+            [](const Scene& scene, Names products, std::optional<Levels> cell_m,
                std::optional<Levels> pixel_m, std::optional<std::vector<double>> lattice,
                std::vector<View> views, bool pixels) {
                 return std::make_unique<Task>(

@@ -2,15 +2,23 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/plan/products.h"
 #include "core/surface/projected_grid.h"
 #include "core/waves/sea_over_time.h"
 
 namespace pelagic::python {
+
+// Of products, as a caller lists them. One text alone is refused in words.
+struct Names {
+    std::vector<std::string> all;
+};
 
 // What Python holds: a Sea is immutable, and frames keep it alive. Its plan has one query, number 0, of these
 // products, and of displacements wherever positions are, which are the same sums.
@@ -30,3 +38,19 @@ std::string output_names();
 void add_grids(pybind11::module_& module, pybind11::class_<PythonSea>& sea);
 
 }  // namespace pelagic::python
+
+template <>
+struct pybind11::detail::type_caster<pelagic::python::Names> {
+    using All = make_caster<std::vector<std::string>>;
+    PYBIND11_TYPE_CASTER(pelagic::python::Names, All::name);
+
+    bool load(handle from, bool convert) {
+        if (PyUnicode_Check(from.ptr()) != 0)
+            throw type_error("\"" + from.cast<std::string>() +
+                             "\" is one text; accepted: a list or a tuple of names");
+        All all;
+        if (!all.load(from, convert)) return false;
+        value.all = cast_op<std::vector<std::string>&&>(std::move(all));
+        return true;
+    }
+};

@@ -254,6 +254,17 @@ TEST_F(Files, FoldersAreMadeWithTheirParents) {
     EXPECT_TRUE(fs::is_directory(folder_ / "a" / "d"));
 }
 
+TEST_F(Files, AFolderThatHoldsNoFilesIsReported) {
+    if (!fs::is_directory("/proc/self")) GTEST_SKIP() << "this machine has no /proc";
+    for (const char* folder : {"/proc/sea", "/proc/sea/maps"}) {
+        EXPECT_THROW(check_folder(folder), FileError);
+        const FileError error = folder_error(folder);
+        EXPECT_EQ(error.code(), std::errc::not_supported) << error.what();
+        EXPECT_TRUE(says(error, "the system keeps no files there: choose another folder")) << error.what();
+    }
+    EXPECT_EQ(write_error("/proc/sea.json", "x").code(), std::errc::not_supported);
+}
+
 TEST_F(Files, AFileWhereAFolderShouldBeIsReported) {
     write_atomically(folder_ / "file", std::string_view("x"));
     for (const fs::path& folder :

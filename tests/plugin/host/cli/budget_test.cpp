@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,14 @@ TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
     EXPECT_EQ(picture.status, 2);
     EXPECT_TRUE(has(picture.err, "shot.toml:13:12: quality.frame_ms = 0.01, which nothing holds"))
         << picture.err;
+    // A draft isn't among what a budget chooses from, and takes less.
+    std::smatch ms;
+    ASSERT_TRUE(std::regex_search(
+        picture.err, ms,
+        std::regex(
+            "the cheapest final pictures have .* about ([0-9.]+) ms a picture; a draft .* takes about ([0-9.]+) ms")))
+        << picture.err;
+    EXPECT_LT(std::stod(ms[2]), std::stod(ms[1]));
 }
 
 TEST_F(Budget, PicturesTakeItAndNamedSettingsStay) {

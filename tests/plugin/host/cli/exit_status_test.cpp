@@ -14,6 +14,7 @@ TEST(ExitStatus, IsThatOfItsCause) {
     const TempFolder folder;
     write_file(folder.path() / "small.toml", text_of({.frames = 3}));
     write_file(folder.path() / "long.toml", text_of({.frames = 20000}));
+    write_file(folder.path() / "large.toml", "[surface]\nresolution = 4096\n");
     write_file(folder.path() / "wrong.toml", "x = 1\n");
     write_file(folder.path() / "budget.toml", text_of({.frames = 3}) + "[quality]\nmax_error = 0.3\n");
     const auto shell = [&](const std::string& line) {
@@ -48,13 +49,18 @@ TEST(ExitStatus, IsThatOfItsCause) {
         {2, "$P bake small.toml --out small.toml"},
         {2, "$P bake budget.toml --out x --frames 2"},
         {2, "$P bake budget.toml --out x --frames 2 --chosen=nothing"},
+        {2, "$P bake small.toml --out /proc/sea"},
+        {2, "$P render small.toml --out /proc/sea --size 16x9 --samples 1"},
+        // What it allows.
+        {2, "$P bake small.toml --out x --max-memory 1K"},
+        {2, "$P render small.toml --out x --max-memory 1K"},
         // What isn't whole.
         {3, "$P farm --status farmed"},
         {3, "$P verify nowhere"},
         {3, "rm out/mesh/small.0002.usda; $P verify out"},
         // What another machine, or a later day, has.
         {75, "$P keys > /dev/full"},
-        {75, "$P bake small.toml --out x --max-memory 1K"},
+        {75, "ulimit -v 200000; $P bake large.toml --out y"},
         {75, "ulimit -f 1; $P bake small.toml --out y"},
         // Signals.
         {143, "$P bake long.toml --out z & sleep 0.5; kill -TERM $!; wait $!"},

@@ -120,6 +120,18 @@ TEST_F(Explain, PricesAddUpWhereNothingIsShared) {
     EXPECT_EQ(rows[5].lines, rows[0].lines + rows[1].lines);
 }
 
+// The numbers that its --json has.
+TEST_F(Explain, SaysWhatAFrameTakes) {
+    const Ended ended = explain(kOneCascade);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    for (const char* of : {"A baked frame", "A picture"})
+        EXPECT_TRUE(std::regex_search(
+            ended.out, std::regex(std::string("\n  ") + of +
+                                  " takes about [0-9.e-]+ s of computing and [0-9.]+ [KM]iB in its files")))
+            << ended.out;
+    EXPECT_TRUE(std::regex_search(ended.out, std::regex("\nOn [0-9]+ threads?, by "))) << ended.out;
+}
+
 TEST_F(Explain, HasNoRowForWhatIsOff) {
     const auto rows = prices(std::string("[effects]\nwhitecaps = false\n[output]\nattributes = []\n") +
                              "[surface]\nsize_m = 40\nresolution = 32\n[waves]\nchoppiness = 0\n"

@@ -528,6 +528,7 @@ TEST_F(Pictures, AnInterruptedRenderLeavesWholeFilesAndSaysHowMany) {
     const Ended ended = render.wait();
     EXPECT_EQ(ended.status, 128 + SIGINT) << ended.err;
     EXPECT_FALSE(ended.killed) << "it ends by itself";
+    EXPECT_TRUE(has(ended.err, "\npelagic: stopping: the picture at hand is given up")) << ended.err;
     EXPECT_EQ(ended.out, "");
     const std::vector<std::string> left = files_in("out");
     const auto exrs = std::count_if(left.begin(), left.end(),

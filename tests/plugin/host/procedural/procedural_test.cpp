@@ -579,6 +579,99 @@ TEST(Procedural, CallsOfACancelledSeaEnd) {
     EXPECT_TRUE(results() == before);
 }
 
+// Of tiles and of wave trains, for points, water and rays alike.
+TEST(Procedural, WhatIsFinerThanTheFinestCountsAsThat) {
+    for (const std::string& text : {std::string(), std::string("[waves]\nmodel = \"trochoid\"\n")}) {
+        pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+        options.finest_cell_m = 2.0;
+        const SeaHandle sea = open_text(text, &options);
+        const FrameHandle frame = frame_of(sea, 3.0, 3.0);
+        pelagic_info info = PELAGIC_INIT(pelagic_info);
+        ASSERT_EQ(pelagic_get_info(sea.get(), &info, nullptr), PELAGIC_OK);
+        EXPECT_GT(info.finest_cell_m, 1.0) << text;
+        EXPECT_LE(info.finest_cell_m, 2.0) << text;
+        EXPECT_GT(info.finest_pixel_m, 1.0) << text;
+        const std::vector<glm::vec2> rests = random_rests(200, 100.0f);
+        const auto with = [&](float footprint_m) {
+            return ask(frame, rests, glm::dvec2(0.0), std::vector<float>(rests.size(), footprint_m));
+        };
+        const Answers finest = with(static_cast<float>(info.finest_cell_m));
+        // Tiles are summed in another order where points have footprints of their own.
+        const auto apart_m = [&](const Answers& other) {
+            float most_m = 0.0f;
+            for (std::size_t i = 0; i < rests.size(); ++i)
+                most_m = std::max({most_m, glm::length(other.position[i] - finest.position[i]),
+                                   glm::length(other.normal[i] - finest.normal[i])});
+            return most_m;
+        };
+        EXPECT_LT(apart_m(with(0.01f)), 1e-4f) << text;
+        EXPECT_LT(apart_m(ask(frame, rests)), 1e-4f) << text;
+        EXPECT_GT(apart_m(with(8.0f)), 1e-2f) << text;
+        const auto water = [&](double footprint_m) {
+            pelagic_water there = PELAGIC_INIT(pelagic_water);
+            const double place_m[2] = {12.0, -7.0};
+            EXPECT_EQ(pelagic_water_at(frame.get(), place_m, 1, footprint_m, &there, nullptr), PELAGIC_OK);
+            return there.height_m;
+        };
+        EXPECT_EQ(water(0.01), water(info.finest_cell_m)) << text;
+        EXPECT_EQ(water(0.0), water(info.finest_cell_m)) << text;
+        // A ray that is thinner has the values of a point that is.
+        std::vector<float> down{0.0f, 0.0f, -1.0f}, rest_m(2), normal(3);
+        pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+        rays.origin_m[2] = 50.0;
+        rays.count = 1;
+        rays.direction = down.data();
+        pelagic_values values = PELAGIC_INIT(pelagic_values);
+        values.normal = normal.data();
+        pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+        hits.rest_m = rest_m.data();
+        hits.values = &values;
+        ASSERT_EQ(pelagic_intersect(frame.get(), &rays, &hits, nullptr), PELAGIC_OK);
+        const Answers there = ask(frame, {glm::vec2(rest_m[0], rest_m[1])});
+        EXPECT_EQ(there.normal[0], glm::vec3(normal[0], normal[1], normal[2])) << text;
+    }
+}
+
+TEST(Procedural, FlagsOfLaterVersionsAreRefused) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 3.0, 3.0);
+    pelagic_error error;
+    const auto is_said = [&](const char* name) {
+        EXPECT_NE(std::string(error.message).find(name), std::string::npos) << error.message;
+        EXPECT_NE(std::string(error.message).find("accepted: 0, 1"), std::string::npos) << error.message;
+    };
+    const std::vector<float> down{0.0f, 0.0f, -1.0f};
+    std::vector<float> distance(1);
+    std::vector<unsigned char> occluded(1);
+    pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+    rays.origin_m[2] = 50.0;
+    rays.count = 1;
+    rays.direction = down.data();
+    rays.on_earth = 2;
+    pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+    hits.distance = distance.data();
+    EXPECT_EQ(pelagic_intersect(frame.get(), &rays, &hits, &error), PELAGIC_INVALID_ARGUMENT);
+    is_said("rays.on_earth is 2");
+    EXPECT_EQ(pelagic_occluded(frame.get(), &rays, occluded.data(), &error), PELAGIC_INVALID_ARGUMENT);
+    is_said("rays.on_earth is 2");
+    pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
+    ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, nullptr), PELAGIC_OK);
+    pelagic_mesh_size size = PELAGIC_INIT(pelagic_mesh_size);
+    pelagic_expand_options options = PELAGIC_INIT(pelagic_expand_options);
+    options.triangles = 2;
+    EXPECT_EQ(pelagic_expand_size(frame.get(), &camera, &options, &size, &error), PELAGIC_INVALID_ARGUMENT);
+    is_said("options.triangles is 2");
+    options.triangles = 1;
+    options.on_earth = -1;
+    EXPECT_EQ(pelagic_expand_size(frame.get(), &camera, &options, &size, &error), PELAGIC_INVALID_ARGUMENT);
+    is_said("options.on_earth is -1");
+    options.on_earth = 1;
+    EXPECT_EQ(pelagic_expand_size(frame.get(), &camera, &options, &size, &error), PELAGIC_OK);
+    camera.width = 0;
+    EXPECT_EQ(pelagic_expand_size(frame.get(), &camera, &options, &size, &error), PELAGIC_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(error.message).find("camera.width, height: "), std::string::npos) << error.message;
+}
+
 // A coarser sea takes less, whichever of the two its host says.
 TEST(Procedural, OneFootprintStandsForBoth) {
     const auto bytes_of = [](double cell_m, double pixel_m) {
@@ -620,6 +713,24 @@ TEST(Procedural, ACallThatRunsIsCancelled) {
     host.join();
     EXPECT_EQ(status, PELAGIC_CANCELLED);
     EXPECT_EQ(occluded.back(), 2) << "it went on to the end";
+}
+
+// Places that would take ten seconds or more.
+TEST(Procedural, WaterThatIsAskedForIsCancelled) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 3.0, 3.0);
+    constexpr std::size_t kPlaces = 1'000'000;
+    std::vector<double> places_m(2 * kPlaces);
+    for (std::size_t i = 0; i < places_m.size(); ++i) places_m[i] = static_cast<double>(i * 7919 % 1000);
+    std::vector<pelagic_water> water(kPlaces, PELAGIC_INIT(pelagic_water));
+    std::thread host([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        pelagic_cancel(sea.get(), 1, nullptr);
+    });
+    const pelagic_status status =
+        pelagic_water_at(frame.get(), places_m.data(), kPlaces, 0.0, water.data(), nullptr);
+    host.join();
+    EXPECT_EQ(status, PELAGIC_CANCELLED);
 }
 
 TEST(Procedural, ASeaOverTheHostsMemoryIsRefused) {

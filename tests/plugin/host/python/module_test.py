@@ -197,6 +197,8 @@ class Scene(unittest.TestCase):
     def test_where_bodies_are_and_what_they_are_of(self):
         boat = str(Path(__file__).parents[4] / "tests/plugin/format/shot/data/folder/boat.obj")
         scene = pelagic.Scene()
+        with self.assertRaisesRegex(IndexError, r"^objects\[0\]: the scene has no objects$"):
+            scene.object_pose(0, 1.0)
         scene.objects = [pelagic.SceneObject(boat, name="still", east_m=3.0, north_m=-2.0, up_m=0.5, heading_deg=90.0, scale=2.0),
                          pelagic.SceneObject("", name="none", path="1 0 0, 11 30 40", interpolation="linear")]
         pose = scene.object_pose(0, 7.5)
@@ -485,14 +487,28 @@ class Query(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "coverage: its shape is"):
             self.frame.evaluate(self.rest, coverage=np.zeros((points, 1), np.float32))
 
+    def test_outputs_that_share_memory_are_refused(self):
+        points = len(self.rest)
+        one, table = np.zeros((points, 3), np.float32), np.zeros((points, 6), np.float32)
+        for position, normal in ((one, one), (table[:, :3], table[:, 2:5]), (table[:, :3], table[::-1, :3])):
+            with self.assertRaisesRegex(ValueError, "normal: overlaps position"):
+                self.frame.evaluate(self.rest, position=position, normal=normal)
+            with self.assertRaisesRegex(ValueError, "normal: overlaps position"):
+                self.frame.begin(0.0, self.rest, position=position, normal=normal)
+        expected = self.frame.evaluate(self.rest, outputs=("position", "normal"))
+        self.frame.evaluate(self.rest, position=table[:, :3], normal=table[:, 3:])  # columns of one table share none
+        np.testing.assert_array_equal(table, np.hstack([expected["position"], expected["normal"]]))
+
     def test_values_that_are_no_place_or_time_are_refused(self):
         for bad in (math.nan, math.inf, 1e30):
             rest = self.rest.copy()
             rest[5, 1] = bad
             with self.assertRaisesRegex(ValueError, "rest: point 5"):
                 self.frame.evaluate(rest)
-        with self.assertRaisesRegex(ValueError, "origin"):
-            self.frame.evaluate(self.rest, (math.nan, 0.0))
+        for bad in (math.nan, 1e300, -1e10):
+            for ask in (self.frame.evaluate, self.frame.heights):
+                with self.assertRaisesRegex(ValueError, "origin: accepted: .* m"):
+                    ask(self.rest, (bad, 0.0))
         with self.assertRaisesRegex(ValueError, "pixel_m"):
             self.frame.evaluate(self.rest, pixel_m=-1.0)
         with self.assertRaisesRegex(ValueError, "at most 1e12 s"):
@@ -510,6 +526,14 @@ class Query(unittest.TestCase):
             frame.evaluate(self.rest, outputs=("positon",))
         with self.assertRaisesRegex(ValueError, 'nearest is "velocity"'):
             pelagic.Sea(small_scene(), ("velocty",))
+        for ask in (lambda: frame.evaluate(self.rest, outputs="position"), lambda: frame.heights(self.rest, outputs="position"),
+                    lambda: pelagic.Sea(small_scene(), "position")):
+            with self.assertRaisesRegex(TypeError, '^"position" is one text; accepted: a list or a tuple of names$'):
+                ask()
+        for name in ("cell_m", "pixel_m"):
+            for wrong in (-1.0, math.nan, [], [2.0, 1.0]):
+                with self.assertRaisesRegex(ValueError, f"^{name}: "):
+                    pelagic.Sea(small_scene(), **{name: wrong})
 
     def test_no_points_are_an_empty_answer(self):
         for array in self.frame.evaluate(np.empty((0, 2), np.float32)).values():

@@ -59,6 +59,21 @@ class Heights(unittest.TestCase):
         there = self.frame.evaluate(far["rest_m"], (3e6, -2e6), outputs=("position",))["position"]
         np.testing.assert_allclose(there[:, :2], self.xy, atol=1.1e-3)
 
+    def test_far_places_are_as_exact_as_with_an_origin(self):
+        origin = np.array((1e7, -3e7))
+        near, far = self.frame.heights(self.xy, origin), self.frame.heights(self.xy + origin)
+        np.testing.assert_allclose(far["height_m"], near["height_m"], atol=2e-3)
+        np.testing.assert_allclose(far["normal"], near["normal"], atol=2e-3)
+        self.assertLess(far["residual_m"].max(), 1e-3)
+        # Far ones and near ones in one call, in any order, each as it is alone.
+        both = np.concatenate([self.xy[:50] + origin, self.xy[:50]])[::-1]
+        found = self.frame.heights(both, outputs=("position", "velocity"))
+        for i in (0, 49, 50, 99):
+            for name, array in self.frame.heights(both[i:i + 1], outputs=("position", "velocity")).items():
+                np.testing.assert_array_equal(array[0], found[name][i], name)
+        np.testing.assert_array_equal(found["height_m"][:50], self.frame.heights(self.xy[:50])["height_m"][::-1])
+        np.testing.assert_allclose(found["position"][:, :2], both, rtol=1e-7, atol=2e-3)
+
     def test_a_folded_sea_is_finite(self):
         frame = pelagic.Frame(pelagic.Sea(storm(choppiness=5.0), cell_m=0.25, pixel_m=0.25))
         frame.set(1.0)

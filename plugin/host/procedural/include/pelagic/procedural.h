@@ -139,8 +139,8 @@ typedef struct pelagic_open_options {
 PELAGIC_API pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
                                         pelagic_sea** sea, pelagic_error* error);
 /* Not 0: calls that run on the sea's frames, or begin, end with PELAGIC_CANCELLED as soon as they can, until it is set back to 0; what they were to write is
- * worthless, and a frame that was being set has no time until it is set again: whatever is asked of it is PELAGIC_INVALID_ARGUMENT until then. Any thread may call it, while others use the sea. Bounds and
- * pelagic_water_at() are short and go on. Frames of a sea that is closed stay as it was when it was. */
+ * worthless, and a frame that was being set has no time until it is set again: whatever is asked of it is PELAGIC_INVALID_ARGUMENT until then. Any thread may call it, while others use the sea. Bounds
+ * are short and go on. Frames of a sea that is closed stay as it was when it was. */
 PELAGIC_API pelagic_status pelagic_cancel(const pelagic_sea* sea, int cancelled, pelagic_error* error);
 /* Frames keep what they need of it: they may be released later. Null is nothing to close. */
 PELAGIC_API void pelagic_close(pelagic_sea* sea);
@@ -150,11 +150,12 @@ typedef struct pelagic_info {
     size_t size;
     int first_frame, last_frame;
     double frames_per_second;
-    double time_scale;                    /* seconds of the sea in a second on the screen */
-    double loop_s;                        /* after which the sea is the same again; 0: never */
-    double significant_height_m;          /* Hs; of a sea that changes, at its first key */
-    double peak_wavelength_m;             /* of a sea that changes, of its keys' mean */
-    double finest_cell_m, finest_pixel_m; /* what is asked for finer counts as this */
+    double time_scale;           /* seconds of the sea in a second on the screen */
+    double loop_s;               /* after which the sea is the same again; 0: never */
+    double significant_height_m; /* Hs; of a sea that changes, at its first key */
+    double peak_wavelength_m;    /* of a sea that changes, of its keys' mean */
+    double finest_cell_m,
+        finest_pixel_m; /* what is asked for finer, by points and rays, counts as this: of wave trains at least 1/64 of the shortest */
     size_t
         frame_bytes; /* what a frame holds; beside it bounds keep up to three times as much, rays up to ray_cache_bytes */
     size_t
@@ -244,7 +245,7 @@ typedef struct pelagic_values {
     size_t size;
     float* position_m;     /* x, y, z, relative to the origin at z = 0 */
     float* normal;         /* x, y, z: unit; z is negative where the surface has folded over */
-    float* velocity_mps;   /* x, y, z */
+    float* velocity_mps;   /* x, y, z: orbital, of linear waves; no Stokes drift is in it */
     float* slope_variance; /* xx, yy, xy of the slopes that a pixel doesn't resolve */
     /* All foam, 0 … 1: what breaks now, and where the shot has persistent foam (effects.foam_decay_s) what earlier breaking has left.
      * To a program whose structure ends here, as version 0.1.0 had it: what breaks now, as if no foam were persistent. */
@@ -312,7 +313,7 @@ typedef struct pelagic_hits {
 /* The first place where each ray meets the sea, from above or from below. The sea is the exact surface of the frame's finest cells, but for the
  * tolerance: a hit lies no farther from it than tolerance x footprint, a ray that goes deeper through it has a hit, and one that stays
  * further away has none. That is by samples of the frame, of which five standard deviations are within the tolerance. Footprints below
- * pelagic_open_options.finest_cell_m count as that, and so do, of wave trains, those below 1/64 of the shortest.
+ * pelagic_info.finest_cell_m count as that.
  *
  * A ray that begins within the tolerance of the surface may begin on its other side. A ray that has gone between the heights of the highest
  * crest and the lowest trough for 32 km meets the sea at rest from there on; on the earth, one that goes down from below all waves
@@ -333,7 +334,7 @@ typedef struct pelagic_expand_options {
     size_t size;
     double
         cell_px; /* the side of a cell on the screen, 0.25 … 1000 pixels; 0: 2. No mesh has more than 8192 × 8192 cells. */
-    int triangles; /* 0: quads */
+    int triangles; /* 0: quads; 1: triangles */
     int on_earth; /* 0: flat, as points and bounds are; 1: bent with the earth, which touches z = 0 below the camera */
     /* Instead of cell_px, 0.01 … 100 pixels: cells as large as keep 95 % of the sea in the picture so near to the surface of the finest cells,
      * along its normal; up to 8 pixels large, and no smaller than 0.25. Found by samples, which takes up to half as long

@@ -159,29 +159,30 @@ def reads_volumes_once():
 def curves(owner):
     """The curves that animate an object or its data: a collection with remove(), or an empty list."""
     animation = owner.animation_data
-    return _curves_of(animation) if animation else []
-
-
-def curves_of_tracks(owner):
-    """Those in an object's NLA."""
-    animation = owner.animation_data
-    return [curve for track in (animation.nla_tracks if animation else ()) for strip in track.strips for curve in _curves_of(strip)]
-
-
-def _curves_of(user):
-    """Those of an action, for who uses it."""
-    if user.action is None:
+    if animation is None or animation.action is None:
         return []
-    if not hasattr(user, "action_slot"):  # actions have slots since 4.4
-        return user.action.fcurves
-    if user.action_slot is None:
+    if not hasattr(animation, "action_slot"):  # actions have slots since 4.4
+        return animation.action.fcurves
+    if animation.action_slot is None:
         return []
-    for layer in user.action.layers:
+    for layer in animation.action.layers:
         for strip in layer.strips:
-            bag = strip.channelbag(user.action_slot)
+            bag = strip.channelbag(animation.action_slot)
             if bag:
                 return bag.fcurves
     return []
+
+
+def curves_of_actions():
+    """Those of all actions of the file, whoever uses them."""
+    for action in bpy.data.actions:
+        if not hasattr(action, "slots"):
+            yield from action.fcurves
+            continue
+        for layer in action.layers:
+            for strip in layer.strips:
+                for bag in strip.channelbags:
+                    yield from bag.fcurves
 
 
 def set_uv(layer, uv):

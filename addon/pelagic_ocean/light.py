@@ -203,7 +203,7 @@ def _looked_up(tree):
     x, y, z = tree.add("ShaderNodeTexCoord", output="Generated").parts()
     half_row = math.pi / SKY_WIDTH
     is_seen = tree.add("ShaderNodeLightPath", output="Is Camera Ray")
-    return tree.vector(x, y, z.at_least(is_seen * (half_row - ALL) + ALL))
+    return tree.vector(x, y, z.at_least(is_seen * ((x * x).plus_product(y, y).sqrt() * half_row - ALL) + ALL))
 
 
 def _disc(tree, asked):

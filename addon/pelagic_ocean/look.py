@@ -180,7 +180,7 @@ class PELAGIC_OT_add_light(bpy.types.Operator):
     def execute(self, context):
         first = first_ocean(context.scene)
         if first != context.object:
-            self.report({"ERROR"}, f"A scene has one sun and sky, those of its first ocean by name: select {first.name if first else 'it'}")
+            self.report({"ERROR"}, f"A scene has one sun and sky, those of its first ocean by name: select {first.name}")
             return {"CANCELLED"}
         try:
             scene = ocean.scene_of(context.object, context.scene)

@@ -50,9 +50,15 @@ def without_place(text):
     return re.sub(r"^\S*:\d+:\d+: ", "", text, flags=re.MULTILINE)
 
 
+_on_console = set()
+
+
 def words_of(error):
     """What panels and operators say of an exception. Where it isn't meant for people the console says where it comes from."""
     if isinstance(error, (ValueError, OSError)) and str(error):
         return without_place(str(error))
-    traceback.print_exception(error)
-    return f"{type(error).__name__}: {error}. The console says where"
+    words = f"{type(error).__name__}: {error}. The console says where"
+    if words not in _on_console:  # once: a sea that plays asks again in each frame
+        _on_console.add(words)
+        traceback.print_exception(error)
+    return words

@@ -328,10 +328,12 @@ def migrate(obj):
         word = word_before(field, compat.stored(group, field.name))
         if word is not None:
             field.write(group, word)
-        _migrate_animation(obj, field, path)
+        _migrate_drivers(obj, field, path)
     for field in FIELDS if obj.pelagic.version < 7 else ():  # names, as add_row() gives
         for number, row in enumerate(getattr(getattr(obj.pelagic, field.table), field.name) if field.key["type"] == "entries" else (), 1):
             row.name = str(number)
+    if obj.pelagic.version < 7:
+        _migrate_curves({path: field for field, _, path in _drop_downs(obj)})
     obj.pelagic.version = VERSION
 
 
@@ -345,14 +347,19 @@ def _drop_downs(obj):
             yield from ((inner, entry, f"{path}[{row}].{inner.name}") for inner in entry_fields(field) if inner.key["type"] == "word")
 
 
-def _migrate_animation(obj, field, path):
-    """Gives the keyframes of a drop-down, and the numbers in its driver's expression, the words' numbers of today."""
-    for curve in (*compat.curves(obj), *compat.curves_of_tracks(obj)):
-        for point in curve.keyframe_points if curve.data_path == path else ():
+def _migrate_curves(drop_downs):
+    """Gives drop-downs' keyframes the words' numbers of today, in all actions: one may be in a track, or wait for an ocean. Those that have
+    them stay. drop_downs: by data path."""
+    for curve in compat.curves_of_actions():
+        field = drop_downs.get(curve.data_path)
+        for point in curve.keyframe_points if field else ():
             word = word_before(field, point.co.y)
             if word is not None:
                 point.handle_left.y = point.handle_right.y = point.co.y = number_of(word)
 
+
+def _migrate_drivers(obj, field, path):
+    """Gives the numbers in the expression of a drop-down's driver the same way."""
     def today(found):
         word = word_before(field, int(found[0]))
         return found[0] if word is None else str(number_of(word))

@@ -218,7 +218,6 @@ _simulations = {}  # by the names of their objects
 _read = {}  # the settings of oceans, by their names, as read since the last handler here began
 _rendering = set()  # names of scenes
 is_saving = False  # whether files' markers are in the meshes' place
-_objects = 0  # how many there were when settings of older files were looked for
 _is_told = False  # whether the pointer shows a progress
 _turn = threading.RLock()  # a render has a thread of its own
 
@@ -422,11 +421,8 @@ def _forget_deleted():
 @persistent
 def _before_evaluation(*_):
     """What was appended or linked may be of an older file."""
-    global _objects
-    if len(bpy.data.objects) != _objects:
-        _objects = len(bpy.data.objects)
-        for obj in oceans():
-            migrate(obj)
+    for obj in oceans():
+        migrate(obj)
 
 
 @persistent
@@ -463,8 +459,6 @@ def _on_update(bpy_scene, depsgraph):
 @persistent
 def _on_other_data(*_):
     """Undo, redo: meshes are of another moment now."""
-    global _objects
-    _objects = 0
     cages.forget()
     for simulation in _simulations.values():
         simulation.shown = simulation.awaited = None

@@ -249,7 +249,7 @@ def _limits(key, say):
     if key["type"] not in ("number", "integer"):
         return ""
     low, high = key["range"]
-    unit = SIGNS.get(key["unit"], " " + key["unit"] if key["unit"] else "")
+    unit = SIGNS.get(key["unit"], " " + say(key["unit"]) if key["unit"] else "")
     if abs(low) >= WIDE and abs(high) >= WIDE:
         return ""
     return say("{} or more").format(f"{low:g}{unit}") if high >= WIDE else say("{} to {}").format(f"{low:g}", f"{high:g}{unit}")
@@ -262,7 +262,8 @@ def tooltip(key, say=lambda text: text):
     """What Blender shows of a key. say: into another language."""
     parts = [say(_parts_of(key)[0] or key["label"]), _limits(key, say)]
     if key["type"] in ("text", "data file", "data time"):
-        parts.append(say(_sentence(FORM.sub("", key["accepted"]).replace('"', ""))))
+        accepted = FORM.sub("", key["accepted"])  # a word in quotes is to be typed as it stands
+        parts.append(say(accepted.replace('"', "") if accepted.startswith('"') else _sentence(accepted).replace('"', "")))
     return ". ".join(filter(None, parts))
 
 

@@ -273,7 +273,7 @@ GERMAN = {
         "Wie sehr der Wind über die Fläche schwankt, in Flecken, die mit ihm ziehen: 0, gar nicht; 1, von windstill bis zum Doppelten. Kräuselwellen, zu klein, um gezeigt zu werden, und Schaum folgen; im Ganzen bleiben beide gleich viel",
     "Of those patches; along the wind they are longer": "Dieser Flecken; entlang dem Wind sind sie länger",
     "Cat's paws and squall lines, at a place in a frame: patches of another wind that cross the sea. Ripples too small to be shown and foam follow it, waves that are shown don't. Their edges are as ragged as the pattern of Gust size":
-        "Böenstriche und Böenlinien, in einem Bild an einem Ort: Flecken anderen Windes, die über die See ziehen. Kräuselwellen, zu klein, um gezeigt zu werden, und Schaum folgen ihm, gezeigte Wellen nicht. Ihre Ränder sind so zerfranst wie das Muster der Böengröße",
+        "Katzenpfoten und Böenlinien, in einem Bild an einem Ort: Flecken anderen Windes, die über die See ziehen. Kräuselwellen, zu klein, um gezeigt zu werden, und Schaum folgen ihm, gezeigte Wellen nicht. Ihre Ränder sind so zerfranst wie das Muster der Böengröße",
     "When it is there; it may lie between frames, and outside the range":
         "Wann sie dort ist; auch zwischen Bildern und außerhalb des Bereichs",
     "Its middle, then": "Ihre Mitte, dann",
@@ -286,7 +286,8 @@ GERMAN = {
         "Mal den Wind der See: mehr als 1 ist eine Bö, weniger eine Flaute. Windstille hat ein Zehntel: Die langen Wellen gehen weiter",
     "On the sea: rings of its drops, which dull what the water mirrors, and a wind sea with less of its waves below a few metres, in a light wind of nearly all: 2, drizzle; 10, steady rain; 50, a cloudburst. What falls through the air isn't drawn":
         "Auf die See: Ringe der Tropfen, die das Spiegelbild stumpf machen, und eine Windsee, der Wellen unter einigen Metern fehlen, bei leichtem Wind fast alle: 2, Nieseln; 10, Landregen; 50, Wolkenbruch. Was durch die Luft fällt, wird nicht gezeichnet",
-    "Waves of far storms, each a narrow spectrum of its own": "Wellen ferner Stürme, jede mit einem schmalen Spektrum für sich",
+    "Waves of far storms, each a narrow spectrum of its own. Its groups come back, half as strong, after about the side of the largest tile of waves over their speed (g times the period / 4π in deep water): 446 s of a swell of 14 s by default; larger Cascades make that longer":
+        "Wellen ferner Stürme, jede mit einem schmalen Spektrum für sich. Ihre Gruppen kommen wieder, halb so stark, nach etwa der Seite der größten Kachel durch ihre Geschwindigkeit (in tiefem Wasser g mal Periode / 4π): bei 14 s sonst nach 446 s; größere Kaskaden machen das länger",
     "Significant height, 4 times the root of the variance": "Signifikante Höhe, das Vierfache der Wurzel der Varianz",
     "Period of the peak": "Periode des Gipfels",
     "With Spectrum File: the densities; the files d, i, j and k lie beside it":
@@ -393,12 +394,14 @@ GERMAN = {
         "Von Bildern auf einem Schirm: um so viele Blenden heller; EXRs enthalten das Licht selbst",
     "The exposure that a photographer's meter shows at ISO 100: 15 in full sun, 12 at sunset, 5 in deep dusk. Without it the shot's views are metered":
         "Die Belichtung, die ein Belichtungsmesser bei ISO 100 zeigt: 15 in voller Sonne, 12 bei Sonnenuntergang, 5 in tiefer Dämmerung. Ohne sie werden die Ansichten der Aufnahme gemessen",
-    "Above the horizon": "Über dem Horizont",
+    "Of the sun's middle above the horizon: the true (geometric) one, which is also where it's seen, since the air here refracts nothing; real air shows a setting sun half a degree higher":
+        "Der Sonnenmitte über dem Horizont: die wahre (geometrische), wo sie hier auch steht, denn diese Luft bricht kein Licht; wirkliche hebt eine untergehende Sonne um ein halbes Grad",
+    "pixels": "Pixel", "stops": "Blenden",
     "Towards the sun, counter-clockwise from +x (east)": "Zur Sonne hin, gegen den Uhrzeigersinn von +x (Osten)",
     "Clear daylight, or a picture of a sky: lat-long, middle column +x, azimuth growing to the left, top row the zenith; its sun is found in it":
         "Klares Tageslicht, oder das Bild eines Himmels: Länge und Breite, mittlere Spalte +x, Azimut wächst nach links, oberste Zeile der Zenit; seine Sonne wird darin gefunden",
-    "Daylight, or the path of an .exr": "daylight, oder der Pfad einer .exr",
-    "None, or the path of an .exr or .obj": "none, oder der Pfad einer .exr oder .obj",
+    "daylight, or the path of an .exr": "daylight, oder der Pfad einer .exr",
+    "none, or the path of an .exr or .obj": "none, oder der Pfad einer .exr oder .obj",
     "Haze of the daylight's air; 2 is the open sea's, 3 land's, 6 is hazy":
         "Dunst der Luft bei Tageslicht; 2 ist offene See, 3 Land, 6 ist diesig",
     "With a picture of a sky: how far one sees through its air; without it the air is clear":
@@ -419,7 +422,7 @@ GERMAN = {
         "Was der Grund zurückwirft: Rot, Grün, Blau; heller Sand, 0,36, 0,31, 0,23",
     "What the floor looks like near, times its colour: plain, or a picture that tiles, its top to the north":
         "Wie der Grund aus der Nähe aussieht, mal seine Farbe: einfarbig, oder ein Bild, das sich kacheln lässt, oben nach Norden",
-    "Plain, or the path of an .exr, square, with a side of 1, 2 ... 1024 pixels":
+    "plain, or the path of an .exr, square, with a side of 1, 2 ... 1024 pixels":
         "plain, oder der Pfad einer .exr, quadratisch, mit einer Seite von 1, 2 ... 1024 Pixeln",
     "The side of that picture on the floor": "Die Seite dieses Bildes auf dem Grund",
     "How much waves shape the light in the water: a low sun shines through crests, and their far sides are dark; 1 is as computed, 0 none":
@@ -449,7 +452,7 @@ GERMAN = {
         "Wie weit ein Wind von 15 m/s diese Spitze in die Länge zieht; weniger weniger, ein Sturm doppelt so weit",
     "What foam looks like near: lace, or a picture that tiles, brightest where foam is thickest, the wind blowing to its right; its mean is the same":
         "Wie Schaum aus der Nähe aussieht: Spitze, oder ein Bild, das sich kacheln lässt, am hellsten, wo Schaum am dicksten ist, der Wind weht nach rechts; sein Mittel ist gleich",
-    "Lace, or the path of an .exr, square, with a side of 16, 32 ... 4096 pixels":
+    "lace, or the path of an .exr, square, with a side of 16, 32 ... 4096 pixels":
         "lace, oder der Pfad einer .exr, quadratisch, mit einer Seite von 16, 32 ... 4096 Pixeln",
     "The side of that picture on the water": "Die Seite dieses Bildes auf dem Wasser",
     "What foam reflects where waves break, as far as it hides the water; 0.55 is measured (Whitlock 1982)":
@@ -477,7 +480,8 @@ GERMAN = {
     "As text": "Als Text",
     "As binary crates": "Als binäre Crates",
     "Not": "Gar nicht",
-    "What the mesh carries per vertex": "Was das Netz je Punkt mitführt",
+    "What the mesh carries per vertex. Velocities are the waves' orbital ones, by linear theory: no Stokes drift is in them":
+        "Was das Netz je Punkt mitführt. Geschwindigkeiten sind die der Bahnbewegung linearer Wellen, ohne Stokes-Drift",
     "Images over the patch, a file a frame": "Bilder des Ausschnitts, eine Datei je Bild",
     "Of the maps, a side": "Der Karten, je Seite",
     "Each cascade's own periodic tile as well": "Auch die periodische Kachel jeder Kaskade",

@@ -72,9 +72,9 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
     wanted.finest_cell_m = first(std::max(needs.finest_cell_m, needs.finest_pixel_m));
 }
 
-std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m, double finest_m,
-                              int side) {
-    if (!water.has_body || scene.water.caustics == 0.0) return 0;
+FloorLightBytes floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m, double finest_m,
+                                  int side) {
+    if (!water.has_body || scene.water.caustics == 0.0) return {};
     const auto texels = [](int of_side, std::size_t maps) {
         return static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side) * maps * sizeof(float);
     };
@@ -85,10 +85,9 @@ std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, double
                                    kMeshesADepth * finest_m <= static_cast<double>(water.floor_m)),
                has_shafts = lowest_m < waves_m;
     // A level of half the side after the other: a third more, and once more while they grow.
-    const std::size_t held = (shows ? texels(side, 2) : 0) + (has_shafts ? texels(kShaftSide, 3) : 0);
-    // One is made after the other.
-    return held + std::max(shows ? caustics_bytes(side, kMostMargin) : 0,
-                           has_shafts ? caustics_bytes(kShaftSide, kMostMargin) : 0);
+    return {.held = (shows ? texels(side, 2) : 0) + (has_shafts ? texels(kShaftSide, 3) : 0),
+            .making = std::max(shows ? caustics_bytes(side, kMostMargin) : 0,
+                               has_shafts ? caustics_bytes(kShaftSide, kMostMargin) : 0)};
 }
 
 bool shows_floor(const WaterBody& water, double depth_m) {

@@ -26,10 +26,16 @@ struct FloorLightWanted {
     bool operator==(const FloorLightWanted&) const = default;
 };
 
-// What making them holds, at most, and they themselves [bytes]. waves_m: how high waves are, by which a camera may be in the water;
-// finest_m: the finest footprint of pixels, beside which a level floor's pattern may be too fine to show.
-std::size_t floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m,
-                              double finest_m = 0.0, int side = FloorLightWanted{}.side);
+// [bytes]
+struct FloorLightBytes {
+    std::size_t held = 0;    // by the maps
+    std::size_t making = 0;  // beside them at most, while one is made
+    std::size_t all() const { return held + making; }
+};
+// waves_m: how high waves are, by which a camera may be in the water; finest_m: the finest footprint of pixels, beside which a level
+// floor's pattern may be too fine to show.
+FloorLightBytes floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m,
+                                  double finest_m = 0.0, int side = FloorLightWanted{}.side);
 
 // For a view, whichever others its frame's plan is for: with both footprints.
 void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaView& seen);

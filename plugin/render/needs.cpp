@@ -201,18 +201,19 @@ constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) 
 
 // Of the frame in which the floor shows best: at one of the keys, since the way to it and how clear the water is go straight from key to key, or
 // nearly.
-std::size_t most_floor_light_bytes(const Scene& scene, const Plan& plan) {
+FloorLightBytes most_floor_light_bytes(const Scene& scene, const Plan& plan) {
     const PreparedScene& prepared = *plan.from;
     const double finest_m = plan.queries.front().query.pixel_m.front();
     std::set<int> frames{scene.shot.first_frame};
     for (const KeyedNumber& number : scene.keyed)
         for (const NumberKeys::Key& key : number.keys.keys)
             frames.insert(std::clamp(key.frame, scene.shot.first_frame, scene.shot.last_frame));
-    std::size_t most = 0;
+    FloorLightBytes most;
     for (const int frame : frames) {
         const Scene moment = scene_at(scene, frame);
-        most = std::max(most, floor_light_bytes(moment, make_water(moment, prepared.spectrum),
-                                                prepared.extent.height_m, finest_m));
+        const FloorLightBytes here = floor_light_bytes(moment, make_water(moment, prepared.spectrum),
+                                                       prepared.extent.height_m, finest_m);
+        if (here.all() > most.all()) most = here;
     }
     return most;
 }
@@ -265,6 +266,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     const Plan plan = picture_plan(sampled, frames, options);
     const PixelWindow data = data_window(scene.camera.resolution, options);
     MemoryNeed need;
+    std::size_t later = 0;  // of what is there once the floor's light is made
     machine::add_program(need);
     machine::add_sky(need);
     add_sea(need, plan, threads);
@@ -286,17 +288,17 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         const bool is_whole = !options.region && options.overscan_px == glm::ivec2(0);
         const double of_sea =
             is_whole ? most_of_sea(sampled, plan.from->extent.height_m, frames, rows_at_hand) : 1.0;
-        need.add("the pixels at hand",
-                 at_hand * kAnySampleBytes + static_cast<std::size_t>(of_sea * static_cast<double>(at_hand)) *
-                                                 (kSampleBytes<T> - kAnySampleBytes),
-                 "ask for a smaller picture (--size) or fewer --samples");
+        later = at_hand * kAnySampleBytes + static_cast<std::size_t>(of_sea * static_cast<double>(at_hand)) *
+                                                (kSampleBytes<T> - kAnySampleBytes);
+        need.add("the pixels at hand", later, "ask for a smaller picture (--size) or fewer --samples");
         if (sampled.surface.kind == SurfaceKind::Cage)
             need.add("the cage's surface",
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
-    if (const std::size_t floor = most_floor_light_bytes(scene, plan); floor > 0)
-        need.add("the sun's light on the floor", floor, "set water.caustics to 0");
+    const FloorLightBytes floor = most_floor_light_bytes(scene, plan);
+    const char* const floor_remedy = "set water.caustics to 0";
+    need.add("the sun's light on the floor", floor.held, floor_remedy);
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");
     std::size_t meshes = 0;
@@ -323,6 +325,7 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the sun's light that waves mirror onto objects",
                  gathering * MirroredSun::bytes() + MirroredSun::finding_bytes(),
                  "set objects[].caustics to 0");
+    const std::size_t before = need.bytes();
     if (options.lighting.spray) {
         need.add("the map of the spray",
                  spray_map_bytes(spray_map_size(scene.camera.resolution.x + 2 * options.overscan_px.x)),
@@ -348,6 +351,11 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                             : picture_bytes(options, has_objects)) +
             (in_flight ? cut_bytes(scene.camera.resolution, options, has_objects) : 0),
         "ask for a smaller picture (--size)");
+    // Of a frame alone, without blur, the floor's light is made before there are pixels.
+    const bool is_alone =
+        frames.size() == 1 && passes_of(scene.camera, frames.front(), options).all.size() == 1;
+    later = is_alone ? later + need.bytes() - before : 0;
+    need.add("the sun's light on the floor", floor.making - std::min(floor.making, later), floor_remedy);
     return need;
 }
 

@@ -217,6 +217,7 @@ class Simulation:
 _simulations = {}  # by the names of their objects
 _read = {}  # the settings of oceans, by their names, as read since the last handler here began
 _rendering = set()  # names of scenes
+_objects = 0  # how many there were when settings of older files were looked for
 is_saving = False  # whether files' markers are in the meshes' place
 _is_told = False  # whether the pointer shows a progress
 _turn = threading.RLock()  # a render has a thread of its own
@@ -419,10 +420,18 @@ def _forget_deleted():
 
 
 @persistent
-def _before_evaluation(*_):
-    """What was appended or linked may be of an older file."""
+def _before_frame(*_):
+    """What was appended, linked or read anew may be of an older file."""
+    global _objects
+    _objects = len(bpy.data.objects)
     for obj in oceans():
         migrate(obj)
+
+
+@persistent
+def _before_update(*_):
+    if len(bpy.data.objects) != _objects:  # of a large scene they aren't gone through for each that moves
+        _before_frame()
 
 
 @persistent
@@ -459,6 +468,8 @@ def _on_update(bpy_scene, depsgraph):
 @persistent
 def _on_other_data(*_):
     """Undo, redo: meshes are of another moment now."""
+    global _objects
+    _objects = 0
     cages.forget()
     for simulation in _simulations.values():
         simulation.shown = simulation.awaited = None
@@ -550,7 +561,7 @@ def _tell(progress):
         manager.progress_update(progress) if _is_told else manager.progress_end()
 
 
-HANDLERS = (("frame_change_pre", _before_evaluation), ("depsgraph_update_pre", _before_evaluation), ("frame_change_post", _on_frame), ("depsgraph_update_post", _on_update), ("undo_post", _on_other_data),
+HANDLERS = (("frame_change_pre", _before_frame), ("depsgraph_update_pre", _before_update), ("frame_change_post", _on_frame), ("depsgraph_update_post", _on_update), ("undo_post", _on_other_data),
             ("redo_post", _on_other_data), ("load_post", _on_load), ("render_init", _on_render),
             ("render_complete", _on_render_end), ("render_cancel", _on_render_end))
 

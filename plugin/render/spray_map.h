@@ -28,7 +28,7 @@ Spray spray_by(const SprayLaw& law);
 // go from a part of the eye's height to where the layer is behind the horizon. Texels are means over themselves, and over
 // two metres at least, where volumes have a voxel's. Ribbons are means over as much as rows are apart, and columns where those are farther apart,
 // by a normal distribution round each texel: what a ray takes as linear between texels has no trace of their grid. So near the camera a
-// picture's spray is smoother than a fine volume's. Empty where the
+// picture's spray is smoother than a fine volume's; through a long lens it is so farther off: by a tenth of the width of a picture of 10°. Empty where the
 // scene has no spray, and where no wave breaks. `drops`: the large drops near the eye are shown one by one (seen_drops.h); otherwise
 // they are in it. On all threads of the calling arena; the same bits whatever their number.
 template <class T>

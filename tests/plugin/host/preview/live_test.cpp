@@ -26,6 +26,7 @@
 #include "core/surface/projected_grid.h"
 #include "plugin/host/gpu/foam_worker.h"
 #include "plugin/host/gpu/sea_layout.h"
+#include "plugin/machine/memory.h"
 #include "plugin/render/seen_drops.h"
 
 namespace pelagic {
@@ -425,7 +426,10 @@ TEST(LiveBuild, LeavesOutTheShortestWavesWhereTheSeaDoesNotFit) {
     LiveLimits small_textures;
     small_textures.texture = 300;
     LiveLimits little_memory;
-    little_memory.memory = {whole->sea->plan().frame_bytes(), "this machine has"};
+    MemoryNeed beside;
+    machine::add_program(beside);
+    machine::add_sky(beside);
+    little_memory.memory = {beside.bytes() + whole->sea->plan().frame_bytes(), "this machine has"};
     for (const LiveLimits& limits : {small_textures, little_memory}) {
         const auto less = build_live(scene, limits);
         EXPECT_NE(less->note.find("waves below "), std::string::npos) << less->note;

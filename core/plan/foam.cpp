@@ -192,7 +192,8 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, doub
     const auto reach_m = [&](double height_m, double fov_deg, double footprint_m, double faces) {
         const double wide_m = footprint_m / pixel_of(fov_deg);
         // Seen steeply no wave hides another, and each pixel counts with the footprint that blurs as it does: kPixel of
-        // core/surface/projected_grid.cpp. What the faces' fit says of level views has that in it.
+        // core/surface/projected_grid.cpp. What the faces' fit says of level views has that in it: to slants of kSteep heights,
+        // 14° below the horizon, where waves begin to hide each other.
         constexpr double kPixel = 0.6, kSteep = 4.0;
         const auto slant_of = [&](double pixel_wide_m) {
             return std::pow(pixel_wide_m, 2.0 / 3.0) * std::cbrt(height_m);

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -32,6 +34,15 @@ class Buffer {
     bool empty() const { return size_ == 0; }
     T& operator[](std::size_t i) { return data_.get()[i]; }
     const T& operator[](std::size_t i) const { return data_.get()[i]; }
+
+    // Gives the system back the whole pages that lie within these values, which are lost.
+    void give_back(std::size_t first, std::size_t count) {
+        const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+        const auto begin = reinterpret_cast<std::uintptr_t>(data() + first) + page - 1,
+                   end = reinterpret_cast<std::uintptr_t>(data() + first + count);
+        const std::uintptr_t from = begin - begin % page, to = end - end % page;
+        if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_DONTNEED);
+    }
 
   private:
     struct Free {

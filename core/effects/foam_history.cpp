@@ -46,6 +46,19 @@ bool is_before(const FoamPlace& a, const FoamPlace& b) {
     return order_of(a) < order_of(b);
 }
 
+// Tiles of a row of so many may be sampled together.
+constexpr std::int64_t kStripTiles = 8;
+
+std::int64_t strip_of(const FoamPlace& place) {
+    return place.x >> std::countr_zero(static_cast<std::uint64_t>(kStripTiles));
+}
+
+// Whether the second one lies beside the first one in its strip.
+bool goes_on_in_row(const FoamPlace& one, const FoamPlace& next) {
+    return next.level == one.level && next.y == one.y && next.x == one.x + 1 &&
+           strip_of(next) == strip_of(one);
+}
+
 }  // namespace
 
 void keep_each_once(std::vector<FoamPlace>& places) {
@@ -619,7 +632,8 @@ template <class T>
 void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& tiles,
                                  const BuildWatch& watch) {
     const auto is_cancelled = [&] { return watch.cancel && watch.cancel->load(std::memory_order_relaxed); };
-    std::vector<Tile*> due;
+    std::vector<Tile*> due;  // in the order of places
+    std::vector<std::span<Tile* const>> rows;
     const std::int64_t end = last_ + 4;
     const bool is_long = end - from > kLong;
     for (std::int64_t n = from; n < end; ++n) {
@@ -631,8 +645,14 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
             if (is_cancelled()) throw BuildCancelled();
             level(l, watch.cancel).frame.set(static_cast<double>(n) * foam_.step_s);
             const Whitecaps& now = whitecaps(n);
-            tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) {
-                if (!is_cancelled()) sample(*due[i], n, now);
+            rows.clear();
+            for (std::size_t first = 0, next = 0; first < due.size(); first = next) {
+                next = first + 1;
+                while (next < due.size() && goes_on_in_row(due[next - 1]->place, due[next]->place)) ++next;
+                rows.push_back(std::span(due).subspan(first, next - first));
+            }
+            tbb::parallel_for(std::size_t(0), rows.size(), [&](std::size_t i) {
+                if (!is_cancelled()) sample(rows[i], n, now);
             });
             if (is_cancelled()) throw BuildCancelled();
         }
@@ -659,33 +679,58 @@ void FoamHistory<T>::calm(std::uint16_t* shares, const Place& place, std::int64_
     }
 }
 
+// Of tiles that goes_on_in_row(): points in long rows cost half as much as those of one tile after another.
 template <class T>
-void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) const {
-    const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
-    const glm::dvec2 origin_m = first_node_m(tile.place, static_cast<double>(n) * foam_.step_s);
-    static thread_local std::vector<glm::vec<3, T>> moments(kStride);
-    static thread_local std::vector<float> mean(kStride + 16), variance(kStride + 16), third(kStride + 16),
-        threshold(kStride + 16);
+void FoamHistory<T>::sample(std::span<Tile* const> row, std::int64_t n, const Whitecaps& now) const {
+    const FoamPlace& first = row.front()->place;
+    const Level& level = *levels_[static_cast<std::size_t>(first.level)];
+    constexpr std::size_t kCells = FoamPlan::kTileCells;
+    // Relative to the strip's first node, whichever of its tiles are sampled: a node's value depends on nothing else.
+    const std::int64_t strip_x = strip_of(first) * kStripTiles;
+    const std::size_t begin = static_cast<std::size_t>(first.x - strip_x) * kCells,
+                      columns = row.size() * kCells + 1;
+    static thread_local std::vector<glm::vec<2, T>> rest_m;
+    rest_m.clear();
+    for (int y = 0; y < kSide; ++y)
+        for (std::size_t x = 0; x < columns; ++x)
+            rest_m.emplace_back(static_cast<T>(static_cast<double>(begin + x) * level.cell_m),
+                                static_cast<T>(y * level.cell_m));
+    static thread_local std::vector<glm::vec<3, T>> moments, moved;
+    moments.resize(rest_m.size());
     Results<T> results;
     results.set(Product::JacobianMoments, {moments.data()});
     const bool has_surf = level.frame.sea().has_surf();
-    static thread_local std::vector<glm::vec<3, T>> moved;
-    if (has_surf) {
-        moved.resize(kStride);
-        results.set(Product::Displacement, {moved.data()});
-    }
-    // Where it waits for its parts, this thread takes up no other tile: the arrays are its own.
-    const Points<T> points{.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}};
+    moved.resize(has_surf ? rest_m.size() : 0);
+    if (has_surf) results.set(Product::Displacement, {moved.data()});
+    const Points<T> points{
+        .origin_m = first_node_m({first.level, strip_x, first.y}, static_cast<double>(n) * foam_.step_s),
+        .count = rest_m.size(),
+        .rest_m = {rest_m.data()}};
+    // Where it waits for its parts, this thread takes up no other tiles: the arrays are its own.
     tbb::this_task_arena::isolate([&] { evaluate(level.frame, 0, points, results); });
-    if (now.gusts)
-        whitecap_thresholds<T>(*now.gusts, level.frame.time_within_loop_s(), points, level.cell_m, threshold);
-    else
-        std::fill(threshold.begin(), threshold.end(), static_cast<float>(now.threshold));
+    for (std::size_t i = 0; i < row.size(); ++i)
+        take_sample(*row[i], n, now,
+                    {moments.data() + i * kCells, has_surf ? moved.data() + i * kCells : nullptr, columns});
+}
+
+template <class T>
+void FoamHistory<T>::take_sample(Tile& tile, std::int64_t n, const Whitecaps& now,
+                                 const RowValues& values) const {
+    const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
+    const glm::dvec2 origin_m = first_node_m(tile.place, static_cast<double>(n) * foam_.step_s);
+    const auto in_row = [&](std::size_t node) { return node / kSide * values.columns + node % kSide; };
+    alignas(64) std::array<float, kStride> mean{}, variance{}, third{}, threshold;
     for (std::size_t i = 0; i < kNodes; ++i) {
-        mean[i] = static_cast<float>(moments[i].x);
-        variance[i] = static_cast<float>(moments[i].y);
-        third[i] = static_cast<float>(moments[i].z);
+        const glm::vec<3, T>& moments = values.moments[in_row(i)];
+        mean[i] = static_cast<float>(moments.x);
+        variance[i] = static_cast<float>(moments.y);
+        third[i] = static_cast<float>(moments.z);
     }
+    threshold.fill(static_cast<float>(now.threshold));
+    if (now.gusts)
+        whitecap_thresholds<T>(*now.gusts, level.frame.time_within_loop_s(),
+                               {.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}},
+                               level.cell_m, threshold);
     const auto deviates = [&](std::int64_t sample) {
         return tile.deviates.data() + modulo(sample, kSamples) * kStride;
     };
@@ -699,10 +744,10 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n, const Whitecaps& now) co
     // a crest and the trough lose up to half of it.)
     const double lasting = sea_->foam_left_per_s() * foam_.weight(0.0, foam_.window_s).foam_s,
                  source = 1.0 / std::max(lasting, 1.0);
-    for (std::size_t i = 0; i < kNodes && has_surf; ++i) {
-        const double foam =
-            source * level.frame.sea().surf_foam(origin_m + glm::dvec2(level.rest_m[i]),
-                                                 static_cast<double>(moved[i].z), level.cell_m);
+    for (std::size_t i = 0; i < kNodes && values.moved; ++i) {
+        const double foam = source * level.frame.sea().surf_foam(
+                                         origin_m + glm::dvec2(level.rest_m[i]),
+                                         static_cast<double>(values.moved[in_row(i)].z), level.cell_m);
         deviates(n)[i] = std::max(deviates(n)[i], static_cast<float>(quick_deviate(foam)));
     }
     // In a calm J is 1 throughout, as far from breaking as can be.

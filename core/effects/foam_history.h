@@ -135,7 +135,14 @@ class FoamHistory {
     void make_room(std::size_t count, long round);
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
-    void sample(Tile& tile, std::int64_t n, const Whitecaps& whitecaps) const;
+    // Of a row of tiles, whose nodes beside each other are sampled as one.
+    void sample(std::span<Tile* const> row, std::int64_t n, const Whitecaps& whitecaps) const;
+    // What a tile's part of such a row has, from its first node on; rows of `columns`.
+    struct RowValues {
+        const glm::vec<3, T>*moments, *moved;  // `moved`: null without surf
+        std::size_t columns;
+    };
+    void take_sample(Tile& tile, std::int64_t n, const Whitecaps& whitecaps, const RowValues& values) const;
     glm::dvec2 first_node_m(const Place& place, double time_s) const;
     // Of what broke in an interval, what masks leave of it (WaveMask::foam).
     void calm(std::uint16_t* shares, const Place& place, std::int64_t interval) const;

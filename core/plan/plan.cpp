@@ -505,8 +505,11 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     if (plan.from->scene.waves.coast) query.products |= products(Product::Displacement);
     query.cell_m = query.pixel_m = {cell_m};
     query.is_view = true;
-    Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
-    own.knobs.spline_taps = 4;  // a hundredth of a breaking is enough
+    // With six taps and 1.4 nodes a sample the foam is 0.3 % off (RMS), as with four taps and two nodes, in three quarters of the time.
+    Knobs knobs = plan.knobs;
+    knobs.spline_taps = 6;
+    knobs.oversampling = knobs.light_oversampling;
+    Plan own = make_plan(plan.from, {query}, {.knobs = knobs});
     own.trains = plan.trains;   // which there are depends on all that is asked of the sea
     own.gusts.reset();          // the whole sea's own
     own.cascades.resize(own.sea_cascades());

@@ -11,7 +11,10 @@
 #include <glm/vec3.hpp>
 #include <initializer_list>
 #include <map>
+#include <memory>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
@@ -47,6 +50,13 @@ T* from(Buffer<T>& buffer, std::size_t at) {
 template <class T>
 const T* from(const Buffer<T>& buffer, std::size_t at) {
     return buffer.empty() ? nullptr : buffer.data() + at;
+}
+
+// Of a field's samples with the slack behind them that loops may write.
+template <class T>
+constexpr std::size_t plane_room(int n) {
+    constexpr std::size_t kLine = 64 / sizeof(T);
+    return (grid_samples<T>(n) + Buffer<T>::kSlack + kLine - 1) / kLine * kLine;
 }
 
 // Whether somebody asks for a horizontal field of a cascade.
@@ -132,6 +142,11 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
     : sea_(std::move(sea)), kernels_(kernels<T>()), scratches_(std::make_unique<Scratches>()) {
     const Plan& plan = sea_->plan();
     Transforms<T> transforms;
+    std::size_t samples = 0;
+    for (const CascadePlan& cascade : plan.cascades)
+        for (const Grid& grid : cascade.grids)
+            samples += grid.fields.count() * plane_room<T>(grid.resolution);
+    samples_ = Buffer<T>::uncleared(std::exchange(samples, 0));
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
         const CascadePlan& planned = plan.cascades[c];
         const Cascade<T>& cascade = sea_->cascades()[c];
@@ -153,11 +168,13 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
             }
             for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!grid.fields[f]) continue;
-                made.planes[f] =
-                    grid.rows < n
-                        ? Buffer<T>(grid_samples<T>(n))
-                        : Buffer<T>::uncleared(grid_samples<T>(n));  // set() writes all that is read
-                if (grid.along_x[f]) continue;                       // with those of what it is of
+                made.planes[f] = {samples_.data() + samples, grid_samples<T>(n)};
+                samples += plane_room<T>(n);
+                // set() writes all others that are read.
+                T* const cleared =
+                    grid.rows < n ? made.planes[f].data() : std::to_address(made.planes[f].end());
+                std::fill(cleared, samples_.data() + samples, T(0));
+                if (grid.along_x[f]) continue;  // with those of what it is of
                 for (const auto& [from, end] : row_ranges(grid))
                     for (int first = from; first < end; first += kBlockRows)
                         rows_.push_back(
@@ -298,7 +315,9 @@ glm::dvec3 Frame<T>::hidden_slopes(int cascade, int grid, glm::dvec2 place_m) co
 template <class T>
 void Frame<T>::release(int cascade, int grid, Field field) {
     is_set_ = is_whole_ = false;
-    grids_[cascade][grid].planes[index(field)] = {};
+    std::span<T> plane = std::exchange(grids_[cascade][grid].planes[index(field)], {});
+    if (!plane.empty())
+        samples_.give_back(static_cast<std::size_t>(plane.data() - samples_.data()), plane.size());
 }
 
 template <class T>
@@ -619,7 +638,8 @@ void Frame<T>::fade_row(int cascade, int grid, int row, const std::vector<TileFa
     GridState& state = grids_[cascade][grid];
     const int n = sea_->plan().cascades[cascade].grids[grid].resolution;
     const auto line = [&](std::size_t field) {
-        return from(state.planes[field], static_cast<std::size_t>(row) * line_stride<T>(n));
+        const std::span<T> plane = state.planes[field];
+        return plane.empty() ? nullptr : plane.data() + static_cast<std::size_t>(row) * line_stride<T>(n);
     };
     for (int i = 0; i < n; ++i) {
         const TileFade& x = along[static_cast<std::size_t>(i)];
@@ -642,7 +662,7 @@ std::size_t Frame<T>::held_bytes() const {
     std::size_t samples = 0;
     for (const std::vector<GridState>& grids : grids_)
         for (const GridState& grid : grids)
-            for (const Buffer<T>& plane : grid.planes) samples += plane.size();
+            for (const std::span<T> plane : grid.planes) samples += plane.size();
     return samples * sizeof(T);
 }
 

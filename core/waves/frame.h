@@ -51,8 +51,7 @@ class Frame {
     // for jy < N and jx < N + kRowSkirt (core/plan/grid_layout.h). Null where the grid doesn't hold the
     // field.
     const T* samples(int cascade, int grid, Field field) const {
-        const Buffer<T>& plane = grids_[cascade][grid].planes[index(field)];
-        return plane.empty() ? nullptr : plane.data();
+        return grids_[cascade][grid].planes[index(field)].data();
     }
     // Where the tile of a vessel's cascade lies: beyond its half side there are none of its waves.
     glm::dvec2 tile_middle_m(int cascade) const { return vessels_[vessel_of(cascade)].middle_m(); }
@@ -81,7 +80,7 @@ class Frame {
     struct GridState {
         LineTransform<T> transform;
         Buffer<T> prefilter;  // indexed by my + radius − 1; empty where the grid is read at its nodes only
-        std::array<Buffer<T>, kFieldCount> planes;
+        std::array<std::span<T>, kFieldCount> planes;  // of samples_; empty: none, or given back
     };
     // A few columns of a cascade, processed together so that their spectrum stays in the cache.
     struct Block {
@@ -125,6 +124,9 @@ class Frame {
     std::shared_ptr<const Sea<T>> sea_;
     std::shared_ptr<const SeaOverTime<T>> shot_;  // null: the sea is one
     Kernels<T> kernels_;
+    // Of all fields, one after another: in huge pages most of it costs a tenth of the time when it is written first, and planes by
+    // themselves are too small for many of those.
+    Buffer<T> samples_;
     std::vector<std::vector<GridState>> grids_;  // by cascade
     std::optional<SecondOrderWaves<T>> second_order_;
     std::vector<VesselWaves> vessels_;

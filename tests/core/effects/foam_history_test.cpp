@@ -321,6 +321,32 @@ TEST(LivingFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
     expect_same(single.at(5.2, points), cold);
 }
 
+// Tiles beside each other are sampled as one row: what a node has doesn't depend on which of them are asked for.
+TEST(LivingFoam, IsTheSameWhicheverTilesOfARowAreThere) {
+    const auto sea = sea_of(scene_of(2.0), 0.2);
+    constexpr std::size_t kSide = 80, kWhich = 3;
+    const auto points = square(kSide, 1.1);
+    const glm::dvec2 origin_m(-33.0);
+    Shown<> all(sea);
+    const Foam whole = all.at(5.2, points, origin_m);
+    const double tile_m = sea->plan().foam->cell_m * FoamPlan::kTileCells;
+    for (std::size_t part = 0; part < kWhich; ++part) {  // columns of a tile's width, some way apart
+        std::vector<std::size_t> which;
+        for (std::size_t p = 0; p < points.size(); ++p)
+            if (static_cast<std::size_t>(static_cast<double>(points[p].x) / tile_m) % kWhich == part)
+                which.push_back(p);
+        ASSERT_GT(which.size(), kSide);
+        std::vector<glm::vec2> few;
+        for (const std::size_t p : which) few.push_back(points[p]);
+        Shown<> alone(sea);
+        const Foam seen = alone.at(5.2, few, origin_m);
+        for (std::size_t i = 0; i < which.size(); ++i) {
+            ASSERT_EQ(seen.total[i], whole.total[which[i]]) << part << ' ' << i;
+            ASSERT_EQ(seen.age_s[i], whole.age_s[which[i]]) << part << ' ' << i;
+        }
+    }
+}
+
 // A time far from those before says how far it is; a step, and a shutter's rising moments, have no past to go through.
 TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     const auto sea = sea_of(scene_of(2.0), 0.7);

@@ -3,7 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -84,7 +83,10 @@ struct FoamHistory<T>::Level {
 template <class T>
 struct FoamHistory<T>::Tile {
     Tile(const Place& at, std::size_t kept, std::size_t sums)
-        : place(at), shares(kept * kStride), deviates(kSamples * kStride), foam(sums * kStride) {}
+        : place(at),
+          shares(Buffer<std::uint16_t>::uncleared(kept * kStride)),
+          deviates(Buffer<float>::uncleared(kSamples * kStride)),
+          foam(Buffer<float>::uncleared(sums * kStride)) {}
 
     std::span<float> residual() { return {foam.data(), kNodes}; }
     std::span<float> age() { return {foam.data() + kStride, kNodes}; }
@@ -643,7 +645,11 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
                 if (tile->place.level == l && tile->next == n) due.push_back(tile);
             if (due.empty()) continue;
             if (is_cancelled()) throw BuildCancelled();
-            level(l, watch.cancel).frame.set(static_cast<double>(n) * foam_.step_s);
+            Frame<T>& frame = level(l, watch.cancel).frame;
+            frame.set(static_cast<double>(n) * foam_.step_s);
+            ProductSet wanted = products(Product::JacobianMoments);
+            if (frame.sea().has_surf()) wanted |= products(Product::Displacement);
+            const PreparedQuery<T> query(frame, 0, wanted);
             const Whitecaps& now = whitecaps(n);
             rows.clear();
             for (std::size_t first = 0, next = 0; first < due.size(); first = next) {
@@ -652,7 +658,7 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
                 rows.push_back(std::span(due).subspan(first, next - first));
             }
             tbb::parallel_for(std::size_t(0), rows.size(), [&](std::size_t i) {
-                if (!is_cancelled()) sample(rows[i], n, now);
+                if (!is_cancelled()) sample(rows[i], n, query, now);
             });
             if (is_cancelled()) throw BuildCancelled();
         }
@@ -681,7 +687,8 @@ void FoamHistory<T>::calm(std::uint16_t* shares, const Place& place, std::int64_
 
 // Of tiles that goes_on_in_row(): points in long rows cost half as much as those of one tile after another.
 template <class T>
-void FoamHistory<T>::sample(std::span<Tile* const> row, std::int64_t n, const Whitecaps& now) const {
+void FoamHistory<T>::sample(std::span<Tile* const> row, std::int64_t n, const PreparedQuery<T>& query,
+                            const Whitecaps& now) const {
     const FoamPlace& first = row.front()->place;
     const Level& level = *levels_[static_cast<std::size_t>(first.level)];
     constexpr std::size_t kCells = FoamPlan::kTileCells;
@@ -706,8 +713,7 @@ void FoamHistory<T>::sample(std::span<Tile* const> row, std::int64_t n, const Wh
         .origin_m = first_node_m({first.level, strip_x, first.y}, static_cast<double>(n) * foam_.step_s),
         .count = rest_m.size(),
         .rest_m = {rest_m.data()}};
-    // Where it waits for its parts, this thread takes up no other tiles: the arrays are its own.
-    tbb::this_task_arena::isolate([&] { evaluate(level.frame, 0, points, results); });
+    query.evaluate_alone(points, results);
     for (std::size_t i = 0; i < row.size(); ++i)
         take_sample(*row[i], n, now,
                     {moments.data() + i * kCells, has_surf ? moved.data() + i * kCells : nullptr, columns});

@@ -25,6 +25,7 @@
 #include "core/base/strided.h"
 #include "core/effects/foam_kernels.h"
 #include "core/evaluate/evaluate.h"
+#include "core/evaluate/prepared_query.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
 
@@ -136,7 +137,8 @@ class FoamHistory {
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
     // Of a row of tiles, whose nodes beside each other are sampled as one.
-    void sample(std::span<Tile* const> row, std::int64_t n, const Whitecaps& whitecaps) const;
+    void sample(std::span<Tile* const> row, std::int64_t n, const PreparedQuery<T>& query,
+                const Whitecaps& whitecaps) const;
     // What a tile's part of such a row has, from its first node on; rows of `columns`.
     struct RowValues {
         const glm::vec<3, T>*moments, *moved;  // `moved`: null without surf

@@ -123,6 +123,8 @@ HWY_INLINE N MeanBetween(N a, const Normal& at_a, N b, const Normal& at_b) {
     return select<D>(is_level, N(0.5) * (at_a.below + at_b.below), mean);
 }
 
+// The deviate of 10⁻¹⁵ of the sea.
+constexpr float kNothing = -8.0f;
 // y at quarters of the interval by the polynomial through all six: breaking is shorter than a step.
 constexpr float kQuarter[6] = {0.0093994140625f, -0.0845947265625f, 0.845947265625f,
                                0.281982421875f,  -0.0604248046875f, 0.0076904296875f};
@@ -140,6 +142,11 @@ void Share(const float* const y[6], std::span<std::uint16_t> share) {
         const N middle = N(150.0 / 256.0) * (at(2) + at(3)) - N(25.0 / 256.0) * (at(1) + at(4)) +
                          N(3.0 / 256.0) * (at(0) + at(5));
         const N way[5] = {at(2), near_quarter(0, 1), middle, near_quarter(5, -1), at(3)};
+        const N most = maximum(maximum(maximum(way[0], way[1]), maximum(way[2], way[3])), way[4]);
+        if (hn::AllTrue(d, most < N(kNothing))) {  // so are most nodes at most times
+            hn::StoreU(hn::Zero(half), half, share.data() + i);
+            continue;
+        }
         Normal before = NormalOf(way[0]);
         N mean(0);
         for (int part = 0; part < 4; ++part) {

@@ -510,8 +510,8 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     knobs.spline_taps = 6;
     knobs.oversampling = knobs.light_oversampling;
     Plan own = make_plan(plan.from, {query}, {.knobs = knobs});
-    own.trains = plan.trains;   // which there are depends on all that is asked of the sea
-    own.gusts.reset();          // the whole sea's own
+    own.trains = plan.trains;  // which there are depends on all that is asked of the sea
+    own.gusts.reset();         // the whole sea's own
     own.cascades.resize(own.sea_cascades());
     return own;
 }

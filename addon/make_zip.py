@@ -38,16 +38,20 @@ def shared_libraries(binary):
     return found
 
 
-def licence_of(library):
-    """The copyright file of the Debian package that a library is from."""
+def licences_of(libraries):
+    """Library → name and copyright file of the Debian package that it is from. dpkg reads all its lists anew each time it is asked."""
     # Packages name files by /lib or by /usr/lib, which are the same folder.
-    path = str(library.resolve())
-    names = [path, path.removeprefix("/usr")]
-    owner = subprocess.run(["dpkg", "-S", *names], capture_output=True, text=True).stdout.split(":")[0]
-    file = Path("/usr/share/doc") / owner / "copyright"
-    if not owner or not file.is_file():
-        sys.exit(f"the licence of {library} isn't found: the zip is made where its libraries are Debian's packages")
-    return owner, file
+    names = {library: (str(library.resolve()), str(library.resolve()).removeprefix("/usr")) for library in libraries}
+    lines = subprocess.run(["dpkg", "-S", *sum(names.values(), ())], capture_output=True, text=True).stdout.splitlines()
+    owners = {path: owner.split(":")[0] for owner, path in (line.split(": ", 1) for line in lines if ": " in line)}
+    found = {}
+    for library, paths in names.items():
+        owner = next((owners[path] for path in paths if path in owners), "")
+        file = Path("/usr/share/doc") / owner / "copyright"
+        if not owner or not file.is_file():
+            sys.exit(f"the licence of {library} isn't found: the zip is made where its libraries are Debian's packages")
+        found[library] = owner, file
+    return found
 
 
 COMMON = Path("/usr/share/common-licenses")
@@ -122,17 +126,15 @@ def contents(binaries):
     files = {path.relative_to(HERE).as_posix(): path.read_bytes() for path in sorted(source.rglob("*"))
              if path.is_file() and "__pycache__" not in path.parts and "lib" not in path.relative_to(source).parts}
     files[f"{FOLDER}/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
-    needed = {}
+    needed, archives = {}, [binary for binary in binaries if binary.suffix == ".a"]
     for binary in binaries:
-        if binary.suffix == ".a":
-            owner, licence = licence_of(binary)
-            files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
+        if binary in archives:
             continue
         files[f"{FOLDER}/lib/{binary.name}"] = for_older_systems(stripped(binary))
         needed |= shared_libraries(binary)
     for name, path in needed.items():
         files[f"{FOLDER}/lib/{name}"] = for_older_systems(stripped(path))
-        owner, licence = licence_of(path)
+    for owner, licence in licences_of([*archives, *needed.values()]).values():
         files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
     licences = [data for name, data in files.items() if "/lib/licences/" in name]
     files |= {f"{FOLDER}/lib/licences/common-licenses/{name}": data for name, data in common_licences(licences).items()}

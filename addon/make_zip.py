@@ -43,7 +43,8 @@ def licences_of(libraries):
     # Packages name files by /lib or by /usr/lib, which are the same folder.
     names = {library: (str(library.resolve()), str(library.resolve()).removeprefix("/usr")) for library in libraries}
     lines = subprocess.run(["dpkg", "-S", *sum(names.values(), ())], capture_output=True, text=True).stdout.splitlines()
-    owners = {path: owner.split(":")[0] for owner, path in (line.split(": ", 1) for line in lines if ": " in line)}
+    owners = {path: owner.split(":")[0] for owner, path in (line.split(": ", 1) for line in lines if ": " in line)
+              if not owner.startswith("diversion by ")}
     found = {}
     for library, paths in names.items():
         owner = next((owners[path] for path in paths if path in owners), "")

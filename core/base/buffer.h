@@ -35,12 +35,12 @@ class Buffer {
     T& operator[](std::size_t i) { return data_.get()[i]; }
     const T& operator[](std::size_t i) const { return data_.get()[i]; }
 
-    // Gives the system back the whole pages that lie within these values, which are lost.
+    // Gives the system back the whole pages that lie within these values, which are lost. It may keep them.
     void give_back(std::size_t first, std::size_t count) {
         const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-        const auto begin = reinterpret_cast<std::uintptr_t>(data() + first) + page - 1,
+        const auto begin = reinterpret_cast<std::uintptr_t>(data() + first),
                    end = reinterpret_cast<std::uintptr_t>(data() + first + count);
-        const std::uintptr_t from = begin - begin % page, to = end - end % page;
+        const std::uintptr_t from = (begin + page - 1) / page * page, to = end / page * page;
         if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_DONTNEED);
     }
 

@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -45,11 +46,12 @@ bool is_before(const FoamPlace& a, const FoamPlace& b) {
     return order_of(a) < order_of(b);
 }
 
-// Tiles of a row of so many may be sampled together.
-constexpr std::int64_t kStripTiles = 8;
+// Tiles of a row of so many may be sampled together: as many points beside each other as PreparedQuery keeps places for.
+constexpr int kStripBits = 3;
+constexpr std::int64_t kStripTiles = 1 << kStripBits;
 
 std::int64_t strip_of(const FoamPlace& place) {
-    return place.x >> std::countr_zero(static_cast<std::uint64_t>(kStripTiles));
+    return place.x >> kStripBits;
 }
 
 // Whether the second one lies beside the first one in its strip.
@@ -652,9 +654,13 @@ void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& ti
             const PreparedQuery<T> query(frame, 0, wanted);
             const Whitecaps& now = whitecaps(n);
             rows.clear();
+            const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+            const std::size_t most = (due.size() + threads - 1) / threads;  // few tiles keep all threads busy
             for (std::size_t first = 0, next = 0; first < due.size(); first = next) {
                 next = first + 1;
-                while (next < due.size() && goes_on_in_row(due[next - 1]->place, due[next]->place)) ++next;
+                while (next < due.size() && next - first < most &&
+                       goes_on_in_row(due[next - 1]->place, due[next]->place))
+                    ++next;
                 rows.push_back(std::span(due).subspan(first, next - first));
             }
             tbb::parallel_for(std::size_t(0), rows.size(), [&](std::size_t i) {
@@ -725,7 +731,10 @@ void FoamHistory<T>::take_sample(Tile& tile, std::int64_t n, const Whitecaps& no
     const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
     const glm::dvec2 origin_m = first_node_m(tile.place, static_cast<double>(n) * foam_.step_s);
     const auto in_row = [&](std::size_t node) { return node / kSide * values.columns + node % kSide; };
-    alignas(64) std::array<float, kStride> mean{}, variance{}, third{}, threshold;
+    alignas(64) std::array<float, kStride> mean, variance, third, threshold;
+    for (std::array<float, kStride>* of : {&mean, &variance, &third})
+        std::fill(of->begin() + kNodes, of->end(),
+                  1.0f);  // behind the last node: of no interest, but numbers
     for (std::size_t i = 0; i < kNodes; ++i) {
         const glm::vec<3, T>& moments = values.moments[in_row(i)];
         mean[i] = static_cast<float>(moments.x);
@@ -744,7 +753,7 @@ void FoamHistory<T>::take_sample(Tile& tile, std::int64_t n, const Whitecaps& no
         kernels_.deviates(mean.data(), variance.data(), third.data(), threshold.data(),
                           sea_->plan().knobs.third_moment, {deviates(n), kNodes});
     else
-        std::fill_n(deviates(n), kNodes, kNoBreaking);
+        std::fill_n(deviates(n), kStride, kNoBreaking);
     // A whitecap leaves its foam once, at foam_left_per_s() while it lasts. A roller breaks all the way in over water that foams already: of it
     // such a share of that rate that what it leaves is on the mean no more than what breaks, however long foam lives. (Deviates between
     // a crest and the trough lose up to half of it.)

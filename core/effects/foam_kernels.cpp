@@ -6,6 +6,8 @@
 // foreach_target first: it includes this file once for each instruction set.
 #include <hwy/highway.h>
 
+#include <bit>
+
 #include "core/base/pack-inl.h"
 #include "core/plan/foam.h"
 
@@ -123,8 +125,6 @@ HWY_INLINE N MeanBetween(N a, const Normal& at_a, N b, const Normal& at_b) {
     return select<D>(is_level, N(0.5) * (at_a.below + at_b.below), mean);
 }
 
-// The deviate of 10⁻¹⁵ of the sea.
-constexpr float kNothing = -8.0f;
 // y at quarters of the interval by the polynomial through all six: breaking is shorter than a step.
 constexpr float kQuarter[6] = {0.0093994140625f, -0.0845947265625f, 0.845947265625f,
                                0.281982421875f,  -0.0604248046875f, 0.0076904296875f};
@@ -132,6 +132,7 @@ void Share(const float* const y[6], std::span<std::uint16_t> share) {
     const D d;
     const Half half;
     const Whole whole;
+    constexpr auto kNothing = static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(kNoFoamShare) + 0x8000u) >> 16);
     for (std::size_t i = 0; i < share.size(); i += hn::Lanes(d)) {
         const auto at = [&](int sample) HWY_ATTR { return N(hn::LoadU(d, y[sample] + i)); };
         const auto near_quarter = [&](int from, int way) HWY_ATTR {
@@ -143,8 +144,9 @@ void Share(const float* const y[6], std::span<std::uint16_t> share) {
                          N(3.0 / 256.0) * (at(0) + at(5));
         const N way[5] = {at(2), near_quarter(0, 1), middle, near_quarter(5, -1), at(3)};
         const N most = maximum(maximum(maximum(way[0], way[1]), maximum(way[2], way[3])), way[4]);
-        if (hn::AllTrue(d, most < N(kNothing))) {  // so are most nodes at most times
-            hn::StoreU(hn::Zero(half), half, share.data() + i);
+        const auto is_nothing = most < N(kNoFoamDeviate);
+        if (hn::AllTrue(d, is_nothing)) {  // so are most nodes at most times
+            hn::StoreU(hn::Set(half, kNothing), half, share.data() + i);
             continue;
         }
         Normal before = NormalOf(way[0]);
@@ -154,7 +156,7 @@ void Share(const float* const y[6], std::span<std::uint16_t> share) {
             mean += N(0.25) * MeanBetween(way[part], before, way[part + 1], after);
             before = after;
         }
-        mean = minimum(maximum(mean, N(0)), N(1));
+        mean = select<D>(is_nothing, N(kNoFoamShare), minimum(maximum(mean, N(kNoFoamShare)), N(1)));
         const auto bits = hn::Add(hn::BitCast(whole, mean.v), hn::Set(whole, 0x8000u));
         const auto upper = hn::BitCast(hn::RebindToSigned<Whole>(), hn::ShiftRight<16>(bits));
         hn::StoreU(hn::DemoteTo(half, upper), half, share.data() + i);

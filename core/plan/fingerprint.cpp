@@ -41,7 +41,7 @@ std::string plan_text(const Plan& plan, int query_index) {
     if (has_foam) text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
     // The history has grids of its own, which aren't in this plan. To be raised where they give other bits.
     if (plan.foam && query.asks_for_past())
-        text += "history 2, oversampling " + number_text(plan.knobs.light_oversampling) + '\n';
+        text += "history 2, oversampling " + number_text(plan.knobs.oversampling) + '\n';
     // Until the law did, the cube of the wind said how much each place has.
     if (has_foam && plan.gusts && !query.only_cascade) text += "gusts by the law\n";
     const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';

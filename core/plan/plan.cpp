@@ -505,10 +505,12 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     if (plan.from->scene.waves.coast) query.products |= products(Product::Displacement);
     query.cell_m = query.pixel_m = {cell_m};
     query.is_view = true;
-    // With six taps and 1.4 nodes a sample the foam is 0.3 % off (RMS), as with four taps and two nodes, in three quarters of the time.
+    // Six taps on 0.7 as many nodes read as well as four: the final level's foam is 0.4 % off (RMS) with either, six taking three
+    // quarters of the time.
+    constexpr double kNodes = 0.7, kFewest = 1.25;
     Knobs knobs = plan.knobs;
     knobs.spline_taps = 6;
-    knobs.oversampling = knobs.light_oversampling;
+    knobs.oversampling = std::max(kNodes * knobs.oversampling, kFewest);
     Plan own = make_plan(plan.from, {query}, {.knobs = knobs});
     own.trains = plan.trains;  // which there are depends on all that is asked of the sea
     own.gusts.reset();         // the whole sea's own

@@ -61,7 +61,7 @@ class Frame {
     glm::dvec3 hidden_slopes(int cascade, int grid, glm::dvec2 place_m) const;
     // The turbulent wakes of vessels, at the frame's time.
     std::span<const WakeStrip> strips() const { return strips_; }
-    // Frees a field's samples after their last use. The frame has no time from then on, and set() throws
+    // Gives a field's samples back, in whole pages, after their last use. The frame has no time from then on, and set() throws
     // std::logic_error.
     void release(int cascade, int grid, Field field);
     // Counts since construction: 2-D transforms, and the 1-D transforms that they consist of. After n calls

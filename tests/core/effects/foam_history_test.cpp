@@ -322,12 +322,13 @@ TEST(LivingFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
 }
 
 // Tiles beside each other are sampled as one row: what a node has doesn't depend on which of them are asked for.
-TEST(LivingFoam, IsTheSameWhicheverTilesOfARowAreThere) {
-    const auto sea = sea_of(scene_of(2.0), 0.2);
+template <class T>
+void expect_same_whichever_tiles_are_there(const Scene& scene, const char* what) {
+    const auto sea = sea_of<T>(scene, 0.2);
     constexpr std::size_t kSide = 80, kWhich = 3;
-    const auto points = square(kSide, 1.1);
+    const auto points = square<T>(kSide, 1.1);
     const glm::dvec2 origin_m(-33.0);
-    Shown<> all(sea);
+    Shown<T> all(sea);
     const Foam whole = all.at(5.2, points, origin_m);
     const double tile_m = sea->plan().foam->cell_m * FoamPlan::kTileCells;
     for (std::size_t part = 0; part < kWhich; ++part) {  // columns of a tile's width, some way apart
@@ -335,15 +336,59 @@ TEST(LivingFoam, IsTheSameWhicheverTilesOfARowAreThere) {
         for (std::size_t p = 0; p < points.size(); ++p)
             if (static_cast<std::size_t>(static_cast<double>(points[p].x) / tile_m) % kWhich == part)
                 which.push_back(p);
-        ASSERT_GT(which.size(), kSide);
-        std::vector<glm::vec2> few;
+        ASSERT_GT(which.size(), kSide) << what;
+        std::vector<glm::vec<2, T>> few;
         for (const std::size_t p : which) few.push_back(points[p]);
-        Shown<> alone(sea);
+        Shown<T> alone(sea);
         const Foam seen = alone.at(5.2, few, origin_m);
         for (std::size_t i = 0; i < which.size(); ++i) {
-            ASSERT_EQ(seen.total[i], whole.total[which[i]]) << part << ' ' << i;
-            ASSERT_EQ(seen.age_s[i], whole.age_s[which[i]]) << part << ' ' << i;
+            ASSERT_EQ(seen.total[i], whole.total[which[i]]) << what << ": " << part << ' ' << i;
+            ASSERT_EQ(seen.age_s[i], whole.age_s[which[i]]) << what << ": " << part << ' ' << i;
         }
+    }
+}
+TEST(LivingFoam, IsTheSameWhicheverTilesOfARowAreThere) {
+    const Scene plain = scene_of(1.0);
+    expect_same_whichever_tiles_are_there<float>(plain, "single precision");
+    expect_same_whichever_tiles_are_there<double>(plain, "double precision");
+    Scene periodic = plain, gusty = plain, calm = plain, trains = plain;
+    periodic.waves.tiling = Tiling::Periodic;
+    expect_same_whichever_tiles_are_there<float>(periodic, "one tile");
+    gusty.sea.gust_strength = 0.5;
+    expect_same_whichever_tiles_are_there<float>(gusty, "gusts");
+    calm.waves.masks = {{.length_m = 30.0, .width_m = 20.0, .edge_m = 10.0, .waves = 0.2, .foam = 0.5}};
+    expect_same_whichever_tiles_are_there<float>(calm, "a calm");
+    trains.waves.model = WaveModel::Trochoid;
+    expect_same_whichever_tiles_are_there<float>(trains, "trains");
+}
+
+// A share depends on its own deviates alone, whatever stands beside it in the vector, where nothing breaks as well.
+TEST(FoamKernels, AShareDependsOnItsOwnDeviates) {
+    const FoamKernels kernels = foam_kernels();
+    constexpr std::size_t kCount = 64, kRoom = kCount + 16;
+    std::array<std::array<float, kRoom>, 6> y;
+    for (std::size_t s = 0; s < y.size(); ++s)
+        for (std::size_t i = 0; i < kRoom; ++i)
+            y[s][i] = -20.0f + 0.37f * static_cast<float>(i) + 0.1f * static_cast<float>(s * (i % 3));
+    const auto shares_of = [&](const std::array<std::array<float, kRoom>, 6>& of) {
+        const float* const six[6] = {of[0].data(), of[1].data(), of[2].data(),
+                                     of[3].data(), of[4].data(), of[5].data()};
+        std::vector<std::uint16_t> shares(kRoom);
+        kernels.share(six, {shares.data(), kCount});
+        return shares;
+    };
+    const std::vector<std::uint16_t> together = shares_of(y);
+    EXPECT_LT(together.front(), together[kCount - 1]);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        auto alone = y;
+        for (auto& sample : alone)
+            for (std::size_t j = 0; j < kRoom; ++j)
+                if (j != i) sample[j] = j % 2 == 0 ? -30.0f : 3.0f;
+        EXPECT_EQ(shares_of(alone)[i], together[i]) << i;
+        for (auto& sample : alone)
+            for (std::size_t j = 0; j < kRoom; ++j)
+                if (j != i) sample[j] = -30.0f;
+        EXPECT_EQ(shares_of(alone)[i], together[i]) << i;
     }
 }
 

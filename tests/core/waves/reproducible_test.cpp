@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/core/waves/samples.h"
 
@@ -52,6 +54,31 @@ TEST(Frame, ThatGaveSamplesBackTakesNoTime) {
     EXPECT_EQ(frame.samples(0, 0, Field::Height), nullptr);
     EXPECT_NE(frame.samples(0, 0, Field::SlopeX), nullptr);
     EXPECT_THROW(frame.set(2.0), std::logic_error);
+    // Planes lie side by side: what one gives back takes nothing of the others.
+    Frame<float> whole(sea);
+    whole.set(1.0);
+    const std::vector<CascadePlan>& cascades = sea->plan().cascades;
+    std::vector<std::size_t> pages;
+    for (std::size_t c = 0; c < cascades.size(); ++c)
+        for (std::size_t g = 0; g < cascades[c].grids.size(); ++g)
+            for (std::size_t f = 0; f < kFieldCount; f += 2)
+                if (cascades[c].grids[g].fields[f]) {
+                    pages.push_back(grid_bytes(cascades[c].grids[g].resolution, false) / 4096);
+                    frame.release(static_cast<int>(c), static_cast<int>(g), static_cast<Field>(f));
+                }
+    EXPECT_GT(*std::ranges::max_element(pages), 2u);
+    for (std::size_t c = 0; c < cascades.size(); ++c)
+        for (std::size_t g = 0; g < cascades[c].grids.size(); ++g)
+            for (std::size_t f = 1; f < kFieldCount; f += 2) {
+                const auto field = static_cast<Field>(f);
+                const float* const kept = frame.samples(static_cast<int>(c), static_cast<int>(g), field);
+                if (!kept) continue;
+                const int n = cascades[c].grids[g].resolution;
+                EXPECT_EQ(std::memcmp(kept, whole.samples(static_cast<int>(c), static_cast<int>(g), field),
+                                      static_cast<std::size_t>(n) * line_stride<float>(n) * sizeof(float)),
+                          0)
+                    << c << ' ' << g << ' ' << f;
+            }
 }
 
 TEST(Threads, ChangeNoBit) {

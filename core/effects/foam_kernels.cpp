@@ -132,7 +132,8 @@ void Share(const float* const y[6], std::span<std::uint16_t> share) {
     const D d;
     const Half half;
     const Whole whole;
-    constexpr auto kNothing = static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(kNoFoamShare) + 0x8000u) >> 16);
+    constexpr auto kNothing =
+        static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(kNoFoamShare) + 0x8000u) >> 16);
     for (std::size_t i = 0; i < share.size(); i += hn::Lanes(d)) {
         const auto at = [&](int sample) HWY_ATTR { return N(hn::LoadU(d, y[sample] + i)); };
         const auto near_quarter = [&](int from, int way) HWY_ATTR {

@@ -166,10 +166,14 @@ def arrays(pelagic, count):
 def default_frame(build, folder):
     shot = folder / "default.toml"
     shot.write_text("[shot]\n")
-    said, _, _ = run(build / "bench/bench_procedural", shot)
-    name, _, first, mib = (cell.strip() for cell in next(line for line in said.splitlines() if "frame_create" in line).strip("|").split("|"))
-    ms = float(first.split()[0])
-    row(FRAME, f"{mib} MiB; {ms / 1000:.2f} s", "≤ 256 MB; ≤ 0.3 s", int(mib) * 1.048576 <= 256 and ms <= 300)
+    found = []
+    for _ in range(5):  # processes: where memory lies in pieces, the first waits for the system to clear huge pages
+        said, _, _ = run(build / "bench/bench_procedural", shot)
+        _, _, first, mib = (cell.strip() for cell in next(line for line in said.splitlines() if "frame_create" in line).strip("|").split("|"))
+        found.append(float(first.split()[0]))
+    ms = sorted(found)[2]
+    row(FRAME, f"{mib} MiB; {ms / 1000:.2f} s (of five processes {min(found) / 1000:.2f} … {max(found) / 1000:.2f})", "≤ 256 MB; ≤ 0.3 s",
+        int(mib) * 1.048576 <= 256 and ms <= 300)
 
 
 def unloaded(build):

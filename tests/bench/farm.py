@@ -182,8 +182,9 @@ def unloaded(build):
         suites = json.loads(Path(told.name).read_text())["testsuites"]
     grown = [int(test["grown_kib"]) for suite in suites for test in suite["testsuite"]]
     frame = min((int(test["frame_kib"]) for suite in suites for test in suite["testsuite"]), default=0)
-    row(UNLOADED, f"{', '.join(f'{kib / 1024:.1f}' for kib in grown)} MiB", f"less than a frame of the 90: {frame / 1024:.1f} MiB",
-        bool(grown) and max(grown) < frame)
+    # A frame's samples are one block, which the allocator may keep at one of the two moments and not at the other.
+    row(UNLOADED, f"{', '.join(f'{kib / 1024:.1f}' for kib in grown)} MiB", f"less than two frames of the 90: {2 * frame / 1024:.1f} MiB",
+        bool(grown) and max(grown) < 2 * frame)
 
 
 def main():

@@ -691,7 +691,7 @@ void FoamHistory<T>::calm(std::uint16_t* shares, const Place& place, std::int64_
     }
 }
 
-// Of tiles that goes_on_in_row(): points in long rows cost half as much as those of one tile after another.
+// Of tiles that goes_on_in_row(): points in long rows cost less than those of one tile after another.
 template <class T>
 void FoamHistory<T>::sample(std::span<Tile* const> row, std::int64_t n, const PreparedQuery<T>& query,
                             const Whitecaps& now) const {

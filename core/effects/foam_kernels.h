@@ -57,8 +57,8 @@ struct FoamKernels {
 // So far that what lies between two samples isn't bent by the limit.
 inline constexpr float kFarthestFoamDeviate = 1e3f;
 
-// What breaks less counts as that, deviates of −7 among it, of calms and of places without surf (kLeastDeviate): nobody sees it, and it
-// has an age, so that water without foam beside foam is none that has just broken.
+// What breaks less than this share, Φ of the deviate, counts as it, deviates of −7 among it, of calms and of places without surf
+// (kLeastDeviate): nobody sees it, and it has an age, so that water without foam beside foam is none that has just broken.
 inline constexpr float kNoFoamDeviate = -6.9f, kNoFoamShare = 2.6e-12f;
 
 // For the CPU that runs this.

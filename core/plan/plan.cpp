@@ -506,7 +506,7 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     query.cell_m = query.pixel_m = {cell_m};
     query.is_view = true;
     // Six taps on 0.7 as many nodes read as well as four: the final level's foam is 0.4 % off (RMS) with either, six taking three
-    // quarters of the time.
+    // quarters of the time (tests/bench/README.md). No fewer than drafts have anyway.
     constexpr double kNodes = 0.7, kFewest = 1.25;
     Knobs knobs = plan.knobs;
     knobs.spline_taps = 6;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
+#include <set>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -10,6 +11,7 @@
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 #include "core/surface/view.h"
+#include "plugin/render/floor_light.h"
 #include "plugin/render/passes.h"
 #include "plugin/render/spray_map.h"
 
@@ -125,8 +127,8 @@ WorkDone with_samples(WorkDone work, double points, double samples, double momen
 }  // namespace
 
 const Rates& recorded_rates() {
-    static constexpr Rates kMs{0.05, 0.306,  3.84,    0.0212, 0.347,  2.19,
-                               18.0, 2400.0, 31000.0, 50.0,   3000.0, 600.0};
+    static constexpr Rates kMs{0.05,   0.306,   3.84, 0.0212, 0.347, 2.19, 18.0,
+                               2400.0, 31000.0, 50.0, 3000.0, 600.0, 450.0};
     return kMs;
 }
 
@@ -143,7 +145,8 @@ WorkDone work_of(const Plan& plan) {
 
 WorkDone picture_work(const Plan& plan, std::span<const int> frames, const RenderOptions& options) {
     const Camera& camera = plan.from->scene.camera;
-    const auto moments = static_cast<double>(passes_of(camera, frames.front(), options).all.size());
+    const PicturePasses passes = passes_of(camera, frames.front(), options);
+    const auto moments = static_cast<double>(passes.all.size());
     PixelWindow window = data_window(camera.resolution / options.samples, options);
     window = {window.low * options.samples, window.high * options.samples};
     double water = 0.0;
@@ -160,6 +163,12 @@ WorkDone picture_work(const Plan& plan, std::span<const int> frames, const Rende
             spray_map_size(camera.resolution.x / options.samples + 2 * options.overscan_px.x);
         at(work, Work::SprayTexels) = 1e-6 * map.columns * map.rows * moments;
         at(work, Work::SpraySamples) = samples;
+    }
+    if (options.lighting.water && options.lighting.sun) {
+        std::set<double> times;  // a lens has several places at one
+        for (const PicturePass& pass : passes.all) times.insert(pass.frame);
+        at(work, Work::FloorTexels) =
+            1e-6 * static_cast<double>(most_floor_light_needs(plan.from->scene, plan).texels * times.size());
     }
     return work;
 }

@@ -27,8 +27,9 @@ enum class Work {
     Sky,            // samples that show it
     SprayTexels,    // of the map of the spray, anew at each moment
     SpraySamples,   // that look into it
+    FloorTexels,    // of the sun's light on the floor, anew at each moment
 };
-inline constexpr std::size_t kWorkCount = 12;
+inline constexpr std::size_t kWorkCount = 13;
 // Of the sea in single precision: double counts as more.
 using WorkDone = std::array<double, kWorkCount>;
 

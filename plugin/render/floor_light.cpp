@@ -4,11 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <set>
 #include <span>
 #include <utility>
 
+#include "core/scene/number_keys.h"
 #include "core/surface/footprint_levels.h"
 #include "plugin/light/caustics.h"
+#include "plugin/light/light.h"
 
 namespace pelagic {
 namespace {
@@ -72,22 +75,42 @@ void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaVi
     wanted.finest_cell_m = first(std::max(needs.finest_cell_m, needs.finest_pixel_m));
 }
 
-FloorLightBytes floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m, double finest_m,
+FloorLightNeeds floor_light_needs(const Scene& scene, const WaterBody& water, double waves_m, double finest_m,
                                   int side) {
     if (!water.has_body || scene.water.caustics == 0.0) return {};
-    const auto texels = [](int of_side, std::size_t maps) {
-        return static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side) * maps * sizeof(float);
-    };
     double lowest_m = scene.camera.position_m.z;
     for (const auto& key : scene.camera.keys) lowest_m = std::min(lowest_m, key.position_m.z);
     const bool has_map = scene.sea.depth_file != SeaState{}.depth_file,
                shows = has_map || (shows_floor(water, static_cast<double>(water.floor_m)) &&
                                    kMeshesADepth * finest_m <= static_cast<double>(water.floor_m)),
                has_shafts = lowest_m < waves_m;
-    // A level of half the side after the other: a third more, and once more while they grow.
-    return {.held = (shows ? texels(side, 2) : 0) + (has_shafts ? texels(kShaftSide, 3) : 0),
-            .making = std::max(shows ? caustics_bytes(side, kMostMargin) : 0,
-                               has_shafts ? caustics_bytes(kShaftSide, kMostMargin) : 0)};
+    const auto texels = [](int of_side) {
+        return static_cast<std::size_t>(of_side) * static_cast<std::size_t>(of_side);
+    };
+    const std::size_t on_floor = shows ? 2 * texels(side) : 0, in_water = has_shafts ? texels(kShaftSide) : 0;
+    // Shafts have a level of half the side after the other: a third more, and once more while they grow.
+    return {.held_bytes = (on_floor + 3 * in_water) * sizeof(float),
+            .making_bytes = std::max(shows ? caustics_bytes(side, kMostMargin) : 0,
+                                     has_shafts ? caustics_bytes(kShaftSide, kMostMargin) : 0),
+            .texels = on_floor + in_water};
+}
+
+FloorLightNeeds most_floor_light_needs(const Scene& scene, const Plan& plan) {
+    const PreparedScene& prepared = *plan.from;
+    const double finest_m = plan.queries.front().query.pixel_m.front();
+    // It is at one of the keys, since the way to the floor and how clear the water is go straight from key to key, or nearly.
+    std::set<int> frames{scene.shot.first_frame};
+    for (const KeyedNumber& number : scene.keyed)
+        for (const NumberKeys::Key& key : number.keys.keys)
+            frames.insert(std::clamp(key.frame, scene.shot.first_frame, scene.shot.last_frame));
+    FloorLightNeeds most;
+    for (const int frame : frames) {
+        const Scene moment = scene_at(scene, frame);
+        const FloorLightNeeds here = floor_light_needs(moment, make_water(moment, prepared.spectrum),
+                                                       prepared.extent.height_m, finest_m);
+        if (here.bytes() > most.bytes()) most = here;
+    }
+    return most;
 }
 
 bool shows_floor(const WaterBody& water, double depth_m) {

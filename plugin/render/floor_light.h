@@ -6,6 +6,7 @@
 
 #include "core/lighting/floor.h"
 #include "core/lighting/water.h"
+#include "core/plan/plan.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
 #include "pelagic/scene.h"
@@ -26,16 +27,18 @@ struct FloorLightWanted {
     bool operator==(const FloorLightWanted&) const = default;
 };
 
-// [bytes]
-struct FloorLightBytes {
-    std::size_t held = 0;    // by the maps
-    std::size_t making = 0;  // beside them at most, while one is made
-    std::size_t all() const { return held + making; }
+struct FloorLightNeeds {
+    std::size_t held_bytes = 0;    // by the maps
+    std::size_t making_bytes = 0;  // beside them at most, while one is made
+    std::size_t texels = 0;        // of all of them, made anew at each moment
+    std::size_t bytes() const { return held_bytes + making_bytes; }
 };
 // waves_m: how high waves are, by which a camera may be in the water; finest_m: the finest footprint of pixels, beside which a level
 // floor's pattern may be too fine to show.
-FloorLightBytes floor_light_bytes(const Scene& scene, const WaterBody& water, double waves_m,
+FloorLightNeeds floor_light_needs(const Scene& scene, const WaterBody& water, double waves_m,
                                   double finest_m = 0.0, int side = FloorLightWanted{}.side);
+// Of the shot's frame that needs most, in pictures by this plan (picture_plan()).
+FloorLightNeeds most_floor_light_needs(const Scene& scene, const Plan& plan);
 
 // For a view, whichever others its frame's plan is for: with both footprints.
 void set_footprints(FloorLightWanted& wanted, const DrawnSea& drawn, const SeaView& seen);

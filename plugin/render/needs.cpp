@@ -17,7 +17,6 @@
 #include "core/plan/quality.h"
 #include "core/plan/spray.h"
 #include "core/scene/hull.h"
-#include "core/scene/number_keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
@@ -199,25 +198,6 @@ constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + sizeof(PixelPlace) 
                                      2 * sizeof(float) + sizeof(glm::vec3) + sizeof(SeaPoint) +
                                      13 * sizeof(float) + (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
-// Of the frame in which the floor shows best: at one of the keys, since the way to it and how clear the water is go straight from key to key, or
-// nearly.
-FloorLightBytes most_floor_light_bytes(const Scene& scene, const Plan& plan) {
-    const PreparedScene& prepared = *plan.from;
-    const double finest_m = plan.queries.front().query.pixel_m.front();
-    std::set<int> frames{scene.shot.first_frame};
-    for (const KeyedNumber& number : scene.keyed)
-        for (const NumberKeys::Key& key : number.keys.keys)
-            frames.insert(std::clamp(key.frame, scene.shot.first_frame, scene.shot.last_frame));
-    FloorLightBytes most;
-    for (const int frame : frames) {
-        const Scene moment = scene_at(scene, frame);
-        const FloorLightBytes here = floor_light_bytes(moment, make_water(moment, prepared.spectrum),
-                                                       prepared.extent.height_m, finest_m);
-        if (here.all() > most.all()) most = here;
-    }
-    return most;
-}
-
 // A camera as it is at a frame, but for its roll.
 void stand_still(Camera& camera, int frame) {
     const View view = view_at(camera, frame);
@@ -301,9 +281,9 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
                      DrawnSea(*plan.from, false).surface_bytes(points) + at_hand * 3 * sizeof(T),
                      "lower surface.cage_level, or raise surface.cell_px");
     });
-    const FloorLightBytes floor = most_floor_light_bytes(scene, plan);
+    const FloorLightNeeds floor = most_floor_light_needs(scene, plan);
     const char* const floor_remedy = "set water.caustics to 0";
-    need.add("the sun's light on the floor", floor.held, floor_remedy);
+    need.add("the sun's light on the floor", floor.held_bytes, floor_remedy);
     if (const std::size_t pictures = floor_bytes(scene); pictures > 0)
         need.add("the floor's pictures", pictures, "give smaller ones");
     std::size_t meshes = 0;
@@ -360,7 +340,8 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
     const bool is_alone =
         frames.size() == 1 && passes_of(scene.camera, frames.front(), options).all.size() == 1;
     later = is_alone ? later + need.bytes() - before : 0;
-    need.add("the sun's light on the floor", floor.making - std::min(floor.making, later), floor_remedy);
+    need.add("the sun's light on the floor", floor.making_bytes - std::min(floor.making_bytes, later),
+             floor_remedy);
     return need;
 }
 

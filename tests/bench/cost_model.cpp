@@ -273,6 +273,6 @@ int main(int argc, char** argv) {
         row.work.erase(row.work.begin(), row.work.begin() + kFoam);
     }
     print(
-        "pictures [ms], the sea as in bakes: foam; samples with nine, with the integral, of sky; texels and samples of spray",
+        "pictures [ms], the sea as in bakes: foam; samples with nine, with the integral, of sky; texels and samples of spray; texels of the floor's light",
         of_pictures, fitted(of_pictures));
 }

@@ -153,9 +153,9 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
         need.add("the cage's surface", planned.drawn->surface_bytes(points) + points * sizeof(glm::vec4),
                  "lower surface.cage_level, or raise surface.cell_px");
     if (const std::size_t floor =
-            floor_light_bytes(planned.scene, make_water(planned.scene, planned.plan.from->spectrum),
+            floor_light_needs(planned.scene, make_water(planned.scene, planned.plan.from->spectrum),
                               planned.plan.from->extent.height_m)
-                .all();
+                .bytes();
         floor > 0)
         need.add("the sun's light on the floor", floor, "set water.caustics to 0");
     if (const std::size_t pictures = floor_bytes(planned.scene); pictures > 0)

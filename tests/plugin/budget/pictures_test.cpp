@@ -183,6 +183,30 @@ TEST(PriceOfPictures, AShutterComputesTheSeaForEachSample) {
         }
 }
 
+// Two maps, anew at each moment; a lens has many places at one.
+TEST(PriceOfPictures, TheSunsPatternOnAFloorIsInIt) {
+    Scene scene = without_budget(timed_scene());
+    scene.sea.wind_speed_mps = 5.0;
+    scene.effects.foam_decay_s = 0.0;
+    const std::array frames{1};
+    const auto texels = [&](double depth_m, double shutter_frames, double f_stop) {
+        scene.sea.depth_m = depth_m;
+        scene.camera.f_stop = f_stop;
+        RenderOptions options = render_options(scene);
+        options.samples = 2;
+        options.shutter_frames = shutter_frames;
+        return picture_work(picture_plan(of_samples(scene, options.samples), frames, options), frames,
+                            options)[static_cast<std::size_t>(Work::FloorTexels)];
+    };
+    const double still = texels(2.0, 0.0, 0.0);
+    EXPECT_DOUBLE_EQ(still, 1e-6 * 2 * 1024 * 1024);
+    EXPECT_EQ(texels(200.0, 0.0, 0.0), 0.0) << "nobody sees so deep a floor";
+    EXPECT_DOUBLE_EQ(texels(2.0, 0.0, 2.8), still);
+    EXPECT_DOUBLE_EQ(texels(2.0, 0.5, 0.0), 9.0 * still);
+    scene.water.caustics = 0.0;
+    EXPECT_EQ(texels(2.0, 0.0, 0.0), 0.0);
+}
+
 // So fewer samples stay within a time.
 TEST(PriceOfPictures, AShutterLeavesFewerSamplesWithinATime) {
     Scene scene = timed_scene();

@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
+#include "core/scene/text.h"
 #include "plugin/bake/bake.h"
 #include "plugin/files/files.h"
 #include "plugin/format/shot/shot.h"
@@ -333,7 +334,8 @@ int run(FarmArguments arguments) {
         std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
                   << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
                   << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)
-                  << ", about " << duration_text(need.frame.seconds) << " a frame by the plan\n"
+                  << "; by the plan about " << rough_text(need.frame.seconds) << " s a frame and "
+                  << duration_text(seconds) << " a task\n"
                   << "array:  " << line_text(array.string()) << "\nverify: " << line_text(last.string())
                   << '\n';
         told["event"] = "result";

@@ -92,7 +92,7 @@ FloorLightNeeds floor_light_needs(const Scene& scene, const WaterBody& water, do
     return {.held_bytes = (on_floor + 3 * in_water) * sizeof(float),
             .making_bytes = std::max(shows ? caustics_bytes(side, kMostMargin) : 0,
                                      has_shafts ? caustics_bytes(kShaftSide, kMostMargin) : 0),
-            .texels = on_floor + in_water};
+            .texels = on_floor + (lowest_m < 0.0 ? in_water : 0)};  // above that few waves reach the lens
 }
 
 FloorLightNeeds most_floor_light_needs(const Scene& scene, const Plan& plan) {

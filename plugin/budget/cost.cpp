@@ -128,7 +128,7 @@ WorkDone with_samples(WorkDone work, double points, double samples, double momen
 
 const Rates& recorded_rates() {
     static constexpr Rates kMs{0.05,   0.306,   3.84, 0.0212, 0.347, 2.19, 18.0,
-                               2400.0, 31000.0, 50.0, 3000.0, 600.0, 200.0};
+                               2400.0, 31000.0, 50.0, 3000.0, 600.0, 250.0};
     return kMs;
 }
 

@@ -130,7 +130,7 @@ def contents(build):
     renamed, library_bytes = apart.apart({name: for_hosts(path) for name, path in of_the_library.items()}, for_hosts(library),
                                          "$ORIGIN/libpelagic")
     files |= {f"lib/libpelagic/{name}": data for name, data in renamed.items()}
-    owners = dict(make_zip.licence_of(path) for path in {*of_the_program.values(), *of_the_library.values()} - {*modules})
+    owners = dict(make_zip.licences_of({*of_the_program.values(), *of_the_library.values()} - {*modules}).values())
     compiled = packages_to_compile() - {*owners}
     licences = owners | {package: Path(f"/usr/share/doc/{package}/copyright") for package in compiled}
     licences = {package: file.read_bytes() for package, file in licences.items() if file.is_file()}

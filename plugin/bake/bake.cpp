@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@
 #include "plugin/format/vdb/vdb.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/run/record.h"
 #include "plugin/run/work.h"
 
 namespace pelagic {
@@ -88,6 +90,17 @@ std::vector<Problem> unbaked_keys(const Scene& scene) {
                                 "a number in bakes; pelagic render shows it with keys"});
     }
     return problems;
+}
+
+std::vector<std::string> frames_made_of(const Plan& plan, std::span<const int> frames) {
+    const std::vector<std::unique_ptr<OutputPart>> parts = make_parts(plan);
+    std::vector<std::string> all;
+    for (const int frame : frames) {
+        std::map<std::string, FileRecord> files;
+        for (const auto& part : parts) files[part->file(frame)].fingerprint = part->fingerprint(frame);
+        all.push_back(made_of(files));
+    }
+    return all;
 }
 
 RunReport bake(const Scene& scene, const RunOptions& options) {

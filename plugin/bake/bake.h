@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/plan/memory.h"
@@ -22,6 +24,9 @@ inline constexpr int kFramesInFlight = 3;
 
 // What a bake of so many frames of the plan (plan_bake) holds at most, on so many threads.
 MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads);
+
+// Of what the plan's files of each of these frames are made: made_of() (plugin/run/record.h).
+std::vector<std::string> frames_made_of(const Plan& plan, std::span<const int> frames);
 
 // Keys of a valid scene that pictures show and a bake refuses.
 std::vector<Problem> unbaked_keys(const Scene& scene);

@@ -102,6 +102,14 @@ class Pictures final : public Sequence {
 
 }  // namespace
 
+PictureFingerprint picture_fingerprint(const PictureOrder& order) {
+    return PictureFingerprint({.scene = order.scene,
+                               .options = order.options,
+                               .picture_content = picture_content(order.scene),
+                               .exposure_stops = order.exposure_stops,
+                               .colours = order.colours});
+}
+
 RunReport render_files(const PictureOrder& order, const RunOptions& options) {
     const Shot& shot = order.scene.shot;
     std::optional<PictureFingerprint> made_of;
@@ -111,11 +119,7 @@ RunReport render_files(const PictureOrder& order, const RunOptions& options) {
                 .plan =
                     [&](std::span<const int>) {
                         check_render(order.scene, order.options);
-                        made_of.emplace(PictureSource{.scene = order.scene,
-                                                      .options = order.options,
-                                                      .picture_content = picture_content(order.scene),
-                                                      .exposure_stops = order.exposure_stops,
-                                                      .colours = order.colours});
+                        made_of.emplace(picture_fingerprint(order));
                         for (const char* suffix : {".png", ".exr"})
                             parts.push_back(
                                 {{shot.name + '.', suffix}, [&](int frame) { return made_of->of(frame); }});

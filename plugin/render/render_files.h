@@ -19,6 +19,9 @@ struct PictureOrder {
     PictureColours colours{};
 };
 
+// Of what they are made.
+PictureFingerprint picture_fingerprint(const PictureOrder& order);
+
 // Throws as run() and check_render(), and NotEnoughMemory before anything is written.
 RunReport render_files(const PictureOrder& order, const RunOptions& options);
 

@@ -42,7 +42,7 @@ std::optional<Fragment> fragment_of(std::string_view rest) {
 }
 
 std::string path_below(const fs::path& record, const fs::path& file) {
-    return fs::relative(file, record.parent_path()).generic_string();
+    return file.lexically_relative(record.parent_path()).generic_string();  // it may be gone by now
 }
 
 using Frames = std::map<int, FrameRecord>;

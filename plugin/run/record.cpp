@@ -409,6 +409,12 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     return reader.problem().empty() ? reading : whole();
 }
 
+std::string made_of(const std::map<std::string, FileRecord>& files) {
+    Fingerprint all;
+    for (const auto& [path, file] : files) all.add(path).add(file.fingerprint);
+    return all.text();
+}
+
 void Record::describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold,
                       double residual_coverage) {
     const Scene& scene = plan.from->scene;
@@ -522,6 +528,18 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
                   merge(file, Taken::Nothing) == Merged::Yes;
     }
     if (makes_frames) save(file);
+}
+
+void Record::refuse_other_version(const std::filesystem::path& file) {
+    const files::FileIdentity now = files::identity_of(file);
+    if (now == seen_) return;
+    const RecordReading there = read_frames(
+        file, {}, [](int, const FrameRecord&) {}, nullptr);
+    if (there.shot && there.version != version_of(shot_))
+        throw BegunAnew("another run has begun another version of " + line_text(there.shot->name) + " in " +
+                        line_text(file.parent_path().string()) +
+                        ": this one stops; the same command again makes what the shot file says by then");
+    seen_ = now;
 }
 
 void Record::save(const std::filesystem::path& file) {

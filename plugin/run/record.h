@@ -57,6 +57,9 @@ struct FrameRecord {
     std::optional<SprayRecord> spray;
 };
 
+// Of what a frame's files are made, by path and fingerprint, as one number.
+std::string made_of(const std::map<std::string, FileRecord>& files);
+
 // What a record says about the whole shot.
 struct ShotRecord {
     std::string name;
@@ -112,6 +115,12 @@ inline bool names_all_frames(int first, int last) {
     return std::int64_t{last} - first < 32768;
 }
 
+// Another run has begun another version of the shot in the folder: what this one still made would lie among that one's files.
+class BegunAnew : public std::runtime_error {
+  public:
+    using runtime_error::runtime_error;
+};
+
 // What a run adds to the record of its shot.
 class Record {
   public:
@@ -144,6 +153,9 @@ class Record {
     using WriteStatic = std::function<void(const std::map<std::string, FileRecord>& recorded)>;
     void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
                const WriteStatic& write_static = {}, bool makes_frames = false);
+
+    // Throws BegunAnew where the record tells of another version of the shot by now. Costs a look at the file where it is as it was.
+    void refuse_other_version(const std::filesystem::path& file);
 
     // Writes what was set into the run's fragment. Holds one frame in memory of those that are there already.
     void save(const std::filesystem::path& file);
@@ -190,6 +202,7 @@ class Record {
     std::size_t saved_ = 0;             // frames in it
     std::string id_{};                  // in its name
     std::string unlocked_;
+    files::FileIdentity seen_{};  // the record when it was last known to tell of this version
 };
 
 }  // namespace pelagic

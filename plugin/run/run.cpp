@@ -279,6 +279,8 @@ class Run {
                               .encode = [this](int, int at) { encode(*slots_[at]); },
                               .write = [this](int item, int at) { write(jobs_[item], *slots_[at]); },
                               .written = [this](int item) { count(jobs_[item]); }});
+        } catch (const BegunAnew&) {
+            throw;  // the record is that one's
         } catch (...) {
             // What was finished stays recorded; if even that can't be done, the first reason is the one to
             // tell.
@@ -355,6 +357,7 @@ class Run {
     }
 
     void write(const FrameJob& job, RunSlot& slot) {
+        if (work_.has_record) record_.refuse_other_version(report_.record);
         FrameRecord& whole = slot.record;
         sequence_->write(slot, [&](const FileJob& file) {
             if (work_.has_record) stop_if(options_.cancel);

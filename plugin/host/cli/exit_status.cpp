@@ -41,7 +41,8 @@ int status_of(const std::exception& error) {
     if (const auto* memory = dynamic_cast<const NotEnoughMemory*>(&error))
         return memory->is_asked() ? kWrongUsage : kTryAgain;
     if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const ChosenMeanwhile*>(&error) ||
-        dynamic_cast<const TryAgain*>(&error) || is_about_threads(error))
+        dynamic_cast<const BegunAnew*>(&error) || dynamic_cast<const TryAgain*>(&error) ||
+        is_about_threads(error))
         return kTryAgain;
     if (dynamic_cast<const ShotError*>(&error) || dynamic_cast<const WrongUsage*>(&error) ||
         dynamic_cast<const std::invalid_argument*>(&error))

@@ -31,6 +31,8 @@
 #include "plugin/host/cli/text.h"
 #include "plugin/host/cli/verb.h"
 #include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
+#include "plugin/render/batch.h"
 #include "plugin/run/part.h"
 
 namespace pelagic::cli {
@@ -92,6 +94,13 @@ TaskNeed need_of(int asked_threads, const Account& account) {
     return of(static_cast<int>(std::min(cores, kMostCores)));
 }
 
+// Of frames with gaps their number as well: ".13".
+std::string part_text(const std::vector<int>& frames) {
+    const auto range = std::int64_t{frames.back()} - frames.front() + 1;
+    const auto count = static_cast<std::int64_t>(frames.size());
+    return count == range ? std::string() : '.' + std::to_string(count);
+}
+
 std::size_t tasks_for(const FarmArguments& arguments, std::size_t frames, double seconds_a_frame) {
     constexpr double kBesideComputing = 1.5;  // encoding and writing, about
     double tasks = arguments.tasks.value_or(0);
@@ -102,28 +111,42 @@ std::size_t tasks_for(const FarmArguments& arguments, std::size_t frames, double
                      frames, kMostTasks});
 }
 
+// A value with a space in it is one word.
+std::string sbatch_option(const std::string& option) {
+    const std::size_t value = option.find('=') + 1;
+    if (value == 0 || option.find_first_of(" \t", value) == std::string::npos ||
+        option.find_first_of("\"'", value) != std::string::npos || option.find(" -") != std::string::npos)
+        return option;
+    return option.substr(0, value) + '"' + option.substr(value) + '"';
+}
+
+bool is_of_the_array(const std::string& option) {
+    return option.starts_with("--array") || option.starts_with("-a");
+}
+
 // own: lines of the one script. What the user asks for comes last: of two lines of one option Slurm takes the second.
-std::string header(const FarmArguments& arguments, const std::string& name, int threads,
+std::string header(const FarmArguments& arguments, bool is_array, const std::string& name, int threads,
                    std::size_t memory_bytes, const std::string& own) {
     std::string text = "#!/bin/bash\n#SBATCH --job-name=" + sbatch_path(name) +
                        "\n#SBATCH --nodes=1 --ntasks=1\n#SBATCH --cpus-per-task=" + std::to_string(threads) +
                        "\n#SBATCH --mem=" + std::to_string((memory_bytes >> 20) + 1) +
                        "M\n#SBATCH --requeue\n#SBATCH --open-mode=append\n" + own;
-    for (const std::string& option : arguments.sbatch) text += "#SBATCH " + option + '\n';
+    for (const std::string& option : arguments.sbatch)
+        if (is_array || !is_of_the_array(option)) text += "#SBATCH " + sbatch_option(option) + '\n';
     return text;
 }
 
 // Each task's own script: bash FILE N makes task N wherever it is called.
-std::string array_script(const FarmArguments& arguments, const FarmJob& job, const TaskNeed& need,
-                         const fs::path& program, const fs::path& out, double seconds) {
+std::string array_script(const FarmArguments& arguments, const FarmJob& job, const std::string& name,
+                         const TaskNeed& need, const fs::path& program, const fs::path& out, double seconds) {
     constexpr double kLeast_s = 3600.0, kTimes = 10.0;  // of what the plan says, which is of another machine
     const fs::path folder = out / "farm";
     const std::string last = std::to_string(job.tasks.size() - 1);
-    std::string text = header(
-        arguments, job.of.name + ' ' + job.verb, need.threads, need.memory_bytes,
-        "#SBATCH --time=" + std::to_string(std::lround(std::max(kLeast_s, kTimes * seconds) / 60.0)) +
-            "\n#SBATCH --array=0-" + last +
-            "\n#SBATCH --output=" + sbatch_path(folder / (job.of.name + '.' + job.verb), ".%a.slurm") + '\n');
+    std::string text =
+        header(arguments, true, job.of.name + ' ' + job.verb, need.threads, need.memory_bytes,
+               "#SBATCH --time=" + std::to_string(std::lround(std::max(kLeast_s, kTimes * seconds) / 60.0)) +
+                   "\n#SBATCH --array=0-" + last +
+                   "\n#SBATCH --output=" + sbatch_path(folder / name, ".%a.slurm") + '\n');
     text += "# By pelagic farm. Without Slurm: bash THIS N makes task N, 0 to " + last + ".\nframes=(";
     for (const FarmTask& task : job.tasks) text += "\n    " + task.frames;
     text += "\n)\nlogs=(";
@@ -140,7 +163,9 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
         "fi\n"
         "n=$((10#$n))\n"
         "cd " +
-        shell_word(out.string()) + " || exit 75\nlog=" + shell_word(folder.string()) +
+        shell_word(out.string()) +
+        " || { echo 'Where the folder was moved to, share the shot out again.' >&2; exit 75; }\nlog=" +
+        shell_word(folder.string()) +
         "/${logs[n]}\nexec >>\"$log\" 2>&1 || exit 75\n"
         "id=${SLURM_ARRAY_JOB_ID:-$(hostname -s)-$$}_$n\n"
         "echo \"" +
@@ -186,23 +211,22 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
     return text;
 }
 
-std::string verify_script(const FarmArguments& arguments, const FarmJob& job, const fs::path& program,
-                          const fs::path& out, bool is_part) {
+// Whether what this job was to make is there and whole, whatever else is being made in the folder.
+std::string verify_script(const FarmArguments& arguments, const FarmJob& job, const std::string& name,
+                          const fs::path& program, const fs::path& out) {
     constexpr std::size_t kMemory = std::size_t{1} << 30;
-    const std::string name = job.of.name + '.' + job.verb;
-    const std::string verify = shell_word(program.string()) + " verify " + shell_word(out.string()) +
-                               " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
-    const std::string text =
-        header(arguments, job.of.name + " verify", 1, kMemory,
-               "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") + '\n') +
-        "# By pelagic farm: the last job, after all tasks of " + name + ".sh.\n";
-    if (job.verb == "bake" && !is_part && job.instruction_set.empty()) return text + "exec " + verify + '\n';
-    return text + "said=$(" + verify +
-           ")\nstatus=$?\nprintf '%s\\n' \"$said\"\n"
-           "# Pictures that aren't there, verify doesn't know, nor by which set frames were to be made; frames that weren't asked for, it misses.\n"
-           "grep -E '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\" | grep -qv \" lacks frames that aren't baked: \"\n"
+    return header(arguments, false, job.of.name + " verify", 1, kMemory,
+                  "#SBATCH --output=" + sbatch_path(out / "farm" / name, ".verify.log") + '\n') +
+           "# By pelagic farm: the last job, after all tasks of " + name + ".sh.\nsaid=$(" +
+           shell_word(program.string()) + " verify " + shell_word(out.string()) +
+           " --threads \"${SLURM_CPUS_PER_TASK:-1}\")\nstatus=$?\n"
+           "# Pictures that aren't there, verify doesn't know, nor by which set frames were to be made; frames of others, and that weren't asked\n"
+           "# for, it misses.\n"
+           "said=$(grep -v \" lacks frames that aren't baked: \" <<<\"$said\")\nprintf '%s\\n' \"$said\"\n"
+           "grep -qE '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\"\n"
            "[ $status$? = 31 ] && status=0\n" +
-           shell_word(program.string()) + " farm --status " + shell_word(out.string()) +
+           shell_word(program.string()) + " farm --status " +
+           shell_word((out / "farm" / (name + ".json")).string()) +
            "\nthere=$?\n((status)) || status=$there\nexit $status\n";
 }
 
@@ -238,7 +262,8 @@ void submit(const fs::path& array, const fs::path& verify) {
 
 // What is settled once for all tasks, and what a task then needs.
 TaskNeed settle_job(FarmArguments& arguments, const RunOptions& options, const Scene& asked,
-                    FixedSettings fixed, const PictureOrder& order, Session& session) {
+                    FixedSettings fixed, const PictureOrder& order, std::vector<std::string>& made_of,
+                    Session& session) {
     RunOptions whole = options;
     whole.frames.clear();  // settled for the whole shot
     whole.cancel = nullptr;
@@ -251,12 +276,22 @@ TaskNeed settle_job(FarmArguments& arguments, const RunOptions& options, const S
         const Settled settled = settled_for(whole, asked, Purpose::Mesh, session);
         chosen(settled);
         const Plan plan = plan_bake(settled.scene);
+        if (options.max_memory_bytes > 0)
+            require_memory(bake_memory(plan, options.frames.size(), std::max(threads, 1)),
+                           machine::memory_limit_or(options.max_memory_bytes), "a task of this bake");
+        made_of = frames_made_of(plan, options.frames);
         return need_of(threads, [&](int on) { return bake_account(plan, frames, on, rates_on(on)); });
     }
     PictureOrder pictures = order;
     const Settled settled = settled_for(whole, order.scene, Purpose::Pictures, session, fixed);
     settled.apply(pictures);
     chosen(settled);
+    if (options.max_memory_bytes > 0)
+        require_memory(render_memory(pictures.scene, pictures.options, options.frames, kPicturesInFlight,
+                                     std::max(threads, 1)),
+                       machine::memory_limit_or(options.max_memory_bytes), "a task of these pictures");
+    const PictureFingerprint of_frame = picture_fingerprint(pictures);
+    for (const int frame : options.frames) made_of.push_back(of_frame.of(frame));
     return need_of(threads, [&](int on) {
         return picture_account(without_budget(pictures.scene), pictures.options, on, rates_on(on));
     });
@@ -286,8 +321,9 @@ int run(FarmArguments arguments) {
         throw WrongUsage("--out " + quoted_text(out.string()) +
                          ": Slurm takes no \\ in the path of a task's output; accepted: a path without");
     return guarded_run({.shot = arguments.shot, .threads = arguments.threads}, [&](Session& session) {
+        std::vector<std::string> made_of;
         const TaskNeed need = session.threads.execute(
-            [&] { return settle_job(arguments, options, scene, fixed, order, session); });
+            [&] { return settle_job(arguments, options, scene, fixed, order, made_of, session); });
         session.progress.clear();
         FarmJob job{.verb = arguments.verb,
                     .shot = fs::absolute(arguments.shot).lexically_normal().string(),
@@ -305,30 +341,38 @@ int run(FarmArguments arguments) {
             {"tasks", nlohmann::ordered_json::array()},
         };
         const std::size_t tasks = tasks_for(arguments, options.frames.size(), need.frame.seconds);
-        const std::string name = job.of.name + '.' + job.verb;
+        const auto range_of = [](const std::vector<int>& part) {
+            return FilePattern{"", "-"}.file(part.front()) + FilePattern{"", ""}.file(part.back());
+        };
+        const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
+                             std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;
+        std::string name = job.of.name + '.' + job.verb;
+        // Each part has scripts of its own: another one may be at work.
+        if (is_part) name += '.' + range_of(options.frames) + part_text(options.frames);
+        auto its = made_of.begin();
         for (const std::vector<int>& part : split(options.frames, tasks)) {
             std::string frames = frames_text(part);
             std::erase(frames, ' ');
-            const std::string log =
-                FilePattern{name + '.', ""}.file(part.front()) + FilePattern{"-", ".log"}.file(part.back());
+            const std::string log = job.of.name + '.' + job.verb + '.' + range_of(part) + ".log";
             job.tasks.push_back({.frames = frames,
+                                 .made_of = {its, its + static_cast<std::ptrdiff_t>(part.size())},
                                  .log = log,
                                  .slurm = name + '.' + std::to_string(job.tasks.size()) + ".slurm"});
             told["tasks"].push_back({{"task", job.tasks.size() - 1},
                                      {"frames", frames},
+                                     {"made_of", job.tasks.back().made_of},
                                      {"log", log},
                                      {"slurm", job.tasks.back().slurm}});
+            its += static_cast<std::ptrdiff_t>(part.size());
         }
         const fs::path folder = out / "farm", array = folder / (name + ".sh"),
                        last = folder / (name + ".verify.sh");
         const fs::path program = own_program();
         files::ensure_folder(folder);
-        const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
-                             std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;
         const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
                                                               static_cast<double>(tasks));
-        files::write_atomically(array, array_script(arguments, job, need, program, out, seconds));
-        files::write_atomically(last, verify_script(arguments, job, program, out, is_part));
+        files::write_atomically(array, array_script(arguments, job, name, need, program, out, seconds));
+        files::write_atomically(last, verify_script(arguments, job, name, program, out));
         files::write_atomically(folder / (name + ".json"),
                                 told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
         std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
@@ -338,6 +382,7 @@ int run(FarmArguments arguments) {
                   << duration_text(seconds) << " a task\n"
                   << "array:  " << line_text(array.string()) << "\nverify: " << line_text(last.string())
                   << '\n';
+        for (auto& task : told["tasks"]) task.erase("made_of");
         told["event"] = "result";
         told["array"] = array.string();
         told["verify"] = last.string();

@@ -1,4 +1,5 @@
-// What `pelagic farm` writes into DIR/farm, and reads there again: NAME.VERB.json beside the scripts says which task makes what.
+// What `pelagic farm` writes into DIR/farm, and reads there again: JOB.json beside the scripts says which task makes what. JOB is NAME.VERB, or
+// of a part of the shot NAME.VERB.FIRST-LAST.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +12,10 @@ namespace pelagic::cli {
 
 struct FarmTask {
     std::string frames;  // as of --frames
-    std::string log;     // below DIR/farm
-    std::string slurm;   // what Slurm itself says of it, below DIR/farm
+    // Of what each frame's files are made: made_of() of a bake (plugin/run/record.h), PictureFingerprint of pictures; empty: not known.
+    std::vector<std::string> made_of{};
+    std::string log;    // below DIR/farm
+    std::string slurm;  // what Slurm itself says of it, below DIR/farm
 };
 
 struct FarmJob {
@@ -30,7 +33,7 @@ inline constexpr const char* kFarmAgain = ", and is begun again";  // at the end
 // As a shell takes it for one word.
 std::string shell_word(const std::string& text);
 
-// --status: prints it; the exit status.
-int print_farm_status(const std::filesystem::path& out);
+// --status: prints it, of all jobs in DIR/farm or of the one whose JOB.json this is; the exit status.
+int print_farm_status(const std::filesystem::path& path);
 
 }  // namespace pelagic::cli

@@ -40,7 +40,10 @@ FarmJob read_job(const fs::path& file) {
         job.of.last_frame = json.at("frame_range").at(1);
         job.instruction_set = json.value("instruction_set", "");
         for (const auto& task : json.at("tasks"))
-            job.tasks.push_back({task.at("frames"), task.at("log"), task.at("slurm")});
+            job.tasks.push_back({.frames = task.at("frames"),
+                                 .made_of = task.value("made_of", std::vector<std::string>()),
+                                 .log = task.at("log"),
+                                 .slurm = task.at("slurm")});
         return job;
     } catch (const nlohmann::json::exception&) {
         throw WrongUsage(line_text(file.string()) +
@@ -48,48 +51,60 @@ FarmJob read_job(const fs::path& file) {
     }
 }
 
-bool is_picture_there(const FarmJob& job, const fs::path& out, int frame) {
+bool is_picture_there(const FarmJob& job, const fs::path& out, int frame, const std::string& made_of) {
     for (const char* extension : {"exr", "png"}) {
         const fs::path file = out / picture_file(job.of, frame, extension);
-        if (!fs::exists(file) ||
-            (!job.instruction_set.empty() && !says_instruction_set(file, job.instruction_set)))
-            return false;
+        if (made_of.empty() ? !fs::exists(file) : !seems_whole(file, made_of)) return false;
+        if (!job.instruction_set.empty() && !says_instruction_set(file, job.instruction_set)) return false;
     }
     return true;
 }
 
-// By the record and its fragments, or the pictures: verify reads the files.
+// Of the version of the shot that was shared out, by the record and its fragments, or by what pictures say of themselves: verify reads the files.
 std::set<int> frames_there(const FarmJob& job, const fs::path& out) {
     std::set<int> there;
+    std::map<int, std::string> asked;  // of what it is made, by frame
+    for (const FarmTask& task : job.tasks) {
+        std::size_t i = 0;
+        for (const int frame : parse_frames(task.frames, job.of))
+            asked[frame] = i < task.made_of.size() ? task.made_of[i++] : std::string();
+    }
     if (job.verb == "bake") {
         read_records(out / (job.of.name + ".json"), [&](int number, const FrameRecord& frame) {
-            if (!frame.is_stale &&
+            const auto wanted = asked.find(number);
+            if (wanted != asked.end() && !frame.is_stale &&
+                (wanted->second.empty() || wanted->second == made_of(frame.files)) &&
                 (job.instruction_set.empty() || frame.instruction_set == job.instruction_set))
                 there.insert(number);
         });
         return there;
     }
-    for (const FarmTask& task : job.tasks)
-        for (const int frame : parse_frames(task.frames, job.of))
-            if (is_picture_there(job, out, frame)) there.insert(frame);
+    for (const auto& [frame, made_of] : asked)
+        if (is_picture_there(job, out, frame, made_of)) there.insert(frame);
     return there;
 }
 
 // What its log says of a task.
 struct Log {
+    std::string last;                    // who has begun last
     std::optional<std::string> running;  // who has begun and not ended
     std::string host;
     std::string message;        // the last one since it began
     std::optional<int> status;  // with which the last one ended
-    std::string again;          // who that is, if it has asked Slurm to begin again
     double silent_s = 0.0;      // since its last word
 };
+
+// Rather than progress, a note, or where help is.
+bool is_message(const std::string& line) {
+    return line.find(": ") != std::string::npos && line.find(": note: ") == std::string::npos &&
+           !line.ends_with(" %") && !line.starts_with("frame ") && !line.starts_with("building ") &&
+           !line.starts_with("note: ") && !line.starts_with("See: ");
+}
 
 Log read_log(const fs::path& file) {
     Log log;
     std::ifstream stream(file);
     std::map<std::string, std::string> begun;  // host, by who
-    std::string last;
     for (std::string line; std::getline(stream, line);) {
         std::string_view rest = line;
         const auto word = [&] {
@@ -103,25 +118,24 @@ Log read_log(const fs::path& file) {
             const std::string id = word();
             word();  // "on"
             begun[id] = log.host = word();
-            last = id;
+            log.last = id;
             log.message.clear();
+            log.status.reset();
         } else if (line.starts_with(kFarmEnded)) {
             rest.remove_prefix(std::string_view(kFarmEnded).size());
             const std::string id = word();
             begun.erase(id);
-            log.again = line.ends_with(kFarmAgain) ? id : std::string();
             word(), word();  // "with status"
             int status = 0;
             const std::string number = word();
             if (std::from_chars(number.data(), number.data() + number.size(), status).ec == std::errc())
                 log.status = status;
-        } else if (line.starts_with("pelagic: ") || line.find(": ") != std::string::npos) {
-            // A message, rather than a line of progress.
-            if (!line.starts_with("frame ") && !line.starts_with("building ")) log.message = line;
+        } else if (is_message(line)) {
+            log.message = line;
         }
     }
     if (!begun.empty()) {
-        const auto at = begun.contains(last) ? begun.find(last) : begun.begin();
+        const auto at = begun.contains(log.last) ? begun.find(log.last) : begun.begin();
         log.running = at->first;
         log.host = at->second;
     }
@@ -178,11 +192,24 @@ bool is_gone(const std::string& id, const std::optional<Queue>& queue) {
 
 constexpr int kKilledFrom = 128;
 
+std::string reason_of(const Log& log) {
+    if (!log.status || *log.status <= kKilledFrom) return log.message;
+    const int number = *log.status - kKilledFrom;
+    return "stopped by signal " + std::to_string(number) +
+           (number == SIGKILL ? ", which is mostly a lack of memory" : "");
+}
+
 struct Counted {
     int frames = 0, whole = 0;
+    int refused = 0;  // tasks that no longer are what their files were made by
 };
 
-Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Queue>& queue) {
+Counted print_job(const fs::path& file, const std::optional<Queue>& queue) {
+    const FarmJob job = read_job(file);
+    const fs::path out = file.parent_path().parent_path();
+    // Before the frames: those of a task that has ended are there.
+    std::vector<Log> logs;
+    for (const FarmTask& task : job.tasks) logs.push_back(read_log(out / "farm" / task.log));
     const std::set<int> there = frames_there(job, out);
     std::vector<int> whole, missing;
     std::string running, failed;
@@ -190,8 +217,7 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
         {"event", "result"}, {"verb", "farm"}, {"name", job.of.name}, {"of", job.verb}};
     told["running"] = told["failed"] = nlohmann::ordered_json::array();
     Counted counted;
-    const std::string script =
-        line_text(shell_word((out / "farm" / (job.of.name + '.' + job.verb + ".sh")).string()));
+    const std::string script = line_text(shell_word(fs::path(file).replace_extension(".sh").string()));
     for (std::size_t number = 0; number < job.tasks.size(); ++number) {
         const FarmTask& task = job.tasks[number];
         std::vector<int> lacking;
@@ -199,14 +225,15 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
             ++counted.frames;
             (there.contains(frame) ? whole : lacking).push_back(frame);
         }
-        if (lacking.empty()) continue;
-        const std::string frames = frames_text(lacking);
-        const Log log = read_log(out / "farm" / task.log);
-        std::string message = log.message;
+        const Log& log = logs[number];
+        const bool is_refused = log.status == kWrongUsage && !log.running;
+        if (lacking.empty() && !is_refused) continue;
+        const std::string frames = lacking.empty() ? task.frames : frames_text(lacking);
+        std::string message = reason_of(log);
         // Slurm's word counts: on a full disk a task's own last words may be lost.
-        if (const auto at = queue ? queue->find(log.running.value_or(log.again)) : Queue::const_iterator();
+        if (const auto at = queue ? queue->find(log.running.value_or(log.last)) : Queue::const_iterator();
             queue && at != queue->end() && at->second == "PENDING") {
-            running += "\n  " + frames + ": is begun again soon" +
+            running += "\n  " + frames + ": waits in the queue" +
                        (message.empty() ? "" : ", after: " + line_text(message));
             told["running"].push_back({{"frames", frames}, {"message", message}});
             continue;
@@ -224,14 +251,16 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
         } else if (!log.status) {
             missing.insert(missing.end(), lacking.begin(), lacking.end());
             continue;
-        } else if (*log.status > kKilledFrom) {
-            message = "stopped by signal " + std::to_string(*log.status - kKilledFrom);
         } else if (*log.status == kDone) {
             message = "made, and not there any more, or of another version of the shot or instruction set";
+        } else if (lacking.empty()) {
+            ++counted.refused;
+            message += "; what is there was made before";
         }
         failed += "\n  " + frames + ": " + line_text(message);
         if (log.status) failed += " (status " + std::to_string(*log.status) + ')';
-        failed += "; again: bash " + script + ' ' + std::to_string(number);
+        failed += is_refused ? "; the same again gives the same: mend that, and then" : "; again:";
+        failed += " bash " + script + ' ' + std::to_string(number);
         told["failed"].push_back({{"task", number}, {"frames", frames}, {"message", message}});
         if (log.status) told["failed"].back()["status"] = *log.status;
     }
@@ -253,21 +282,29 @@ Counted print_job(const FarmJob& job, const fs::path& out, const std::optional<Q
 
 }  // namespace
 
-int print_farm_status(const fs::path& out) {
+int print_farm_status(const fs::path& path) {
     std::set<fs::path> jobs;
     std::error_code error;
-    for (fs::directory_iterator entry(out / "farm", error), end; !error && entry != end;
-         entry.increment(error))
-        if (entry->path().extension() == ".json") jobs.insert(entry->path());
+    if (path.extension() == ".json" && fs::is_regular_file(path, error)) {
+        jobs.insert(fs::absolute(path));
+    } else {
+        if (fs::directory_iterator readable(path, error); error)
+            throw files::FileError("cannot read the folder '" + line_text(path.string()) +
+                                       "': " + error.message() + ": name one that pelagic farm wrote into",
+                                   path, error);
+        for (fs::directory_iterator entry(path / "farm", error), end; !error && entry != end;
+             entry.increment(error))
+            if (entry->path().extension() == ".json") jobs.insert(entry->path());
+    }
     if (jobs.empty())
         throw WrongUsage(
-            "--status " + quoted_text(out.string()) +
+            "--status " + quoted_text(path.string()) +
             ": pelagic farm has written no job into this folder; pelagic verify looks at what is in it");
     const auto queue = queued();
     int status = kDone;
     for (const fs::path& file : jobs) {
-        const Counted counted = print_job(read_job(file), out, queue);
-        if (counted.whole < counted.frames) status = kNotWhole;
+        const Counted counted = print_job(file, queue);
+        if (counted.whole < counted.frames || counted.refused > 0) status = kNotWhole;
     }
     return status;
 }

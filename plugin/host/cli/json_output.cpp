@@ -29,7 +29,8 @@ class Tee final : public std::streambuf {
         const bool is_written = to_->sputn(line_.data(), size) == size;
         line_.pop_back();
         if (!line_.empty()) {
-            if (!line_.starts_with("See: ")) last_ = line_;  // the help: no error
+            if (!line_.starts_with("See: ") && line_.find(": note: ") == std::string::npos)
+                last_ = line_;  // no error
             tell_json({{"event", "message"}, {"text", line_}});
         }
         line_.clear();

@@ -164,16 +164,16 @@ TEST_F(Farm, PicturesToo) {
             .status,
         0);
     EXPECT_EQ(result("$P farm --status out --json", 3).at("missing"), "1-4");
-    ASSERT_EQ(shell("for n in 0 1; do bash out/farm/small.render.sh $n || exit; done").status, 0);
+    ASSERT_EQ(shell("for n in 0 1; do bash out/farm/small.render.0001-0004.sh $n || exit; done").status, 0);
     EXPECT_EQ(result("$P farm --status out --json").at("whole"), "1-4");
     ASSERT_EQ(
         shell(
             "$P render small.toml --out whole --size 32x18 --samples 1 --overscan 10% --region=-2,0,20,19 --layers none --frames 1-4")
             .status,
         0);
-    EXPECT_EQ(shell("bash out/farm/small.render.verify.sh").status, 0);
+    EXPECT_EQ(shell("bash out/farm/small.render.0001-0004.verify.sh").status, 0);
     ASSERT_EQ(shell("mkdir kept; mv out/small.0003.* kept").status, 0);
-    EXPECT_EQ(shell("bash out/farm/small.render.verify.sh").status, 3)
+    EXPECT_EQ(shell("bash out/farm/small.render.0001-0004.verify.sh").status, 3)
         << "pictures nobody but the job misses";
     ASSERT_EQ(shell("mv kept/* out").status, 0);
     EXPECT_EQ(without_farm("out", "whole"), "");
@@ -181,13 +181,134 @@ TEST_F(Farm, PicturesToo) {
 
 TEST_F(Farm, APartOfAShotIsJudgedByItself) {
     ASSERT_EQ(shell("$P farm small.toml --out out --frames 3-4 --tasks 2").status, 0);
-    const auto check = [&] { return shell("bash out/farm/small.bake.verify.sh").status; };
-    EXPECT_EQ(shell("bash out/farm/small.bake.sh 0").status, 0);
+    const auto check = [&] { return shell("bash out/farm/small.bake.0003-0004.verify.sh").status; };
+    EXPECT_EQ(shell("bash out/farm/small.bake.0003-0004.sh 0").status, 0);
     EXPECT_EQ(check(), 3) << "frame 4 isn't made";
-    EXPECT_EQ(shell("bash out/farm/small.bake.sh 1").status, 0);
+    EXPECT_EQ(shell("bash out/farm/small.bake.0003-0004.sh 1").status, 0);
     EXPECT_EQ(check(), 0);
     ASSERT_EQ(shell("echo >> out/mesh/small.0003.usda").status, 0);
     EXPECT_EQ(check(), 3) << "damage";
+}
+
+// Each has scripts of its own, and is judged by them.
+TEST_F(Farm, PartsAndShotsDontTouchEachOther) {
+    write_file(folder() / "other.toml", text_of({.name = "other", .frames = 3}));
+    ASSERT_EQ(
+        shell("$P farm small.toml --out out --frames 1-2 && $P farm small.toml --out out --frames 5,9-11 && "
+              "$P farm other.toml --out out")
+            .status,
+        0);
+    EXPECT_EQ(shell("bash out/farm/small.bake.0005-0011.4.sh 0").status, 0);
+    const Ended check = shell("bash out/farm/small.bake.0005-0011.4.verify.sh");
+    EXPECT_EQ(check.status, 0) << check.out << check.err;
+    EXPECT_TRUE(has(check.out, "whole: 5, 9-11\n")) << check.out;
+    EXPECT_EQ(shell("bash out/farm/small.bake.0001-0002.verify.sh").status, 3);
+    EXPECT_EQ(shell("bash out/farm/other.bake.verify.sh").status, 3);
+    EXPECT_EQ(shell("bash out/farm/other.bake.sh 0; bash out/farm/other.bake.verify.sh").status, 0);
+    EXPECT_EQ(shell("$P farm --status out").status, 3) << "all jobs of the folder";
+    EXPECT_EQ(result("$P farm --status out/farm/other.bake.json --json").at("whole"), "1-3");
+}
+
+// What lies there under the frames' names may be another version's.
+TEST_F(Farm, FramesOfAnotherVersionArentWhole) {
+    const std::string windy = text_of({.frames = 12}) + "[sea]\nwind_speed_mps = 9.5\n";
+    for (const std::string verb : {"bake", "render --size 32x18 --samples 1 --layers none"}) {
+        const std::string name = verb.substr(0, verb.find(' '));
+        const std::string farm = "$P farm small.toml --out " + name + " --tasks 3 --verb " + verb;
+        const auto script = [&](int task) {
+            return "bash " + name + "/farm/small." + name + ".sh " + std::to_string(task);
+        };
+        const auto status = [&](int end) { return result("$P farm --status " + name + " --json", end); };
+        write_file(folder() / "small.toml", text_of({.frames = 12}));
+        ASSERT_EQ(shell(farm + " && " + script(0) + " && " + script(1) + " && " + script(2)).status, 0);
+        EXPECT_EQ(status(0).at("whole"), "1-12");
+        write_file(folder() / "small.toml", text_of({.frames = 12}) + "nonsense = 3\n");
+        EXPECT_EQ(shell(script(1)).status, 2);
+        const Json refused = status(3);
+        ASSERT_EQ(refused.at("failed").size(), 1u) << refused;
+        EXPECT_EQ(refused.at("failed")[0].at("frames"), "5-8");
+        EXPECT_TRUE(has(refused.at("failed")[0].at("message"), "nonsense")) << refused;
+        EXPECT_TRUE(has(shell("$P farm --status " + name).out, "; the same again gives the same: mend that"))
+            << name;
+        write_file(folder() / "small.toml", windy);
+        ASSERT_EQ(shell(farm).status, 0);
+        EXPECT_EQ(status(3).at("whole"), "") << name;
+        ASSERT_EQ(shell(script(2)).status, 0);
+        EXPECT_EQ(status(3).at("whole"), "9-12") << name;
+        EXPECT_EQ(shell("bash " + name + "/farm/small." + name + ".verify.sh").status, 3) << name;
+        ASSERT_EQ(shell(script(0) + " && " + script(1)).status, 0);
+        EXPECT_EQ(status(0).at("whole"), "1-12") << name;
+        EXPECT_EQ(shell("bash " + name + "/farm/small." + name + ".verify.sh").status, 0) << name;
+    }
+}
+
+// One that is still at the version before stops, and leaves the files and the record to the new one.
+TEST_F(Farm, ATaskOfAnOlderVersionStops) {
+    write_file(folder() / "long.toml", text_of({.name = "long", .frames = 4000}));
+    const Ended ended = shell(
+        "$P bake long.toml --out out 2> said & until ls out/mesh/long.0003.*; do sleep 0.05; done; kill -STOP $!; "
+        "echo '[sea]' >> long.toml; echo 'wind_speed_mps = 9.5' >> long.toml; "
+        "$P bake long.toml --out out --frames 1-20 || exit 9; cp out/long.json record; kill -CONT $!; wait $!");
+    EXPECT_EQ(ended.status, 75) << ended.err;
+    const auto files = files_below(folder());
+    EXPECT_TRUE(has(files.at("said"), "another run has begun another version of long")) << files.at("said");
+    EXPECT_EQ(files.at("record"), files.at("out/long.json"));
+    EXPECT_EQ(
+        shell("$P bake long.toml --out out --frames 1-20 && $P bake long.toml --out whole --frames 1-20")
+            .status,
+        0);
+    for (const auto& [path, content] : files_below(folder() / "whole"))
+        if (path != "long.json")  // that of a part is alike where nothing lies beside it
+            EXPECT_TRUE(files_below(folder() / "out").at(path) == content) << path;
+}
+
+TEST_F(Farm, StatusSaysWhyATaskFailedOrWaits) {
+    ASSERT_EQ(shell("$P farm small.toml --out out --tasks 2").status, 0);
+    write_file(folder() / "small.toml", text_of({.frames = 6}));
+    EXPECT_EQ(shell("bash out/farm/small.bake.sh 1").status, 2);
+    const std::string message = result("$P farm --status out --json", 3).at("failed").at(0).at("message");
+    EXPECT_TRUE(has(message, "outside the shot")) << message;
+    // Slurm's own requeue after a preemption, without a word of the task's; then progress and a note, and it was lost.
+    fs::create_directories(folder() / "bin");
+    const auto status = [&](const std::string& log, const std::string& listed) {
+        write_file(folder() / "out/farm/small.bake.0001-0006.log",
+                   "pelagic farm: begun 12_0 on node1, now\n" + log);
+        write_file(folder() / "bin/squeue", "#!/bin/bash\necho '" + listed + "'\n");
+        return result("chmod +x bin/squeue; PATH=$PWD/bin:$PATH $P farm --status out --json", 3);
+    };
+    const std::string stopped = "pelagic farm: ended 12_0 with status 143, now\n";
+    const Json waits = status(stopped, "12_0 PENDING");
+    ASSERT_EQ(waits.at("running").size(), 1u) << waits;
+    EXPECT_EQ(waits.at("running")[0].at("message"), "stopped by signal 15");
+    EXPECT_EQ(status(stopped, "").at("failed").size(), 2u);
+    const Json again = status("the foam's past: 2 %\nsmall.toml: note: the spray takes 0.28 % of the light\n",
+                              "12_0 PENDING");
+    EXPECT_EQ(again.at("running").at(0).at("message"), "") << again;
+}
+
+TEST_F(Farm, RefusesWhatNoTaskCanDo) {
+    const Ended memory = shell("$P farm small.toml --out out --max-memory 1M");
+    EXPECT_EQ(memory.status, 2);
+    EXPECT_TRUE(has(memory.err, "a task of this bake needs about ")) << memory.err;
+    EXPECT_EQ(shell("$P farm small.toml --out out --max-memory 1M --verb render").status, 2);
+    EXPECT_FALSE(fs::exists(folder() / "out"));
+    const Ended nowhere = shell("$P farm --status nowhere");
+    EXPECT_TRUE(has(nowhere.err, "cannot read the folder 'nowhere': No such file or directory"))
+        << nowhere.err;
+    EXPECT_TRUE(has(shell("$P farm --status .").err, "has written no job into this folder"));
+    ASSERT_EQ(
+        shell(
+            "$P farm small.toml --out out --tasks 3 --sbatch=--array=0-2%2 '--sbatch=--comment=night shift'")
+            .status,
+        0);
+    const auto files = files_below(folder() / "out");
+    for (const char* line : {"#SBATCH --array=0-2%2\n", "#SBATCH --comment=\"night shift\"\n"})
+        EXPECT_TRUE(has(files.at("farm/small.bake.sh"), line)) << line;
+    EXPECT_FALSE(has(files.at("farm/small.bake.verify.sh"), "--array"));
+    fs::rename(folder() / "out", folder() / "moved");
+    const Ended moved = shell("bash moved/farm/small.bake.sh 0");
+    EXPECT_EQ(moved.status, 75);
+    EXPECT_TRUE(has(moved.err, "share the shot out again")) << moved.err;
 }
 
 // What a task needs of the place where the command was given: nothing.

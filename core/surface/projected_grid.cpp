@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/base/build_watch.h"
 #include "core/base/constants.h"
 #include "core/surface/earth.h"
 #include "core/surface/earth_view.h"
@@ -574,7 +575,8 @@ PixelFootprint<double> pixel_at_rest(const View& view, const ProjectedGridOption
     return {.width = pixel_m, .axis_x = axis_m.x, .axis_y = axis_m.y};
 }
 
-ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options) {
+ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options,
+                             const std::atomic<bool>* cancel) {
     const Station at = station_of(view, options);
     ProjectedGridOptions sized = options;
     ProjectedGridNeeds own;
@@ -599,6 +601,7 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     std::vector<glm::dvec2> previous(stride), row(stride);
     std::vector<double> across_m(rows.size()), away_m(count, 0.0);  // to the neighbouring columns, and rows
     for (std::size_t j = 0; j < rows.size(); ++j) {
+        stop_if(cancel);
         const double r = rows[j].radius_m, distance_m = std::hypot(r, at.effective_height_m);
         const double step = 2.0 * rows[j].half_width / columns;
         const glm::dvec2 turn(std::cos(step), -std::sin(step));
@@ -624,6 +627,7 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
         previous.swap(row);
     }
     for (std::size_t j = 0; j < rows.size(); ++j) {
+        stop_if(cancel);
         const double width_m = cell_width_m(at, cell_angle, rows[j].radius_m);
         for (std::size_t i = j * stride; i < (j + 1) * stride; ++i) {
             const double long_m = std::max(across_m[j], away_m[i]),

@@ -15,6 +15,7 @@
 // of that polygon. Each row spans those points. No rays are cast.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -90,8 +91,9 @@ ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOpt
 ProjectedGridNeeds projected_grid_needs(std::span<const View> views, const ProjectedGridOptions& options);
 
 // Covers every point at rest whose displaced position may be in view. Where none is (looking up from above
-// the crests), the grid is valid and lies at the horizon.
-ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options);
+// the crests), the grid is valid and lies at the horizon. Throws BuildCancelled.
+ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options,
+                             const std::atomic<bool>* cancel = nullptr);
 
 // A pixel's footprint at a point at rest, relative to the camera's nadir: as the grid's points have it.
 PixelFootprint<double> pixel_at_rest(const View& view, const ProjectedGridOptions& options,

@@ -1,6 +1,10 @@
 // What the files of the C interface share: handles, checks of what comes in, and guards that let no exception out.
 #pragma once
 
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -39,6 +43,26 @@ inline void say(pelagic_error* error, const char* message) {
     error->message[length] = '\0';
 }
 
+// While it lives floating point is as a program begins: to nearest, with subnormal numbers, no exception traps. A host's own settings, which
+// would change bits or end it where a log meets 0, and its flags are as they were afterwards. On other CPUs nothing is done.
+class OwnFloatingPoint {
+  public:
+#ifdef __SSE2__
+    OwnFloatingPoint() : host_(_mm_getcsr()) {
+        _mm_setcsr(kDefault);
+    }
+    ~OwnFloatingPoint() {
+        _mm_setcsr(host_);
+    }
+    OwnFloatingPoint(const OwnFloatingPoint&) = delete;
+    OwnFloatingPoint& operator=(const OwnFloatingPoint&) = delete;
+
+  private:
+    static constexpr unsigned int kDefault = 0x1f80;
+    unsigned int host_;
+#endif
+};
+
 // Runs `work`; what it throws becomes a status and a message.
 template <class Work>
 pelagic_status guarded(pelagic_error* error, const Work& work) noexcept {
@@ -47,6 +71,7 @@ pelagic_status guarded(pelagic_error* error, const Work& work) noexcept {
         return status;
     };
     say(error, "");
+    [[maybe_unused]] const OwnFloatingPoint own;
     try {
         return work();
     } catch (const ShotError& refused) {

@@ -74,7 +74,7 @@ Points<float> points_of(const ProjectedGrid& grid) {
 
 double mesh_error_px(const ShotFrame& frame, const Expansion& expansion) {
     constexpr std::size_t kSamples = 32768;
-    const ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
+    const ProjectedGrid grid = projected_grid(expansion.view, expansion.options, &frame.shot().is_cancelled);
     const Samples samples = samples_of(grid, kSamples);
     std::vector<glm::vec3> corner_m(samples.rest_m.size()), exact_m(kSamples), normal(kSamples);
     Results<float> corners, exact;

@@ -153,7 +153,7 @@ void fill_corners(const Expansion& expansion, std::uint32_t* corner) {
 void expand(const ShotFrame& frame, const Expansion& expansion, const Wanted& wanted,
             pelagic_mesh_buffers& buffers) {
     const Results<float>& results = wanted.results;
-    const ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
+    const ProjectedGrid grid = projected_grid(expansion.view, expansion.options, &frame.shot().is_cancelled);
     for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
     buffers.origin_m[2] = 0.0;
     if (buffers.corner) fill_corners(expansion, buffers.corner);

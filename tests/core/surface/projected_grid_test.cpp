@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
 #include <set>
 
+#include "core/base/build_watch.h"
 #include "core/base/constants.h"
 
 namespace pelagic {
@@ -151,6 +153,11 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
         }
     }
     EXPECT_GT(in_view, 4000);
+}
+
+TEST(ProjectedGrid, IsCancelled) {
+    const std::atomic<bool> cancel = true;
+    EXPECT_THROW(projected_grid(view_of({}), {}, &cancel), BuildCancelled);
 }
 
 TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {

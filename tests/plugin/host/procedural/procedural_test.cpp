@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -274,6 +278,24 @@ TEST(Procedural, AnyNumberOfThreadsGetsTheSame) {
     one.threads = 1;
     EXPECT_TRUE(ask(frame_of(open_text(kShot, &one), 0.0, 0.02), rests) == expected);
 }
+
+#ifdef __SSE2__
+// Renderers trap exceptions in their debug builds, and flush subnormal numbers.
+TEST(Procedural, AHostsFloatingPointChangesNothing) {
+    const std::vector<glm::vec2> rests = random_rests(3000, 100.0f);
+    const auto answers = [&] { return ask(frame_of(open_text(kShot), 0.0, 0.02), rests); };
+    const Answers expected = answers();
+    constexpr unsigned int kDefault = 0x1f80, kUntrapped = 0x1000, kFlushed = 0x8040, kUpwards = 0x4000;
+    for (const unsigned int host : {kUntrapped, kDefault | kFlushed, kDefault | kUpwards}) {
+        _mm_setcsr(host);
+        const Answers found = answers();
+        const unsigned int after = _mm_getcsr();
+        _mm_setcsr(kDefault);
+        EXPECT_EQ(after, host);
+        EXPECT_TRUE(found == expected) << std::hex << host;
+    }
+}
+#endif
 
 TEST(Procedural, AFrameOutlivesItsSeasHandle) {
     SeaHandle sea = open_text(kShot);

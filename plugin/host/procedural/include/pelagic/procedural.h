@@ -38,6 +38,8 @@
  * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Where foam is
  * persistent, calls that want coverage or age_s look into its past one after another. FFTW's planner, of which a process has one, is
  * made safe between threads (fftwf_make_planner_thread_safe) by the first frame: a host that plans with FFTW itself shares its lock.
+ * A thread that calls needs 1 MiB of stack: points are worked on in batches that lie there. Whatever rounding, flushing and trapping of
+ * exceptions the calling thread has set (MXCSR), values are the same, and it has them again afterwards.
  *
  * Errors. Each function returns a status. Where it isn't PELAGIC_OK, `error`, which may be null, has a sentence for people. What is refused
  * (PELAGIC_INVALID_ARGUMENT, PELAGIC_SHOT_REFUSED, PELAGIC_TOO_SMALL) leaves all results as they were; after other failures what buffers
@@ -277,7 +279,7 @@ typedef struct pelagic_water {
  * displaced to the places are found by iteration, to a millimetre but for a few places of a sea that folds much; where the surface has folded over itself its highest sheet counts.
  * footprint_m: about the width of what floats; waves shorter than twice that are left out; 0: the finest there is. `water`: an array as
  * long as the places, each as large as the size of the first says. Each answer depends on its place alone, and is finite; what is no
- * place is refused. Some 10 us a place and, where the surface has folded nearby, up to a millisecond. */
+ * place is refused. Some 10 us a place (with wave trains 0.2 us a train) and, where the surface has folded nearby, up to a millisecond. */
 PELAGIC_API pelagic_status pelagic_water_at(const pelagic_frame* frame, const double* places_m, size_t count,
                                             double footprint_m, pelagic_water* water, pelagic_error* error);
 

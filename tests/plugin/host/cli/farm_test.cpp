@@ -258,8 +258,9 @@ TEST_F(Farm, ATaskOfAnOlderVersionStops) {
             .status,
         0);
     for (const auto& [path, content] : files_below(folder() / "whole"))
-        if (path != "long.json")  // that of a part is alike where nothing lies beside it
+        if (path != "long.json") {  // that of a part is alike where nothing lies beside it
             EXPECT_TRUE(files_below(folder() / "out").at(path) == content) << path;
+        }
 }
 
 TEST_F(Farm, StatusSaysWhyATaskFailedOrWaits) {

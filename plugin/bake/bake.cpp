@@ -92,6 +92,11 @@ std::vector<Problem> unbaked_keys(const Scene& scene) {
     return problems;
 }
 
+void check_bake(const Scene& scene, const std::filesystem::path& out) {
+    refuse_invalid(scene);
+    refuse_own_sky(scene, out);
+}
+
 std::vector<std::string> frames_made_of(const Plan& plan, std::span<const int> frames) {
     const std::vector<std::unique_ptr<OutputPart>> parts = make_parts(plan);
     std::vector<std::string> all;
@@ -104,8 +109,7 @@ std::vector<std::string> frames_made_of(const Plan& plan, std::span<const int> f
 }
 
 RunReport bake(const Scene& scene, const RunOptions& options) {
-    refuse_invalid(scene);
-    refuse_own_sky(scene, options.out);
+    check_bake(scene, options.out);
     std::optional<Plan> plan;
     std::vector<std::unique_ptr<OutputPart>> outputs;
     RunReport report =

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ std::vector<std::string> frames_made_of(const Plan& plan, std::span<const int> f
 
 // Keys of a valid scene that pictures show and a bake refuses.
 std::vector<Problem> unbaked_keys(const Scene& scene);
+
+// Throws std::invalid_argument for a scene that bake() refuses.
+void check_bake(const Scene& scene, const std::filesystem::path& out);
 
 // Throws NotEnoughMemory before anything is written, as run(), and
 // std::invalid_argument for a scene that problems_of() refuses or that asks for nothing.

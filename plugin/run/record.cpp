@@ -409,6 +409,12 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     return reader.problem().empty() ? reading : whole();
 }
 
+std::string version_of_record(const std::filesystem::path& file) {
+    return read_frames(
+               file, {}, [](int, const FrameRecord&) {}, nullptr)
+        .version;
+}
+
 std::string made_of(const std::map<std::string, FileRecord>& files) {
     Fingerprint all;
     for (const auto& [path, file] : files) all.add(path).add(file.fingerprint);
@@ -510,6 +516,22 @@ void Record::refuse_other_choice(const RecordReading& there, const std::filesyst
                           "): run the same command again, and it takes those");
 }
 
+void Record::refuse_begun_anew(const RecordReading& there, const std::filesystem::path& file) const {
+    if (!there.shot || there.version == version_of(shot_)) return;
+    throw BegunAnew("another run has begun another version of " + line_text(there.shot->name) + " in " +
+                    line_text(file.parent_path().string()) +
+                    ": this one stops; the same command again makes what the shot file says by then");
+}
+
+void Record::refuse_other_version(const std::filesystem::path& file) {
+    const files::FileIdentity now = files::identity_of(file);
+    if (now == seen_) return;
+    refuse_begun_anew(read_frames(
+                          file, {}, [](int, const FrameRecord&) {}, nullptr),
+                      file);
+    seen_ = now;
+}
+
 void Record::begin(const std::filesystem::path& file, const files::LockWatch& waiting,
                    const WriteStatic& write_static, bool makes_frames) {
     const files::FolderLock lock(file.parent_path(), waiting);
@@ -519,6 +541,7 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
         const RecordReading there = read_frames(
             file, {}, [](int, const FrameRecord&) {}, nullptr);
         refuse_other_choice(there, file);
+        if (before_ && there.version != *before_) refuse_begun_anew(there, file);
         if (write_static) write_static(there.shot ? there.shot->files : std::map<std::string, FileRecord>());
         std::map<std::string, Json> files_there, files;
         if (there.shot)
@@ -528,18 +551,6 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
                   merge(file, Taken::Nothing) == Merged::Yes;
     }
     if (makes_frames) save(file);
-}
-
-void Record::refuse_other_version(const std::filesystem::path& file) {
-    const files::FileIdentity now = files::identity_of(file);
-    if (now == seen_) return;
-    const RecordReading there = read_frames(
-        file, {}, [](int, const FrameRecord&) {}, nullptr);
-    if (there.shot && there.version != version_of(shot_))
-        throw BegunAnew("another run has begun another version of " + line_text(there.shot->name) + " in " +
-                        line_text(file.parent_path().string()) +
-                        ": this one stops; the same command again makes what the shot file says by then");
-    seen_ = now;
 }
 
 void Record::save(const std::filesystem::path& file) {
@@ -592,6 +603,7 @@ void Record::take_in(const std::filesystem::path& file, const files::LockWatch& 
             if (frames <= std::int64_t{last_frame_} - first_frame_) return;
         }
         const files::FolderLock lock(file.parent_path(), waiting);
+        refuse_other_version(file);
         if (!is_small && write_static) {
             std::map<std::string, FileRecord> ours;
             for (const auto& [path, listed] : shot_["files"].items()) ours[path] = file_from_json(listed);

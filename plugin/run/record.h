@@ -104,6 +104,9 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
                           const std::function<void(int, FrameRecord)>& take, std::set<int>* numbers,
                           const std::atomic<bool>* cancel = nullptr);
 
+// RecordReading::version alone.
+std::string version_of_record(const std::filesystem::path& file);
+
 // Another run into the folder has chosen other settings since this one looked: the same command again takes those.
 class ChosenMeanwhile : public std::invalid_argument {
   public:
@@ -153,6 +156,8 @@ class Record {
     using WriteStatic = std::function<void(const std::map<std::string, FileRecord>& recorded)>;
     void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
                const WriteStatic& write_static = {}, bool makes_frames = false);
+    // As the run begins: version_of_record(). begin() throws BegunAnew where the record tells of a third version by then.
+    void expect_version(const std::string& version) { before_ = version; }
 
     // Throws BegunAnew where the record tells of another version of the shot by now. Costs a look at the file where it is as it was.
     void refuse_other_version(const std::filesystem::path& file);
@@ -160,7 +165,7 @@ class Record {
     // Writes what was set into the run's fragment. Holds one frame in memory of those that are there already.
     void save(const std::filesystem::path& file);
 
-    // The last save() of a run. Where all the shot's frames are there, the fragments become a part of the record, which is as one run
+    // The last save() of a run. Throws BegunAnew. Where all the shot's frames are there, the fragments become a part of the record, which is as one run
     // would have written it; two that do so at once write the same, and a lock needn't hold. Where the record is small and no other
     // fragment is there, this run's does. `write_static`: as of begin(), before a record that is whole.
     void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {},
@@ -182,6 +187,7 @@ class Record {
     enum class Taken { Nothing, Ours, All };
 
     void refuse_other_choice(const RecordReading& there, const std::filesystem::path& file) const;
+    void refuse_begun_anew(const RecordReading& there, const std::filesystem::path& file) const;
     // Writes the record with these and what was set since, and deletes the fragments that it took in.
     Merged merge(const std::filesystem::path& file, Taken taken);
     std::int64_t write(const files::ByteSink& sink, const std::function<void(const Take&)>& former) const;
@@ -202,7 +208,8 @@ class Record {
     std::size_t saved_ = 0;             // frames in it
     std::string id_{};                  // in its name
     std::string unlocked_;
-    files::FileIdentity seen_{};  // the record when it was last known to tell of this version
+    std::optional<std::string> before_{};  // expect_version()
+    files::FileIdentity seen_{};           // the record when it was last known to tell of this version
 };
 
 }  // namespace pelagic

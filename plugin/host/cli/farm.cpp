@@ -8,13 +8,19 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <functional>
 #include <iostream>
+#include <map>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
 #include "core/base/text.h"
+#include "core/plan/fingerprint.h"
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "core/scene/budget.h"
 #include "core/scene/text.h"
@@ -56,6 +62,8 @@ struct TaskNeed {
     int threads = 1;
     FrameAccount frame;
     std::size_t memory_bytes = 0;
+    std::function<MemoryNeed(std::span<const int> frames)>
+        of_frames{};  // what they need, as the task itself counts it
 };
 
 // A path in a line of #SBATCH, where Slurm takes % for itself, and strips a \, which no path here has.
@@ -94,11 +102,40 @@ TaskNeed need_of(int asked_threads, const Account& account) {
     return of(static_cast<int>(std::min(cores, kMostCores)));
 }
 
-// Of frames with gaps their number as well: ".13".
-std::string part_text(const std::vector<int>& frames) {
-    const auto range = std::int64_t{frames.back()} - frames.front() + 1;
-    const auto count = static_cast<std::int64_t>(frames.size());
-    return count == range ? std::string() : '.' + std::to_string(count);
+// 0001-0064; of frames with gaps with a number that is theirs: 0001-0064.3f2a9c1b.
+std::string range_of(const std::vector<int>& frames) {
+    const std::string range =
+        FilePattern{"", "-"}.file(frames.front()) + FilePattern{"", ""}.file(frames.back());
+    const auto span = std::int64_t{frames.back()} - frames.front() + 1;
+    if (static_cast<std::int64_t>(frames.size()) == span) return range;
+    return range + '.' + Fingerprint().add(frames_text(frames)).text().substr(0, 8);
+}
+
+// Jobs of this shot that make some of the same frames of another version: what they were to make nobody wants any more.
+void remove_superseded(const fs::path& folder, const FarmJob& job) {
+    std::map<int, std::string> made_of;
+    const auto for_frames = [](const FarmJob& of, const auto& use) {
+        for (const FarmTask& task : of.tasks) {
+            const std::vector<int> frames = parse_frames(task.frames, of.of);
+            for (std::size_t i = 0; i < std::min(frames.size(), task.made_of.size()); ++i)
+                use(frames[i], task.made_of[i]);
+        }
+    };
+    for_frames(job, [&](int frame, const std::string& of) { made_of[frame] = of; });
+    std::error_code error;
+    for (const fs::path& file : job_files(folder, error)) {
+        bool is_superseded = false;
+        try {
+            const FarmJob other = read_job(file);
+            if (other.verb == job.verb && other.of.name == job.of.name)
+                for_frames(other, [&](int frame, const std::string& of) {
+                    const auto ours = made_of.find(frame);
+                    is_superseded |= ours != made_of.end() && ours->second != of;
+                });
+        } catch (const std::exception&) {  // nobody can read it: --status says so
+        }
+        if (is_superseded) fs::remove(file, error);
+    }
 }
 
 std::size_t tasks_for(const FarmArguments& arguments, std::size_t frames, double seconds_a_frame) {
@@ -220,11 +257,11 @@ std::string verify_script(const FarmArguments& arguments, const FarmJob& job, co
            "# By pelagic farm: the last job, after all tasks of " + name + ".sh.\nsaid=$(" +
            shell_word(program.string()) + " verify " + shell_word(out.string()) +
            " --threads \"${SLURM_CPUS_PER_TASK:-1}\")\nstatus=$?\n"
+           "printf '%s\\n' \"$said\"\n"
            "# Pictures that aren't there, verify doesn't know, nor by which set frames were to be made; frames of others, and that weren't asked\n"
            "# for, it misses.\n"
-           "said=$(grep -v \" lacks frames that aren't baked: \" <<<\"$said\")\nprintf '%s\\n' \"$said\"\n"
-           "grep -qE '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\"\n"
-           "[ $status$? = 31 ] && status=0\n" +
+           "grep -E '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\" | grep -qv \" lacks frames that aren't baked: \"\n"
+           "[ $status$? = 31 ] && status=0 && echo 'nothing is damaged; of the frames that are missing above, those of this job:'\n" +
            shell_word(program.string()) + " farm --status " +
            shell_word((out / "farm" / (name + ".json")).string()) +
            "\nthere=$?\n((status)) || status=$there\nexit $status\n";
@@ -275,26 +312,31 @@ TaskNeed settle_job(FarmArguments& arguments, const RunOptions& options, const S
     if (arguments.verb == "bake") {
         const Settled settled = settled_for(whole, asked, Purpose::Mesh, session);
         chosen(settled);
-        const Plan plan = plan_bake(settled.scene);
-        if (options.max_memory_bytes > 0)
-            require_memory(bake_memory(plan, options.frames.size(), std::max(threads, 1)),
-                           machine::memory_limit_or(options.max_memory_bytes), "a task of this bake");
-        made_of = frames_made_of(plan, options.frames);
-        return need_of(threads, [&](int on) { return bake_account(plan, frames, on, rates_on(on)); });
+        check_bake(settled.scene, options.out);
+        const auto plan = std::make_shared<const Plan>(plan_bake(settled.scene));
+        made_of = frames_made_of(*plan, options.frames);
+        TaskNeed need =
+            need_of(threads, [&](int on) { return bake_account(*plan, frames, on, rates_on(on)); });
+        need.of_frames = [plan, on = need.threads](std::span<const int> of) {
+            return bake_memory(*plan, of.size(), on);
+        };
+        return need;
     }
     PictureOrder pictures = order;
     const Settled settled = settled_for(whole, order.scene, Purpose::Pictures, session, fixed);
     settled.apply(pictures);
     chosen(settled);
-    if (options.max_memory_bytes > 0)
-        require_memory(render_memory(pictures.scene, pictures.options, options.frames, kPicturesInFlight,
-                                     std::max(threads, 1)),
-                       machine::memory_limit_or(options.max_memory_bytes), "a task of these pictures");
+    check_render(pictures.scene, pictures.options);
     const PictureFingerprint of_frame = picture_fingerprint(pictures);
     for (const int frame : options.frames) made_of.push_back(of_frame.of(frame));
-    return need_of(threads, [&](int on) {
+    TaskNeed need = need_of(threads, [&](int on) {
         return picture_account(without_budget(pictures.scene), pictures.options, on, rates_on(on));
     });
+    need.of_frames = [pictures, on = need.threads](std::span<const int> of) {
+        return render_memory(pictures.scene, pictures.options, of,
+                             std::min(static_cast<int>(of.size()), kPicturesInFlight), on);
+    };
+    return need;
 }
 
 int run(FarmArguments arguments) {
@@ -328,7 +370,8 @@ int run(FarmArguments arguments) {
         FarmJob job{.verb = arguments.verb,
                     .shot = fs::absolute(arguments.shot).lexically_normal().string(),
                     .of = scene.shot,
-                    .instruction_set = arguments.instruction_set};
+                    .instruction_set = arguments.instruction_set,
+                    .is_deep = arguments.deep};
         nlohmann::ordered_json told{
             {"verb", job.verb},
             {"shot", job.shot},
@@ -338,22 +381,24 @@ int run(FarmArguments arguments) {
             {"task_memory_bytes", need.memory_bytes},
             {"frame", json_of(need.frame)},
             {"instruction_set", job.instruction_set},
+            {"deep", job.is_deep},
             {"tasks", nlohmann::ordered_json::array()},
         };
         const std::size_t tasks = tasks_for(arguments, options.frames.size(), need.frame.seconds);
-        const auto range_of = [](const std::vector<int>& part) {
-            return FilePattern{"", "-"}.file(part.front()) + FilePattern{"", ""}.file(part.back());
-        };
         const bool is_part = static_cast<std::int64_t>(options.frames.size()) <=
                              std::int64_t{scene.shot.last_frame} - scene.shot.first_frame;
         std::string name = job.of.name + '.' + job.verb;
         // Each part has scripts of its own: another one may be at work.
-        if (is_part) name += '.' + range_of(options.frames) + part_text(options.frames);
+        if (is_part) name += '.' + range_of(options.frames);
+        const std::vector<std::vector<int>> parts = split(options.frames, tasks);
+        if (options.max_memory_bytes > 0)
+            require_memory(need.of_frames(parts.front()), machine::memory_limit_or(options.max_memory_bytes),
+                           "a task");
         auto its = made_of.begin();
-        for (const std::vector<int>& part : split(options.frames, tasks)) {
+        for (const std::vector<int>& part : parts) {
             std::string frames = frames_text(part);
             std::erase(frames, ' ');
-            const std::string log = job.of.name + '.' + job.verb + '.' + range_of(part) + ".log";
+            const std::string log = name + '.' + range_of(part) + ".log";
             job.tasks.push_back({.frames = frames,
                                  .made_of = {its, its + static_cast<std::ptrdiff_t>(part.size())},
                                  .log = log,
@@ -371,6 +416,11 @@ int run(FarmArguments arguments) {
         files::ensure_folder(folder);
         const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
                                                               static_cast<double>(tasks));
+        remove_superseded(folder, job);
+        // What ended before says nothing of this job.
+        for (const FarmTask& task : job.tasks)
+            if (const fs::path log = folder / task.log; fs::exists(log))
+                std::ofstream(log, std::ios::app) << kFarmShared << '\n';
         files::write_atomically(array, array_script(arguments, job, name, need, program, out, seconds));
         files::write_atomically(last, verify_script(arguments, job, name, program, out));
         files::write_atomically(folder / (name + ".json"),
@@ -414,7 +464,7 @@ Verb add_farm(CLI::App& program) {
         ->type_name("VERB")
         ->check(CLI::IsMember({"bake", "render"}).description(""));
     command->add_flag("--submit", arguments->submit, help::kFarmSubmit);
-    command->add_option("--status", arguments->status, help::kFarmStatus)->type_name("DIR");
+    command->add_option("--status", arguments->status, help::kFarmStatus)->type_name("DIR|JOB");
     command->add_option("--tasks", arguments->tasks, help::kFarmTasks)
         ->type_name("N")
         ->check(CLI::Range(1, static_cast<int>(kMostTasks)).description(""));

@@ -1,6 +1,7 @@
 // pelagic farm --status DIR
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -30,34 +31,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-FarmJob read_job(const fs::path& file) {
-    try {
-        std::ifstream stream(file);
-        const auto json = nlohmann::json::parse(stream);
-        FarmJob job{.verb = json.at("verb"), .shot = json.at("shot")};
-        job.of.name = json.at("name");
-        job.of.first_frame = json.at("frame_range").at(0);
-        job.of.last_frame = json.at("frame_range").at(1);
-        job.instruction_set = json.value("instruction_set", "");
-        for (const auto& task : json.at("tasks"))
-            job.tasks.push_back({.frames = task.at("frames"),
-                                 .made_of = task.value("made_of", std::vector<std::string>()),
-                                 .log = task.at("log"),
-                                 .slurm = task.at("slurm")});
-        return job;
-    } catch (const nlohmann::json::exception&) {
-        throw WrongUsage(line_text(file.string()) +
-                         " is no job of pelagic farm's, or damaged: share the shot out again");
-    }
-}
-
-bool is_picture_there(const FarmJob& job, const fs::path& out, int frame, const std::string& made_of) {
-    for (const char* extension : {"exr", "png"}) {
-        const fs::path file = out / picture_file(job.of, frame, extension);
-        if (made_of.empty() ? !fs::exists(file) : !seems_whole(file, made_of)) return false;
-        if (!job.instruction_set.empty() && !says_instruction_set(file, job.instruction_set)) return false;
-    }
-    return true;
+bool is_picture_there(const FarmJob& job, const fs::path& out, int frame, const std::string& wanted) {
+    std::vector<std::string> files{picture_file(job.of, frame, "exr"), picture_file(job.of, frame, "png")};
+    if (job.is_deep) files.push_back(deep_file(job.of, frame));
+    return std::ranges::all_of(files, [&](const std::string& name) {
+        const fs::path file = out / name;
+        return (wanted.empty() ? fs::exists(file) : seems_whole(file, wanted)) &&
+               (job.instruction_set.empty() || says_instruction_set(file, job.instruction_set));
+    });
 }
 
 // Of the version of the shot that was shared out, by the record and its fragments, or by what pictures say of themselves: verify reads the files.
@@ -79,8 +60,8 @@ std::set<int> frames_there(const FarmJob& job, const fs::path& out) {
         });
         return there;
     }
-    for (const auto& [frame, made_of] : asked)
-        if (is_picture_there(job, out, frame, made_of)) there.insert(frame);
+    for (const auto& [frame, wanted] : asked)
+        if (is_picture_there(job, out, frame, wanted)) there.insert(frame);
     return there;
 }
 
@@ -130,6 +111,10 @@ Log read_log(const fs::path& file) {
             const std::string number = word();
             if (std::from_chars(number.data(), number.data() + number.size(), status).ec == std::errc())
                 log.status = status;
+        } else if (line == kFarmShared) {
+            log.status.reset();
+            log.message.clear();
+            if (begun.empty()) log.last.clear();
         } else if (is_message(line)) {
             log.message = line;
         }
@@ -201,7 +186,7 @@ std::string reason_of(const Log& log) {
 
 struct Counted {
     int frames = 0, whole = 0;
-    int refused = 0;  // tasks that no longer are what their files were made by
+    int refused = 0;  // tasks (status 2) whose frames are whole, of before
 };
 
 Counted print_job(const fs::path& file, const std::optional<Queue>& queue) {
@@ -282,6 +267,35 @@ Counted print_job(const fs::path& file, const std::optional<Queue>& queue) {
 
 }  // namespace
 
+FarmJob read_job(const fs::path& file) {
+    try {
+        std::ifstream stream(file);
+        const auto json = nlohmann::json::parse(stream);
+        FarmJob job{.verb = json.at("verb"), .shot = json.at("shot")};
+        job.of.name = json.at("name");
+        job.of.first_frame = json.at("frame_range").at(0);
+        job.of.last_frame = json.at("frame_range").at(1);
+        job.instruction_set = json.value("instruction_set", "");
+        job.is_deep = json.value("deep", false);
+        for (const auto& task : json.at("tasks"))
+            job.tasks.push_back({.frames = task.at("frames"),
+                                 .made_of = task.value("made_of", std::vector<std::string>()),
+                                 .log = task.at("log"),
+                                 .slurm = task.at("slurm")});
+        return job;
+    } catch (const nlohmann::json::exception&) {
+        throw WrongUsage(line_text(file.string()) +
+                         " is no job of pelagic farm's, or damaged: share the shot out again");
+    }
+}
+
+std::set<fs::path> job_files(const fs::path& folder, std::error_code& error) {
+    std::set<fs::path> jobs;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (entry->path().extension() == ".json") jobs.insert(entry->path());
+    return jobs;
+}
+
 int print_farm_status(const fs::path& path) {
     std::set<fs::path> jobs;
     std::error_code error;
@@ -289,12 +303,9 @@ int print_farm_status(const fs::path& path) {
         jobs.insert(fs::absolute(path));
     } else {
         if (fs::directory_iterator readable(path, error); error)
-            throw files::FileError("cannot read the folder '" + line_text(path.string()) +
-                                       "': " + error.message() + ": name one that pelagic farm wrote into",
-                                   path, error);
-        for (fs::directory_iterator entry(path / "farm", error), end; !error && entry != end;
-             entry.increment(error))
-            if (entry->path().extension() == ".json") jobs.insert(entry->path());
+            throw WrongUsage("cannot read the folder '" + line_text(path.string()) + "': " + error.message() +
+                             ": name one that pelagic farm wrote into");
+        jobs = job_files(path / "farm", error);
     }
     if (jobs.empty())
         throw WrongUsage(

@@ -94,8 +94,9 @@ const char* const kJson =
 const char* const kFarm =
     "Share a shot out among a farm's machines: a job array for Slurm.\n"
     "Writes DIR/farm/NAME.VERB.sh, each of whose tasks makes a part of the frames, and NAME.VERB.verify.sh,\n"
-    "which checks them when all have ended; of a part of the shot NAME.VERB.FIRST-LAST.sh and so on. A budget is settled here, once for all of them; how many\n"
-    "frames a task has, its memory and its cores follow from what a frame costs by the shot's plan.\n"
+    "which checks them when all have ended; of a part of the shot (--frames) NAME.VERB.FIRST-LAST.sh and so on.\n"
+    "A budget is settled here, once for all of them; how many frames a task has, its memory and its cores\n"
+    "follow from what a frame costs by the shot's plan.\n"
     "Bakes nothing itself. Further options are those of bake and render, and the tasks get them.";
 const char* const kFarmFooter =
     "Examples:\n"
@@ -109,7 +110,7 @@ const char* const kFarmFooter =
     "same array again makes what is missing. It asks Slurm to begin it again where it ends with status 75 or is\n"
     "killed, three times at most. Its log is DIR/farm/NAME.VERB.FIRST-LAST.log.\n"
     "\n"
-    "Exit status of --status: 0 if all frames are there as the shot file was when it was shared out, 3 if not.";
+    "Exit status of --status: 0 if all frames are there, as the shot was when it was shared out, 3 if not.";
 const char* const kFarmOut =
     "The folder for the files and, in its folder farm, the scripts and logs.\n"
     "Default: a folder in the working folder, named after the shot";
@@ -119,16 +120,16 @@ const char* const kFarmThreads =
 const char* const kFarmVerb = "What each task runs: bake or render. Default: bake";
 const char* const kFarmSubmit = "Submit both jobs with sbatch";
 const char* const kFarmStatus =
-    "Say what is whole, missing, running and failed, of the jobs that were written into this folder, or of the\n"
-    "one whose DIR/farm/NAME.VERB.json is given: from the record or what the pictures say of themselves, the\n"
-    "tasks' logs, and squeue where there is one";
+    "Say what is whole, missing, running and failed, of the jobs that were written into this folder, or of one\n"
+    "by its DIR/farm/NAME.VERB.json: from the record or what the pictures say of themselves, the tasks' logs,\n"
+    "and squeue where there is one";
 const char* const kFarmTasks =
     "How many tasks, 1 to 1000.\n"
     "Default: so many that each takes about --minutes";
 const char* const kFarmMinutes = "How long a task should take, in minutes, 0.1 to 1440. Default: 10";
 const char* const kFarmSbatch =
-    "An option for sbatch, as --sbatch=--partition=night; may be given several times. Of both jobs (--array of the\n"
-    "array alone), and in place of what Pelagic itself asks for";
+    "An option for sbatch, as --sbatch=--partition=night; may be given several times. Of both jobs (--array of\n"
+    "the array alone), and in place of what Pelagic itself asks for";
 
 const char* const kRender =
     "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"

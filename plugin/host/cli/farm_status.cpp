@@ -299,7 +299,11 @@ std::set<fs::path> job_files(const fs::path& folder, std::error_code& error) {
 int print_farm_status(const fs::path& path) {
     std::set<fs::path> jobs;
     std::error_code error;
-    if (path.extension() == ".json" && fs::is_regular_file(path, error)) {
+    if (path.extension() == ".json") {
+        if (!fs::is_regular_file(path, error))
+            throw WrongUsage(
+                line_text(path.string()) +
+                " isn't there: another version of these frames has been shared out since, or none was");
         jobs.insert(fs::absolute(path));
     } else {
         if (fs::directory_iterator readable(path, error); error)

@@ -288,6 +288,10 @@ TEST_F(Farm, WhatWasSharedOutLastCounts) {
     EXPECT_FALSE(fs::exists(folder() / "out/farm/small.bake.json"));
     EXPECT_FALSE(fs::exists(folder() / "out/farm/small.bake.0001-0002.json"));
     EXPECT_TRUE(fs::exists(folder() / "out/farm/small.bake.0007-0008.json")) << "other frames";
+    const Ended superseded = shell("bash out/farm/small.bake.verify.sh");
+    EXPECT_EQ(superseded.status, 2);
+    EXPECT_TRUE(has(superseded.err, "another version of these frames has been shared out since"))
+        << superseded.err;
     ASSERT_EQ(shell("$P farm small.toml --out out").status, 0);
     const Json shared = result("$P farm --status out/farm/small.bake.json --json", 3);
     EXPECT_EQ(shared.at("missing"), "1-12");

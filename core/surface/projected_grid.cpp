@@ -35,8 +35,6 @@ constexpr double kMargin = 3.0, kNear = 2.0;
 // In view, a column shifts by at most this part of a cell from row to row. A cell's side is then longer than
 // the row spacing, by up to √(1 + ¼) in a corner.
 constexpr double kShift = 0.5;
-// And anywhere by this part of what would turn cells over, since they have a width of their own.
-constexpr double kUnfolded = 0.5;
 // Shrinks cells so that even such a side stays below cell_px. Found by trial over poses and lenses: the
 // longest side was 1.08 × cell_px without it.
 constexpr double kSlack = 0.92;
@@ -474,15 +472,6 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
     for (int i = count; i-- > 0;) follow(rows[i], rows[i + 1]);
     for (int i = 1; i <= count; ++i)
         if (rows[i - 1].fine) follow(rows[i], rows[i - 1]);
-    // And no cell is turned over where only crests come into view: the end of a column on the wider of two rows stays above the nearer one's
-    // chord, if it is turned by less than the angle whose cosine is the radii's ratio.
-    const auto unfold = [&](Row& row, const Row& neighbour) {
-        const auto [nearer, farther] = std::minmax(row.radius_m, neighbour.radius_m);
-        const double most = farther > 0.0 ? std::acos(nearer / farther) : kPi;
-        row.half_width = std::max(row.half_width, neighbour.half_width - kUnfolded * most);
-    };
-    for (int i = count; i-- > 0;) unfold(rows[i], rows[i + 1]);
-    for (int i = 1; i <= count; ++i) unfold(rows[i], rows[i - 1]);
     if (radii.last < farthest_m) rows.back().radius_m /= sagitta;
     return rows;
 }

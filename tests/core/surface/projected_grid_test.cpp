@@ -155,35 +155,6 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
     EXPECT_GT(in_view, 4000);
 }
 
-// Both triangles of each cell are counter-clockwise from above, or of no area, also where nothing but a crest comes before the camera.
-TEST(ProjectedGrid, NoCellIsTurnedOver) {
-    std::vector<Pose> shots = hard_shots();
-    for (const double pitch_deg : {-60.0, -75.0, -87.0})
-        for (const double height_m : {10.0, 40.0})
-            for (const double fov_deg : {5.0, 50.0})
-                shots.push_back({.height_m = height_m,
-                                 .pitch_deg = pitch_deg,
-                                 .fov_deg = fov_deg,
-                                 .resolution = {320, 180}});
-    for (const Pose& shot : shots)
-        for (const double reach_m : {0.0, 2.0}) {
-            const ProjectedGrid grid =
-                projected_grid(view_of(shot), {.bounds = {.height_m = 1.5 * reach_m, .reach_m = reach_m},
-                                               .significant_height_m = reach_m,
-                                               .unresolved = steep_waves(0.25 * reach_m)});
-            int turned = 0;
-            const std::vector<std::uint32_t> corners = projected_grid_triangles({grid.columns, grid.rows});
-            for (std::size_t i = 0; i < corners.size(); i += 3) {
-                const glm::dvec2 a(grid.rest_m[corners[i]]), b = glm::dvec2(grid.rest_m[corners[i + 1]]) - a,
-                                                             c = glm::dvec2(grid.rest_m[corners[i + 2]]) - a;
-                constexpr double kRounding = 1e-6;  // of single precision
-                turned += b.x * c.y - b.y * c.x <
-                          -kRounding * (glm::length(b) + glm::length(c)) * (glm::length(a) + glm::length(b));
-            }
-            EXPECT_EQ(turned, 0) << text_of(shot) << " reach " << reach_m << " of " << corners.size() / 3;
-        }
-}
-
 TEST(ProjectedGrid, IsCancelled) {
     const std::atomic<bool> cancel = true;
     EXPECT_THROW(projected_grid(view_of({}), {}, &cancel), BuildCancelled);

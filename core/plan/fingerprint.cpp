@@ -92,7 +92,7 @@ std::string plan_text(const Plan& plan, int query_index) {
 
 // What a mesh that a view shapes owes to it. The number is raised where the same view gives other points.
 std::string pose_text(const View& view) {
-    std::string text = "pose 3";
+    std::string text = "pose 2";
     for (const glm::dvec3& v : {view.position_m, view.right, view.up, view.forward}) add_vector(text, v);
     return text + ' ' + number_text(view.tan_half_width) + ' ' + std::to_string(view.resolution.x) + ' ' +
            std::to_string(view.resolution.y) + ' ' + number_text(view.shift.x) + ' ' +

@@ -603,7 +603,12 @@ void Record::take_in(const std::filesystem::path& file, const files::LockWatch& 
             if (frames <= std::int64_t{last_frame_} - first_frame_) return;
         }
         const files::FolderLock lock(file.parent_path(), waiting);
-        refuse_other_version(file);
+        try {
+            refuse_other_version(file);
+        } catch (const BegunAnew&) {
+            if (!unsaved_.empty()) save(file);
+            throw;
+        }
         if (!is_small && write_static) {
             std::map<std::string, FileRecord> ours;
             for (const auto& [path, listed] : shot_["files"].items()) ours[path] = file_from_json(listed);

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -111,33 +110,6 @@ std::string range_of(const std::vector<int>& frames) {
     return range + '.' + Fingerprint().add(frames_text(frames)).text().substr(0, 8);
 }
 
-// Jobs of this shot that make some of the same frames of another version: what they were to make nobody wants any more.
-void remove_superseded(const fs::path& folder, const FarmJob& job) {
-    std::map<int, std::string> made_of;
-    const auto for_frames = [](const FarmJob& of, const auto& use) {
-        for (const FarmTask& task : of.tasks) {
-            const std::vector<int> frames = parse_frames(task.frames, of.of);
-            for (std::size_t i = 0; i < std::min(frames.size(), task.made_of.size()); ++i)
-                use(frames[i], task.made_of[i]);
-        }
-    };
-    for_frames(job, [&](int frame, const std::string& of) { made_of[frame] = of; });
-    std::error_code error;
-    for (const fs::path& file : job_files(folder, error)) {
-        bool is_superseded = false;
-        try {
-            const FarmJob other = read_job(file);
-            if (other.verb == job.verb && other.of.name == job.of.name)
-                for_frames(other, [&](int frame, const std::string& of) {
-                    const auto ours = made_of.find(frame);
-                    is_superseded |= ours != made_of.end() && ours->second != of;
-                });
-        } catch (const std::exception&) {  // nobody can read it: --status says so
-        }
-        if (is_superseded) fs::remove(file, error);
-    }
-}
-
 std::size_t tasks_for(const FarmArguments& arguments, std::size_t frames, double seconds_a_frame) {
     constexpr double kBesideComputing = 1.5;  // encoding and writing, about
     double tasks = arguments.tasks.value_or(0);
@@ -199,6 +171,14 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
         "    exit 2\n"
         "fi\n"
         "n=$((10#$n))\n"
+        "# Of another version of the shot: begun again, it would make what this job's --chosen and frames no longer are.\n"
+        "if ! grep -qF '\"id\": \"" +
+        job.id + "\"' " + shell_word((folder / (name + ".json")).string()) + " 2>/dev/null && [ -d " +
+        shell_word(out.string()) +
+        " ]; then\n"
+        "    echo 'this job was shared out anew since, in another version: its tasks are no longer wanted' >&2\n"
+        "    exit 2\n"
+        "fi\n"
         "cd " +
         shell_word(out.string()) +
         " || { echo 'Where the folder was moved to, share the shot out again.' >&2; exit 75; }\nlog=" +
@@ -260,8 +240,8 @@ std::string verify_script(const FarmArguments& arguments, const FarmJob& job, co
            "printf '%s\\n' \"$said\"\n"
            "# Pictures that aren't there, verify doesn't know, nor by which set frames were to be made; frames of others, and that weren't asked\n"
            "# for, it misses.\n"
-           "grep -E '^(missing|damaged|stale|foreign|interrupted): ' <<<\"$said\" | grep -qv \" lacks frames that aren't baked: \"\n"
-           "[ $status$? = 31 ] && status=0 && echo 'nothing is damaged; of the frames that are missing above, those of this job:'\n" +
+           "grep -E '^(missing|damaged|foreign|interrupted): ' <<<\"$said\" | grep -qv \" lacks frames that aren't baked: \"\n"
+           "[ $status$? = 31 ] && status=0 && echo 'nothing is damaged; of the frames that are missing or stale above, those of this job:'\n" +
            shell_word(program.string()) + " farm --status " +
            shell_word((out / "farm" / (name + ".json")).string()) +
            "\nthere=$?\n((status)) || status=$there\nexit $status\n";
@@ -392,7 +372,7 @@ int run(FarmArguments arguments) {
         if (is_part) name += '.' + range_of(options.frames);
         const std::vector<std::vector<int>> parts = split(options.frames, tasks);
         if (options.max_memory_bytes > 0)
-            require_memory(need.of_frames(parts.front()), machine::memory_limit_or(options.max_memory_bytes),
+            require_memory(need.of_frames(parts.back()), machine::memory_limit_or(options.max_memory_bytes),
                            "a task");
         auto its = made_of.begin();
         for (const std::vector<int>& part : parts) {
@@ -410,21 +390,27 @@ int run(FarmArguments arguments) {
                                      {"slurm", job.tasks.back().slurm}});
             its += static_cast<std::ptrdiff_t>(part.size());
         }
+        Fingerprint of_all;
+        for (const FarmTask& task : job.tasks) {
+            of_all.add(task.frames);
+            for (const std::string& frame : task.made_of) of_all.add(frame);
+        }
+        told["id"] = job.id = of_all.text();
         const fs::path folder = out / "farm", array = folder / (name + ".sh"),
                        last = folder / (name + ".verify.sh");
         const fs::path program = own_program();
         files::ensure_folder(folder);
         const double seconds = need.frame.seconds * std::ceil(static_cast<double>(options.frames.size()) /
                                                               static_cast<double>(tasks));
-        remove_superseded(folder, job);
         // What ended before says nothing of this job.
         for (const FarmTask& task : job.tasks)
             if (const fs::path log = folder / task.log; fs::exists(log))
                 std::ofstream(log, std::ios::app) << kFarmShared << '\n';
-        files::write_atomically(array, array_script(arguments, job, name, need, program, out, seconds));
-        files::write_atomically(last, verify_script(arguments, job, name, program, out));
+        // Before the scripts, which look for their id in it.
         files::write_atomically(folder / (name + ".json"),
                                 told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');
+        files::write_atomically(array, array_script(arguments, job, name, need, program, out, seconds));
+        files::write_atomically(last, verify_script(arguments, job, name, program, out));
         std::cout << count_text(static_cast<long>(options.frames.size()), "frame", "frames") << " in "
                   << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
                   << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <set>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "pelagic/scene.h"
@@ -25,6 +23,8 @@ struct FarmJob {
     Shot of{};                      // its name and frames alone
     std::string instruction_set{};  // that all must be made by; empty: any
     bool is_deep = false;           // of pictures, with deep ones
+    std::string
+        id{};  // of its frames and versions: a script runs only while the job is the one that it was written for
     std::vector<FarmTask> tasks{};
 };
 
@@ -34,11 +34,6 @@ inline constexpr const char* kFarmEnded = "pelagic farm: ended ";
 inline constexpr const char* kFarmAgain = ", and is begun again";  // at the end of the latter
 
 inline constexpr const char* kFarmShared = "pelagic farm: shared out anew";
-
-// DIR/farm/JOB.json. Throws WrongUsage for what is none.
-FarmJob read_job(const std::filesystem::path& file);
-// In DIR/farm, in order.
-std::set<std::filesystem::path> job_files(const std::filesystem::path& folder, std::error_code& error);
 
 // As a shell takes it for one word.
 std::string shell_word(const std::string& text);

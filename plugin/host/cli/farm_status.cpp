@@ -14,6 +14,9 @@
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/base/text.h"
 #include "plugin/files/files.h"
@@ -31,6 +34,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
+FarmJob read_job(const fs::path& file) {
+    try {
+        std::ifstream stream(file);
+        const auto json = nlohmann::json::parse(stream);
+        FarmJob job{.verb = json.at("verb"), .shot = json.at("shot")};
+        job.of.name = json.at("name");
+        job.of.first_frame = json.at("frame_range").at(0);
+        job.of.last_frame = json.at("frame_range").at(1);
+        job.instruction_set = json.value("instruction_set", "");
+        job.is_deep = json.value("deep", false);
+        for (const auto& task : json.at("tasks"))
+            job.tasks.push_back({.frames = task.at("frames"),
+                                 .made_of = task.value("made_of", std::vector<std::string>()),
+                                 .log = task.at("log"),
+                                 .slurm = task.at("slurm")});
+        return job;
+    } catch (const nlohmann::json::exception&) {
+        throw WrongUsage(line_text(file.string()) +
+                         " is no job of pelagic farm's, or damaged: share the shot out again");
+    }
+}
+
+// Of the jobs of a folder, which was shared out last for a frame: versions by shot, verb and frame.
+using Wanted = std::map<std::tuple<std::string, std::string, int>, std::string>;
+
+template <class Use>
+void for_frames(const FarmJob& job, const Use& use) {
+    for (const FarmTask& task : job.tasks) {
+        std::size_t i = 0;
+        for (const int frame : parse_frames(task.frames, job.of)) {
+            use(frame, i < task.made_of.size() ? task.made_of[i] : std::string());
+            ++i;
+        }
+    }
+}
+
 bool is_picture_there(const FarmJob& job, const fs::path& out, int frame, const std::string& wanted) {
     std::vector<std::string> files{picture_file(job.of, frame, "exr"), picture_file(job.of, frame, "png")};
     if (job.is_deep) files.push_back(deep_file(job.of, frame));
@@ -45,11 +84,7 @@ bool is_picture_there(const FarmJob& job, const fs::path& out, int frame, const 
 std::set<int> frames_there(const FarmJob& job, const fs::path& out) {
     std::set<int> there;
     std::map<int, std::string> asked;  // of what it is made, by frame
-    for (const FarmTask& task : job.tasks) {
-        std::size_t i = 0;
-        for (const int frame : parse_frames(task.frames, job.of))
-            asked[frame] = i < task.made_of.size() ? task.made_of[i++] : std::string();
-    }
+    for_frames(job, [&](int frame, const std::string& made_of) { asked[frame] = made_of; });
     if (job.verb == "bake") {
         read_records(out / (job.of.name + ".json"), [&](int number, const FrameRecord& frame) {
             const auto wanted = asked.find(number);
@@ -86,6 +121,7 @@ Log read_log(const fs::path& file) {
     Log log;
     std::ifstream stream(file);
     std::map<std::string, std::string> begun;  // host, by who
+    std::set<std::string> former;              // who had begun when the job was shared out anew
     for (std::string line; std::getline(stream, line);) {
         std::string_view rest = line;
         const auto word = [&] {
@@ -106,15 +142,15 @@ Log read_log(const fs::path& file) {
             rest.remove_prefix(std::string_view(kFarmEnded).size());
             const std::string id = word();
             begun.erase(id);
+            if (former.contains(id)) continue;
             word(), word();  // "with status"
             int status = 0;
             const std::string number = word();
             if (std::from_chars(number.data(), number.data() + number.size(), status).ec == std::errc())
                 log.status = status;
         } else if (line == kFarmShared) {
-            log.status.reset();
-            log.message.clear();
-            if (begun.empty()) log.last.clear();
+            log = {};
+            for (const auto& [id, host] : begun) former.insert(id);
         } else if (is_message(line)) {
             log.message = line;
         }
@@ -189,8 +225,14 @@ struct Counted {
     int refused = 0;  // tasks (status 2) whose frames are whole, of before
 };
 
-Counted print_job(const fs::path& file, const std::optional<Queue>& queue) {
-    const FarmJob job = read_job(file);
+// Without the frames that another job was to make of another version since.
+Counted print_job(const fs::path& file, const FarmJob& job, const Wanted& wanted,
+                  const std::optional<Queue>& queue) {
+    std::set<int> ours;
+    for_frames(job, [&](int frame, const std::string& made_of) {
+        if (wanted.at({job.of.name, job.verb, frame}) == made_of) ours.insert(frame);
+    });
+    if (ours.empty()) return {};
     const fs::path out = file.parent_path().parent_path();
     // Before the frames: those of a task that has ended are there.
     std::vector<Log> logs;
@@ -206,11 +248,15 @@ Counted print_job(const fs::path& file, const std::optional<Queue>& queue) {
     for (std::size_t number = 0; number < job.tasks.size(); ++number) {
         const FarmTask& task = job.tasks[number];
         std::vector<int> lacking;
+        bool has_some = false;
         for (const int frame : parse_frames(task.frames, job.of)) {
+            if (!ours.contains(frame)) continue;
+            has_some = true;
             ++counted.frames;
             (there.contains(frame) ? whole : lacking).push_back(frame);
         }
         const Log& log = logs[number];
+        if (!has_some) continue;
         const bool is_refused = log.status == kWrongUsage && !log.running;
         if (lacking.empty() && !is_refused) continue;
         const std::string frames = lacking.empty() ? task.frames : frames_text(lacking);
@@ -267,58 +313,46 @@ Counted print_job(const fs::path& file, const std::optional<Queue>& queue) {
 
 }  // namespace
 
-FarmJob read_job(const fs::path& file) {
-    try {
-        std::ifstream stream(file);
-        const auto json = nlohmann::json::parse(stream);
-        FarmJob job{.verb = json.at("verb"), .shot = json.at("shot")};
-        job.of.name = json.at("name");
-        job.of.first_frame = json.at("frame_range").at(0);
-        job.of.last_frame = json.at("frame_range").at(1);
-        job.instruction_set = json.value("instruction_set", "");
-        job.is_deep = json.value("deep", false);
-        for (const auto& task : json.at("tasks"))
-            job.tasks.push_back({.frames = task.at("frames"),
-                                 .made_of = task.value("made_of", std::vector<std::string>()),
-                                 .log = task.at("log"),
-                                 .slurm = task.at("slurm")});
-        return job;
-    } catch (const nlohmann::json::exception&) {
-        throw WrongUsage(line_text(file.string()) +
-                         " is no job of pelagic farm's, or damaged: share the shot out again");
-    }
-}
-
-std::set<fs::path> job_files(const fs::path& folder, std::error_code& error) {
-    std::set<fs::path> jobs;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (entry->path().extension() == ".json") jobs.insert(entry->path());
-    return jobs;
-}
-
 int print_farm_status(const fs::path& path) {
-    std::set<fs::path> jobs;
+    const bool is_job = path.extension() == ".json";
+    const fs::path folder = is_job ? fs::absolute(path).parent_path() : path / "farm";
     std::error_code error;
-    if (path.extension() == ".json") {
-        if (!fs::is_regular_file(path, error))
-            throw WrongUsage(
-                line_text(path.string()) +
-                " isn't there: another version of these frames has been shared out since, or none was");
-        jobs.insert(fs::absolute(path));
-    } else {
-        if (fs::directory_iterator readable(path, error); error)
-            throw WrongUsage("cannot read the folder '" + line_text(path.string()) + "': " + error.message() +
-                             ": name one that pelagic farm wrote into");
-        jobs = job_files(path / "farm", error);
+    if (fs::directory_iterator readable(is_job ? folder : path, error); error)
+        throw WrongUsage("cannot read the folder '" + line_text((is_job ? folder : path).string()) +
+                         "': " + error.message() + ": name one that pelagic farm wrote into");
+    // By when they were shared out.
+    std::vector<std::pair<fs::file_time_type, fs::path>> files;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (std::error_code gone; entry->path().extension() == ".json") {
+            const auto written = entry->last_write_time(gone);
+            if (!gone) files.emplace_back(written, entry->path());
+        }
+    std::ranges::sort(files);
+    std::map<fs::path, FarmJob> jobs;
+    Wanted wanted;
+    for (const auto& [written, file] : files) {
+        FarmJob job;
+        try {
+            job = read_job(file);
+        } catch (const WrongUsage&) {
+            const bool is_another = is_job && file.filename() != path.filename();
+            if (is_another || !fs::exists(file)) continue;
+            throw;
+        }
+        for_frames(job, [&](int frame, const std::string& made_of) {
+            wanted[{job.of.name, job.verb, frame}] = made_of;
+        });
+        jobs[file] = std::move(job);
     }
+    if (is_job) std::erase_if(jobs, [&](const auto& job) { return job.first.filename() != path.filename(); });
     if (jobs.empty())
         throw WrongUsage(
             "--status " + quoted_text(path.string()) +
             ": pelagic farm has written no job into this folder; pelagic verify looks at what is in it");
     const auto queue = queued();
     int status = kDone;
-    for (const fs::path& file : jobs) {
-        const Counted counted = print_job(file, queue);
+    for (const auto& [file, job] : jobs) {
+        const Counted counted = print_job(file, job, wanted, queue);
         if (counted.whole < counted.frames || counted.refused > 0) status = kNotWhole;
     }
     return status;

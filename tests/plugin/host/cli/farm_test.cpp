@@ -278,24 +278,32 @@ TEST_F(Farm, ATaskOfAnOlderVersionStops) {
 // Of two jobs that make a frame of two versions the one that was shared out last counts, and what was said before of its tasks doesn't.
 TEST_F(Farm, WhatWasSharedOutLastCounts) {
     ASSERT_EQ(
-        shell("$P farm small.toml --out out --frames 1-2 && $P farm small.toml --out out --frames 7-8 && "
-              "$P farm small.toml --out out && bash out/farm/small.bake.sh 0")
+        shell(
+            "$P farm small.toml --out out --frames 1-2 && $P farm small.toml --out out --frames 7-8 && "
+            "$P farm small.toml --out out && bash out/farm/small.bake.sh 0 && cp out/farm/small.bake.sh old.sh")
             .status,
         0);
     EXPECT_EQ(shell("$P farm --status out").status, 0);
     write_file(folder() / "small.toml", text_of({.frames = 12}) + "[sea]\nwind_speed_mps = 9.5\n");
     ASSERT_EQ(shell("$P farm small.toml --out out --frames 1-6").status, 0);
-    EXPECT_FALSE(fs::exists(folder() / "out/farm/small.bake.json"));
-    EXPECT_FALSE(fs::exists(folder() / "out/farm/small.bake.0001-0002.json"));
-    EXPECT_TRUE(fs::exists(folder() / "out/farm/small.bake.0007-0008.json")) << "other frames";
-    const Ended superseded = shell("bash out/farm/small.bake.verify.sh");
-    EXPECT_EQ(superseded.status, 2);
-    EXPECT_TRUE(has(superseded.err, "another version of these frames has been shared out since"))
-        << superseded.err;
+    const Ended of_both = shell("$P farm --status out");
+    EXPECT_EQ(of_both.status, 3);
+    for (const char* part :
+         {"bake: 6 of 6 frames whole", "bake: 2 of 2 frames whole", "bake: 0 of 6 frames whole"})
+        EXPECT_TRUE(has(of_both.out, part)) << part << of_both.out;
+    EXPECT_FALSE(has(of_both.out, "of 2 frames whole, in 1 task\nfailed")) << of_both.out;
     ASSERT_EQ(shell("$P farm small.toml --out out").status, 0);
-    const Json shared = result("$P farm --status out/farm/small.bake.json --json", 3);
-    EXPECT_EQ(shared.at("missing"), "1-12");
-    EXPECT_EQ(shared.at("failed").size(), 0u) << shared;
+    const auto whole = [&] { return result("$P farm --status out/farm/small.bake.json --json", 3); };
+    EXPECT_EQ(whole().at("missing"), "1-12") << whole();
+    const Ended old = shell("bash old.sh 0");
+    EXPECT_EQ(old.status, 2);
+    EXPECT_TRUE(has(old.err, "shared out anew")) << old.err;
+    // A task of the former array is at work, and told to stop after that.
+    const fs::path log = folder() / "out/farm/small.bake.0001-0012.log";
+    write_file(log, "pelagic farm: begun 12_0 on node1, now\npelagic farm: shared out anew\n");
+    EXPECT_EQ(whole().at("running").size(), 1u) << whole();
+    write_file(log, read_file(log) + "pelagic: stopping\npelagic farm: ended 12_0 with status 143, now\n");
+    EXPECT_EQ(whole().at("missing"), "1-12") << whole();
 }
 
 TEST_F(Farm, DeepPicturesAreMissed) {

@@ -171,11 +171,13 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
         "    exit 2\n"
         "fi\n"
         "n=$((10#$n))\n"
-        "# Of another version of the shot: begun again, it would make what this job's --chosen and frames no longer are.\n"
-        "if ! grep -qF '\"id\": \"" +
-        job.id + "\"' " + shell_word((folder / (name + ".json")).string()) + " 2>/dev/null && [ -d " +
+        "# A job of another version, begun again, would make what its --chosen and frames no longer are. A network's folder may show the new one late.\n"
+        "is_ours() { grep -qF '\"id\": \"" +
+        job.id + "\"' " + shell_word((folder / (name + ".json")).string()) +
+        " 2>/dev/null; }\n"
+        "if [ -d " +
         shell_word(out.string()) +
-        " ]; then\n"
+        " ] && ! is_ours && { [ -n \"${SLURM_ARRAY_JOB_ID:-}\" ] && sleep 70; ! is_ours; }; then\n"
         "    echo 'this job was shared out anew since, in another version: its tasks are no longer wanted' >&2\n"
         "    exit 2\n"
         "fi\n"
@@ -415,7 +417,7 @@ int run(FarmArguments arguments) {
                   << count_text(static_cast<long>(tasks), "task", "tasks") << " of "
                   << count_text(need.threads, "core", "cores") << " and " << bytes_text(need.memory_bytes)
                   << "; by the plan about " << rough_text(need.frame.seconds) << " s a frame and "
-                  << duration_text(seconds) << " a task\n"
+                  << (seconds < 1.0 ? "less than a second" : duration_text(seconds)) << " a task\n"
                   << "array:  " << line_text(array.string()) << "\nverify: " << line_text(last.string())
                   << '\n';
         for (auto& task : told["tasks"]) task.erase("made_of");

@@ -177,9 +177,14 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
         " 2>/dev/null; }\n"
         "if [ -d " +
         shell_word(out.string()) +
-        " ] && ! is_ours && { [ -n \"${SLURM_ARRAY_JOB_ID:-}\" ] && sleep 70; ! is_ours; }; then\n"
-        "    echo 'this job was shared out anew since, in another version: its tasks are no longer wanted' >&2\n"
-        "    exit 2\n"
+        " ] && ! is_ours; then\n"
+        "    [ -n \"${SLURM_ARRAY_JOB_ID:-}\" ] && sleep 70\n"
+        "    is_ours\n"
+        "    case $? in\n"
+        "        0) ;;\n"
+        "        1) echo 'this job was shared out anew since, in another version: its tasks are no longer wanted' >&2; exit 2 ;;\n"
+        "        *) echo 'what lies beside this script, its job, cannot be read' >&2; exit 75 ;;\n"
+        "    esac\n"
         "fi\n"
         "cd " +
         shell_word(out.string()) +
@@ -393,10 +398,8 @@ int run(FarmArguments arguments) {
             its += static_cast<std::ptrdiff_t>(part.size());
         }
         Fingerprint of_all;
-        for (const FarmTask& task : job.tasks) {
-            of_all.add(task.frames);
-            for (const std::string& frame : task.made_of) of_all.add(frame);
-        }
+        of_all.add(job.instruction_set).add(frames_text(options.frames));
+        for (const std::string& frame : made_of) of_all.add(frame);
         told["id"] = job.id = of_all.text();
         const fs::path folder = out / "farm", array = folder / (name + ".sh"),
                        last = folder / (name + ".verify.sh");
@@ -406,8 +409,11 @@ int run(FarmArguments arguments) {
                                                               static_cast<double>(tasks));
         // What ended before says nothing of this job.
         for (const FarmTask& task : job.tasks)
-            if (const fs::path log = folder / task.log; fs::exists(log))
+            if (const fs::path log = folder / task.log; fs::exists(log)) {
+                const fs::file_time_type heard = fs::last_write_time(log);
                 std::ofstream(log, std::ios::app) << kFarmShared << '\n';
+                fs::last_write_time(log, heard);
+            }
         // Before the scripts, which look for their id in it.
         files::write_atomically(folder / (name + ".json"),
                                 told.dump(2, ' ', true, nlohmann::json::error_handler_t::replace) + '\n');

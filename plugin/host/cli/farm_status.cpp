@@ -49,8 +49,9 @@ FarmJob read_job(const fs::path& file) {
                                  .made_of = task.value("made_of", std::vector<std::string>()),
                                  .log = task.at("log"),
                                  .slurm = task.at("slurm")});
+        for (const FarmTask& task : job.tasks) parse_frames(task.frames, job.of);
         return job;
-    } catch (const nlohmann::json::exception&) {
+    } catch (const std::exception&) {
         throw WrongUsage(line_text(file.string()) +
                          " is no job of pelagic farm's, or damaged: share the shot out again");
     }
@@ -135,6 +136,7 @@ Log read_log(const fs::path& file) {
             const std::string id = word();
             word();  // "on"
             begun[id] = log.host = word();
+            former.erase(id);
             log.last = id;
             log.message.clear();
             log.status.reset();
@@ -225,14 +227,32 @@ struct Counted {
     int refused = 0;  // tasks (status 2) whose frames are whole, of before
 };
 
+bool is_wanted(const FarmJob& job, const Wanted& wanted, int frame, const std::string& made_of) {
+    return wanted.at({job.of.name, job.verb, frame}) == made_of;
+}
+
+bool superseded(const FarmJob& job, const Wanted& wanted) {
+    bool has_some = false;
+    for_frames(job, [&](int frame, const std::string& made_of) {
+        has_some |= is_wanted(job, wanted, frame, made_of);
+    });
+    return !has_some;
+}
+
 // Without the frames that another job was to make of another version since.
 Counted print_job(const fs::path& file, const FarmJob& job, const Wanted& wanted,
                   const std::optional<Queue>& queue) {
     std::set<int> ours;
     for_frames(job, [&](int frame, const std::string& made_of) {
-        if (wanted.at({job.of.name, job.verb, frame}) == made_of) ours.insert(frame);
+        if (is_wanted(job, wanted, frame, made_of)) ours.insert(frame);
     });
-    if (ours.empty()) return {};
+    if (ours.empty()) {
+        std::cout << line_text(job.of.name) << ", " << job.verb
+                  << ": superseded, other jobs of these frames were shared out since" << std::endl;
+        tell_json(
+            {{"event", "result"}, {"verb", "farm"}, {"name", job.of.name}, {"of", job.verb}, {"frames", 0}});
+        return {.refused = 1};
+    }
     const fs::path out = file.parent_path().parent_path();
     // Before the frames: those of a task that has ended are there.
     std::vector<Log> logs;
@@ -255,7 +275,9 @@ Counted print_job(const fs::path& file, const FarmJob& job, const Wanted& wanted
             ++counted.frames;
             (there.contains(frame) ? whole : lacking).push_back(frame);
         }
-        const Log& log = logs[number];
+        Log& log = logs[number];
+        // Lost, and another one has ended since.
+        if (log.running && log.status && is_gone(*log.running, queue)) log.running.reset();
         if (!has_some) continue;
         const bool is_refused = log.status == kWrongUsage && !log.running;
         if (lacking.empty() && !is_refused) continue;
@@ -314,16 +336,16 @@ Counted print_job(const fs::path& file, const FarmJob& job, const Wanted& wanted
 }  // namespace
 
 int print_farm_status(const fs::path& path) {
-    const bool is_job = path.extension() == ".json";
-    const fs::path folder = is_job ? fs::absolute(path).parent_path() : path / "farm";
     std::error_code error;
+    const bool is_job = path.extension() == ".json" && !fs::is_directory(path, error);
+    const fs::path folder = is_job ? fs::absolute(path).parent_path() : path / "farm";
     if (fs::directory_iterator readable(is_job ? folder : path, error); error)
         throw WrongUsage("cannot read the folder '" + line_text((is_job ? folder : path).string()) +
                          "': " + error.message() + ": name one that pelagic farm wrote into");
     // By when they were shared out.
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (std::error_code gone; entry->path().extension() == ".json") {
+        if (std::error_code gone; entry->path().extension() == ".json" && entry->is_regular_file(gone)) {
             const auto written = entry->last_write_time(gone);
             if (!gone) files.emplace_back(written, entry->path());
         }
@@ -352,6 +374,8 @@ int print_farm_status(const fs::path& path) {
     const auto queue = queued();
     int status = kDone;
     for (const auto& [file, job] : jobs) {
+        const bool is_superseded = !is_job && superseded(job, wanted);
+        if (is_superseded) continue;
         const Counted counted = print_job(file, job, wanted, queue);
         if (counted.whole < counted.frames || counted.refused > 0) status = kNotWhole;
     }

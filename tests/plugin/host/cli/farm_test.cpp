@@ -295,15 +295,34 @@ TEST_F(Farm, WhatWasSharedOutLastCounts) {
     ASSERT_EQ(shell("$P farm small.toml --out out").status, 0);
     const auto whole = [&] { return result("$P farm --status out/farm/small.bake.json --json", 3); };
     EXPECT_EQ(whole().at("missing"), "1-12") << whole();
+    const Ended part = shell("$P farm --status out/farm/small.bake.0007-0008.json");
+    EXPECT_EQ(part.status, 3);
+    EXPECT_TRUE(has(part.out, "superseded")) << part.out;
+    ASSERT_EQ(shell("$P farm small.toml --out out --tasks 2 && $P farm small.toml --out out").status, 0);
     const Ended old = shell("bash old.sh 0");
     EXPECT_EQ(old.status, 2);
     EXPECT_TRUE(has(old.err, "shared out anew")) << old.err;
+    fs::create_directories(folder() / "bin");
     // A task of the former array is at work, and told to stop after that.
     const fs::path log = folder() / "out/farm/small.bake.0001-0012.log";
     write_file(log, "pelagic farm: begun 12_0 on node1, now\npelagic farm: shared out anew\n");
     EXPECT_EQ(whole().at("running").size(), 1u) << whole();
     write_file(log, read_file(log) + "pelagic: stopping\npelagic farm: ended 12_0 with status 143, now\n");
     EXPECT_EQ(whole().at("missing"), "1-12") << whole();
+    // One was lost, and the next one failed.
+    write_file(
+        log,
+        "pelagic farm: begun 11_0 on node1, now\npelagic farm: begun 12_0 on node2, now\npelagic: a reason\n"
+        "pelagic farm: ended 12_0 with status 2, now\n");
+    write_file(folder() / "bin/squeue", "#!/bin/bash\n");
+    EXPECT_EQ(
+        result("chmod +x bin/squeue; PATH=$PWD/bin:$PATH $P farm --status out/farm/small.bake.json --json", 3)
+            .at("failed")
+            .at(0)
+            .at("message"),
+        "pelagic: a reason");
+    fs::remove(folder() / "out/farm/small.bake.json");
+    EXPECT_EQ(shell("bash out/farm/small.bake.sh 0").status, 75) << "nobody knows whether it is wanted";
 }
 
 TEST_F(Farm, DeepPicturesAreMissed) {

@@ -227,25 +227,14 @@ struct Counted {
     int refused = 0;  // tasks (status 2) whose frames are whole, of before
 };
 
-bool is_wanted(const FarmJob& job, const Wanted& wanted, int frame, const std::string& made_of) {
-    return wanted.at({job.of.name, job.verb, frame}) == made_of;
-}
-
-bool superseded(const FarmJob& job, const Wanted& wanted) {
-    bool has_some = false;
-    for_frames(job, [&](int frame, const std::string& made_of) {
-        has_some |= is_wanted(job, wanted, frame, made_of);
-    });
-    return !has_some;
-}
-
-// Without the frames that another job was to make of another version since.
-Counted print_job(const fs::path& file, const FarmJob& job, const Wanted& wanted,
+// Without the frames that another job was to make of another version since; where all are, nothing, unless it is the one that is asked for.
+Counted print_job(const fs::path& file, const FarmJob& job, bool is_asked_for, const Wanted& wanted,
                   const std::optional<Queue>& queue) {
     std::set<int> ours;
     for_frames(job, [&](int frame, const std::string& made_of) {
-        if (is_wanted(job, wanted, frame, made_of)) ours.insert(frame);
+        if (wanted.at({job.of.name, job.verb, frame}) == made_of) ours.insert(frame);
     });
+    if (ours.empty() && !is_asked_for) return {};
     if (ours.empty()) {
         std::cout << line_text(job.of.name) << ", " << job.verb
                   << ": superseded, other jobs of these frames were shared out since" << std::endl;
@@ -374,9 +363,7 @@ int print_farm_status(const fs::path& path) {
     const auto queue = queued();
     int status = kDone;
     for (const auto& [file, job] : jobs) {
-        const bool is_superseded = !is_job && superseded(job, wanted);
-        if (is_superseded) continue;
-        const Counted counted = print_job(file, job, wanted, queue);
+        const Counted counted = print_job(file, job, is_job, wanted, queue);
         if (counted.whole < counted.frames || counted.refused > 0) status = kNotWhole;
     }
     return status;

@@ -82,9 +82,7 @@ Frames read_fragments(const fs::path& record, std::vector<Fragment> fragments, R
                       const std::atomic<bool>* cancel) {
     Frames frames;
     if (fragments.empty()) return frames;
-    const std::string version = read_frames(
-                                    record, {}, [](int, const FrameRecord&) {}, nullptr, cancel)
-                                    .version;
+    const std::string version = read_shot_part(record, cancel).version;
     for (Fragment& fragment : fragments) fragment.identity = files::identity_of(fragment.file);
     std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
         return std::tie(a.identity.changed_s, a.identity.changed_ns, a.file) <

@@ -409,10 +409,9 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
     return reader.problem().empty() ? reading : whole();
 }
 
-std::string version_of_record(const std::filesystem::path& file) {
+RecordReading read_shot_part(const std::filesystem::path& file, const std::atomic<bool>* cancel) {
     return read_frames(
-               file, {}, [](int, const FrameRecord&) {}, nullptr)
-        .version;
+        file, {}, [](int, const FrameRecord&) {}, nullptr, cancel);
 }
 
 std::string made_of(const std::map<std::string, FileRecord>& files) {
@@ -526,9 +525,7 @@ void Record::refuse_begun_anew(const RecordReading& there, const std::filesystem
 void Record::refuse_other_version(const std::filesystem::path& file) {
     const files::FileIdentity now = files::identity_of(file);
     if (now == seen_) return;
-    refuse_begun_anew(read_frames(
-                          file, {}, [](int, const FrameRecord&) {}, nullptr),
-                      file);
+    refuse_begun_anew(read_shot_part(file), file);
     seen_ = now;
 }
 
@@ -538,8 +535,7 @@ void Record::begin(const std::filesystem::path& file, const files::LockWatch& wa
     unlocked_ = lock.problem();
     // With a lock that holds, once.
     for (bool is_done = false; !is_done;) {
-        const RecordReading there = read_frames(
-            file, {}, [](int, const FrameRecord&) {}, nullptr);
+        const RecordReading there = read_shot_part(file);
         refuse_other_choice(there, file);
         if (before_ && there.version != *before_) refuse_begun_anew(there, file);
         if (write_static) write_static(there.shot ? there.shot->files : std::map<std::string, FileRecord>());

@@ -104,8 +104,8 @@ RecordReading read_frames(const std::filesystem::path& file, std::span<const int
                           const std::function<void(int, FrameRecord)>& take, std::set<int>* numbers,
                           const std::atomic<bool>* cancel = nullptr);
 
-// RecordReading::version alone.
-std::string version_of_record(const std::filesystem::path& file);
+// The same of no frame: what the record says of the shot.
+RecordReading read_shot_part(const std::filesystem::path& file, const std::atomic<bool>* cancel = nullptr);
 
 // Another run into the folder has chosen other settings since this one looked: the same command again takes those.
 class ChosenMeanwhile : public std::invalid_argument {
@@ -156,7 +156,7 @@ class Record {
     using WriteStatic = std::function<void(const std::map<std::string, FileRecord>& recorded)>;
     void begin(const std::filesystem::path& file, const files::LockWatch& waiting = {},
                const WriteStatic& write_static = {}, bool makes_frames = false);
-    // As the run begins: version_of_record(). begin() throws BegunAnew where the record tells of a third version by then.
+    // As the run begins: read_shot_part().version. begin() throws BegunAnew where the record tells of a third version by then.
     void expect_version(const std::string& version) { before_ = version; }
 
     // Throws BegunAnew where the record tells of another version of the shot by now. Costs a look at the file where it is as it was.
@@ -165,8 +165,8 @@ class Record {
     // Writes what was set into the run's fragment. Holds one frame in memory of those that are there already.
     void save(const std::filesystem::path& file);
 
-    // The last save() of a run. Throws BegunAnew. Where all the shot's frames are there, the fragments become a part of the record, which is as one run
-    // would have written it; two that do so at once write the same, and a lock needn't hold. Where the record is small and no other
+    // The last save() of a run. Throws BegunAnew. Where all the shot's frames are there, the fragments become a part of the record, which
+    // is as one run would have written it; two that do so at once write the same, and a lock needn't hold. Where the record is small and no other
     // fragment is there, this run's does. `write_static`: as of begin(), before a record that is whole.
     void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {},
                 const WriteStatic& write_static = {});

@@ -157,7 +157,7 @@ void complete(FrameRecord& record, const FrameJob& job, Parts parts) {
     }
 }
 
-// The frames that the record holds as they were written (of a long record those that are asked for), the numbers of all; what is
+// The frames that the record holds as they were written (of a long record those that are asked for), and the numbers of all; what is
 // wrong with it goes to the report, an altered entry of a frame that isn't asked for to the stale ones. Throws files::FileError where something is in the record's place
 // that isn't one and can't be replaced.
 std::map<int, FrameRecord> recorded_frames(RunReport& report, const Shot& shot, std::span<const int> asked,
@@ -195,7 +195,7 @@ class Run {
     RunReport run() {
         const Clock::time_point start = Clock::now();
         try {
-            if (work_.has_record) record_.expect_version(version_of_record(report_.record));
+            if (work_.has_record) record_.expect_version(read_shot_part(report_.record).version);
             tell(RunStage::Planning);
             parts_ = work_.plan(frames_);
             find();

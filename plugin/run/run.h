@@ -88,7 +88,8 @@ struct RunReport {
 };
 
 // Throws what the work throws, files::FileError where a file can't be written (what was finished is kept and recorded), and
-// std::invalid_argument for frames outside the shot's range, and ChosenMeanwhile and BegunAnew where another run has chosen other settings, or begun another version, meanwhile.
+// std::invalid_argument for frames outside the shot's range, and ChosenMeanwhile and BegunAnew where another run has chosen other
+// settings, or begun another version, meanwhile.
 RunReport run(const RunWork& work, const RunOptions& options);
 
 // Where the time of a finished run went: "compute 41 %, encode 22 %, write 97 % of the time busy; the disk

@@ -223,8 +223,8 @@ std::string array_script(const FarmArguments& arguments, const FarmJob& job, con
         "# Before the word that it has ended: from then on nobody looks whether it runs.\n"
         "if [[ $status = 75 || $status = 137 ]] && [ -n \"${SLURM_ARRAY_JOB_ID:-}\" ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 3 ]; then\n"
         "    echo \"" +
-        std::string(kFarmEnded) + "$id with status $status" + kFarmAgain +
-        "\"\n"
+        std::string(kFarmEnded) +
+        "$id with status $status, and is begun again\"\n"
         "    scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\" && sleep 60\n"
         "else\n"
         "    echo \"" +

@@ -31,8 +31,7 @@ struct FarmJob {
 // The lines with which a task's log tells when it begins and ends: "pelagic farm: begun ID on HOST", "… ended ID with status N".
 inline constexpr const char* kFarmBegun = "pelagic farm: begun ";
 inline constexpr const char* kFarmEnded = "pelagic farm: ended ";
-inline constexpr const char* kFarmAgain = ", and is begun again";  // at the end of the latter
-
+// A line of its own: what stands before says nothing of the job that is there now.
 inline constexpr const char* kFarmShared = "pelagic farm: shared out anew";
 
 // As a shell takes it for one word.
